@@ -1,6 +1,6 @@
 """Contract of the actions that an RLA can name."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from hal.robot import SensorReadings, WheelSpeeds
 
@@ -24,4 +24,14 @@ class Behaviour(Protocol):
 
     def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return the wheel speeds in m/s for this tick; called once per tick while active."""
+        ...
+
+
+@runtime_checkable
+class DrivesOn(Protocol):
+    """Action with a known speed ahead."""
+
+    @property
+    def forward_m_s(self) -> float:
+        """Return the speed of the robot's centre in m/s; negative when it backs."""
         ...

@@ -38,6 +38,11 @@ class KeepDistance:
         self._speed_m_s = speed_m_s
         self._gain_per_m = gain_per_m
 
+    @property
+    def forward_m_s(self) -> float:
+        """Return the speed of the robot's centre in m/s; negative when it backs."""
+        return self._speed_m_s
+
     def start(self) -> None:
         """Do nothing: the loop has no state."""
 

@@ -3,11 +3,13 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
+from behaviors.repertoire import Repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.sensor_ring import SubstituteReadings
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Critic
@@ -141,12 +143,14 @@ class _Assembly:
         self.reinforcement = self._restored_reinforcement()
         self.active_behaviour = options.active_behaviour or ActiveBehaviour(task.behaviours)
         self.statistics = options.statistics or StatisticsCounter()
+        repertoire = load_task_repertoire(task, settings)
         self.basic = BasicLevel(
             self._system,
-            load_task_repertoire(task, settings),
+            repertoire,
             round(task.learning.minimum_action_s / self._period_s),
             self.active_behaviour,
             self.reinforcement.choice,
+            self._doubt(repertoire),
         )
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None
@@ -164,6 +168,13 @@ class _Assembly:
         self.self_teaching = SelfTeaching(self.reinforcement, self._system, self.critic, agreement, self._period_s)
         self.self_teaching.restore(events, options.checkpoint)
         self.handler = self._build_handler(agreement)
+
+    def _doubt(self, repertoire: Repertoire) -> DoubtMeter | None:
+        settings = self._task.learning.doubt
+        if settings is None:
+            return None
+        ahead = features_ahead(self.definition, self._settings.infrared)
+        return DoubtMeter(self._system, settings, ahead, actions_ahead(repertoire))
 
     def _restored_reinforcement(self) -> Reinforcement:
         recent, checkpoint = DecisionHistory(self.definition.dimensions), self._options.checkpoint

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
+from kurt2rt.core.basic.doubt import DoubtSettings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
@@ -60,6 +61,8 @@ class LearningSettings(Settings):
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
+    doubt: DoubtSettings | None = None
+    """Doubt, by which the robot asks also inside the radius; None: it asks only outside."""
 
 
 class PlainSettings(LearningSettings):
@@ -72,6 +75,7 @@ class PlainSettings(LearningSettings):
     weights: Annotated[tuple[FeatureWeight, ...], Field(max_length=0)] = ()
     insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
+    doubt: None = None
 
 
 class TeacherSettings(Settings):

@@ -333,7 +333,7 @@ class Tick:
             circumstances=view.appraisal_features,
             opinion=view.opinion,
         )
-        asks = motion.asks_at_bumper or (decision.cause is DecisionCause.UNKNOWN and decision.asks_at == BASIC)
+        asks = motion.asks_at_bumper or (decision.asking and decision.asks_at == BASIC)
         handler.on_decision(tick, asks=asks)
         if handler.mid is not None:
             handler.mid.remember(tick, decision)
@@ -347,7 +347,7 @@ class Tick:
             return False
         if decision.cause is DecisionCause.TEACHER:
             return self._handler.authority.held_press is not None
-        return decision.cause in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN)
+        return decision.cause in (DecisionCause.RLA, DecisionCause.HELD) or decision.asking
 
     def _publish(
         self,

@@ -196,6 +196,7 @@ def encode_state(state: State) -> bytes:
     picture["pg"] = _row(state.progress, _PROGRESS)
     picture["nv"] = state.nearest_value
     picture["hd"] = _row(state.hold, _HOLD)
+    picture["db"] = state.doubt
     standing = state.standing
     # Older devices read the stop from its sentence.
     picture["st"] = _tidied(stop_text(state.stopped), _LINE)
@@ -221,6 +222,7 @@ def decode_state(payload: bytes) -> State:
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
     nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
     hold = OrNone(Row(_HOLD))("hold", picture.get("hd"))
+    doubt = OrNone(_FINITE)("doubt", picture.get("db"))
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
     sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
@@ -232,6 +234,7 @@ def decode_state(payload: bytes) -> State:
         mid=None if mid is None else MidState(*mid),
         surprise=None if surprise is None else SurpriseState(*surprise),
         nearest_value=nearest_value,
+        doubt=doubt,
         progress=NO_PROGRESS if progress is None else Progress(*progress),
         stopped=stopped,
         hold=None if hold is None else HoldState(*hold),

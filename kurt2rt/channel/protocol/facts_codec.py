@@ -9,7 +9,7 @@ from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, O
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing_text import stop_of_text
-from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, LessonFact, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, DoubtFacts, LessonFact, LevelFacts, RlaFacts
 
 _MOST_LESSONS = 32
 _MOST_FEATURES = 512
@@ -106,6 +106,7 @@ _FACTS = MapOf(
     taught_now=Flag(),
     hindrances=ManyOf(NAME, most=8),
     broken_sensors=MayLack(ManyOf(NAME, most=64)),
+    doubt=MayLack(OrNone(MapOf(DoubtFacts, score=_REAL, threshold=_REAL, sensor=NAME, reads=NAME, taught=NAME))),
 )
 
 _FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)

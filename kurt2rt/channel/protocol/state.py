@@ -163,6 +163,8 @@ class State:
     """Fraction driven by RLAs, and the questions, in the last minute."""
     hold: HoldState | None = None
     """Newest hold; None before the first, and from a robot of an older version."""
+    doubt: float | None = None
+    """Doubt about the action that drives, or would; None if the robot has no score of doubt, or stands otherwise."""
     standing: Standing | None = None
     """None from a robot of an older version."""
 

@@ -9,7 +9,7 @@ from kurt2rt.channel.server.mid_state import mid_state, surprise_state
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import ASK, BASIC, Rla
-from kurt2rt.core.teaching.question import FeatureDifference, ask
+from kurt2rt.core.teaching.question import FeatureDifference, ask, ask_in_doubt
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runtime import Runtime
 
@@ -103,6 +103,7 @@ class StateBuilder:
             mid=self._mid(record),
             surprise=self._surprise,
             hold=self._hold(),
+            doubt=decision.doubt,
             progress=runtime.progress.progress(),
             standing=record.standing,
             **self._nearest(record),
@@ -112,10 +113,15 @@ class StateBuilder:
 
     def _question(self, record: TickRecord) -> tuple[FeatureDifference, ...]:
         decision, match = record.decision, record.decision.match
-        if decision.cause is not DecisionCause.UNKNOWN or match is None or decision.asks_at != BASIC:
+        if match is None or decision.asks_at != BASIC:
             return ()
-        weights, names = self._runtime.level.system.weights, self._runtime.definition.names
-        return ask(match, record.situation.vector, weights, names).differing
+        level, names, vector = self._runtime.level, self._runtime.definition.names, record.situation.vector
+        if decision.cause is DecisionCause.DOUBT:
+            question = ask(match, vector, level.system.weights, names)
+            return ask_in_doubt(question, level.new_obstacle(match, vector), names).differing
+        if decision.cause is not DecisionCause.UNKNOWN:
+            return ()
+        return ask(match, vector, level.system.weights, names).differing
 
     def _nearest(self, record: TickRecord) -> _Nearest:
         match = record.decision.match

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
+from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -40,6 +41,7 @@ class BasicLevel:
         minimum_action_ticks: int,
         active_behaviour: ActiveBehaviour,
         choice: EpsilonGreedy | None = None,
+        doubt: DoubtMeter | None = None,
     ) -> None:
         """Check the RLAs and connect them to the repertoire.
 
@@ -49,6 +51,7 @@ class BasicLevel:
             minimum_action_ticks: ticks before another RLA's action may replace the driving one.
             active_behaviour: only its RLAs compete.
             choice: chooses among RLAs on the same condition; without it the oldest answers.
+            doubt: score by which the robot stands and asks inside the radius; None: it never doubts.
 
         Raises:
             UnknownActionError: for an RLA whose action the repertoire lacks.
@@ -72,6 +75,8 @@ class BasicLevel:
         self._behaviour = active_behaviour.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._choice = choice
+        self.doubt = doubt
+        self._doubts = None if doubt is None else DoubtWatch(doubt)
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
         self.held_action = ""
@@ -94,6 +99,8 @@ class BasicLevel:
         self.system.apply(event)
         if drives:
             self._held.allow_switch()
+            if self.doubt is not None:
+                self.doubt.on_lesson()
 
     def _is_about_driving(self, event: TeachingEvent) -> bool:
         """Return whether an event, not yet applied, may change the driving RLA; rewards and critic lessons do not."""
@@ -125,25 +132,43 @@ class BasicLevel:
         if self._held.select(rla.action):
             if rla is not self._driver:
                 self._driver, self._drivers_condition = rla, None
-            return self._drive(readings, DecisionCause.RLA, rla, match, answers=True)
+            return self._drive(situation, readings, DecisionCause.RLA, rla, match, answers=True)
         driver = self._driver
         assert driver is not None
         answers = driver.condition == rla.condition or self._inside(driver, situation)
-        return self._drive(readings, DecisionCause.HELD, driver, match, answers=answers)
+        return self._drive(situation, readings, DecisionCause.HELD, driver, match, answers=answers)
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
         """Return which RLA of one condition, oldest first, would answer there without random exploration."""
         return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
     def _drive(
-        self, readings: SensorReadings, cause: DecisionCause, rla: Rla, match: Match, *, answers: bool
+        self,
+        situation: Situation,
+        readings: SensorReadings,
+        cause: DecisionCause,
+        rla: Rla,
+        match: Match,
+        *,
+        answers: bool,
     ) -> Decision:
-        """Step the held action; ask if it is lost."""
+        """Step the held action; ask if it is lost, or in doubt."""
         wheel_speeds = self._held.step(readings)
         if self._held.lost:
             # The action is not restarted: it goes on by itself once its situation is known again.
             return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)
-        return Decision(wheel_speeds, cause, self._held.name, rla.rla_id, match, answers)
+        action, doubts = self._held.name, self._doubts
+        if doubts is None:
+            return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers)
+        score = doubts.meter.score(situation.vector, match, action, self._behaviour)
+        if doubts.update(score, alone=self.skip_withdrawn):
+            self._held.stop()
+            return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
+        return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score)
+
+    def new_obstacle(self, match: Match, vector: NDArray[np.float64]) -> NewObstacle | None:
+        """Return the sensor that makes the robot doubt the nearest RLA in a situation (d,); None if no sensor does."""
+        return None if self.doubt is None else self.doubt.obstacle(vector, match, match.rla.action, match.rla.behaviour)
 
     def _inside(self, rla: Rla, situation: Situation) -> bool:
         """Return whether the situation lies within the radius of the driving RLA, although another RLA is nearer."""
@@ -156,4 +181,6 @@ class BasicLevel:
     def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:
         """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
+        if self._doubts is not None:
+            self._doubts.end()
         return Decision(STANDSTILL, cause, None, None, match)

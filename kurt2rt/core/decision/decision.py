@@ -33,11 +33,14 @@ class DecisionCause(StrEnum):
     """The robot has reached its goal."""
     TOUCHES = "touches"
     """An RLA pushes toward what a bumper touches and the guard lets no wheel turn; the robot asks."""
+    DOUBT = "doubt"
+    """The situation lies inside the radius of the nearest RLA, but the robot doubts its action; it stands and asks."""
     NO_WAY = "no way"
     """No taught way leads from here to the goal."""
 
 
-_ASKING = (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
+ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})
+"""Causes by which the robot waits for an answer."""
 
 
 class MidDecision(NamedTuple):
@@ -76,6 +79,9 @@ class Decision(NamedTuple):
     """Command of the mid level; None without one."""
     plan: PlanStep | None = None
     """Progress toward the goal; None without a goal."""
+    doubt: float | None = None
+    """Doubt of the basic level about the action that drives, or would; None if the task sets none, and at standstill
+    for another reason."""
 
     @property
     def driving(self) -> bool:
@@ -84,8 +90,8 @@ class Decision(NamedTuple):
 
     @property
     def asking(self) -> bool:
-        """Return whether the robot waits for an answer, because the situation is unknown or it touches something."""
-        return self.cause in _ASKING
+        """Return whether the robot waits for an answer, because it does not know, doubts or touches something."""
+        return self.cause in ASKING
 
 
 def withdrawn_rla_in(decision: Decision) -> int | None:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import ASKING, Decision, DecisionCause
 from kurt2rt.core.rla.rla import MID
 
 
@@ -20,6 +20,8 @@ class StandReason(StrEnum):
     """The wheels turn."""
     ASKS = "asks"
     """The situation of the basic level is unknown."""
+    DOUBTS = "doubts"
+    """The situation of the basic level is known, but the robot doubts that the action is right."""
     ASKS_THE_WAY = "asks the way"
     """The situation of the mid level is unknown."""
     FRONT_BUMPER = "front bumper"
@@ -111,11 +113,13 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
         stop: active stop; None without one.
         says: outcome of the goal, or why lessons cannot be saved, in words.
     """
-    asks = cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
+    asks = cause in ASKING
     if stop is not None:
         return Standing(StandReason.STOPPED, True, asks, stop=stop)
     if cause == DecisionCause.UNKNOWN:
         return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
+    if cause == DecisionCause.DOUBT:
+        return Standing(StandReason.DOUBTS, asks=True)
     if cause == DecisionCause.TOUCHES:
         return Standing(StandReason.FRONT_BUMPER, asks=True)
     if cause in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.TEACHER):

@@ -20,6 +20,7 @@ class _Text(NamedTuple):
 _TEXTS: dict[StandReason, _Text] = {
     StandReason.DRIVES: _Text(""),
     StandReason.ASKS: _Text("it does not know this situation", "Teach it what to do here"),
+    StandReason.DOUBTS: _Text("it doubts that its action is right here", "Teach it what to do here"),
     StandReason.ASKS_THE_WAY: _Text("it does not know the way", "Teach it which behaviour to follow"),
     StandReason.FRONT_BUMPER: _Text("it touches something in front", "Drive it back"),
     StandReason.REAR_BUMPER: _Text("it touches something behind", "Drive it forward"),
@@ -110,7 +111,7 @@ def short_text(standing: Standing) -> str:
     """Return why the robot stands, for a status line; empty while it drives or asks what to do."""
     if standing.needs_resume:
         return f"stands until Go: {reason_text(standing)}"
-    if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.ASKS_THE_WAY):
+    if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.DOUBTS, StandReason.ASKS_THE_WAY):
         return ""
     return f"stands: {question_text(standing) or reason_text(standing)}"
 

@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.core.basic.doubt import NewObstacle
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
@@ -41,6 +42,8 @@ class Question:
     """Value of the nearest RLA if its action was withdrawn; None if unknown."""
     touches: str = ""
     """Question of a robot at a bumper; empty for an unknown situation."""
+    doubts: bool = False
+    """True if the situation is known, but the robot doubts the action."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
@@ -54,6 +57,8 @@ class Question:
         nearest = rla_title(self.nearest_rla, self.behaviour)
         if self.touches:
             return f"{self.touches} {nearest} says {self.action}"
+        if self.doubts:
+            return f"I doubt {nearest}, which says {self.action} here, teach me{'; ' if features else ''}{features}"
         if self.action == ASK and self.distance <= self.radius:
             worth = "" if self.worth is None else f": worth {self.worth:.2f} now"
             return f"{nearest} was blamed{worth}, teach me again"
@@ -127,3 +132,13 @@ def ask(
         if differences[i] > 0.0
     )
     return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour, words)
+
+
+def ask_in_doubt(question: Question, obstacle: NewObstacle | None, feature_names: tuple[str, ...]) -> Question:
+    """Return the question of a robot that doubts: the new obstacle comes first, against the nearest that was taught."""
+    if obstacle is None:
+        return replace(question, doubts=True)
+    name = feature_names[obstacle.feature]
+    others = (each for each in question.differing if each.name != name)
+    first = FeatureDifference(name, obstacle.here, obstacle.taught)
+    return replace(question, doubts=True, differing=(first, *others)[: max(1, len(question.differing))])

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.events import RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LessonFact, LevelFacts, RlaFacts
 from kurt2rt.runtime import Runtime
 
 _PASSED_OVER = 12
@@ -69,7 +70,21 @@ def collect_facts(
         taught_now=bool(record.events),
         broken_sensors=tuple(sensor.title for sensor in record.broken_sensors),
         hindrances=_blocking_causes(runtime, record),
+        doubt=_doubt(runtime, decision, record.situation.vector),
     )
+
+
+def _doubt(runtime: Runtime, decision: Decision, vector: NDArray[np.float64]) -> DoubtFacts | None:
+    """Return the doubt of a decision in a situation (d,); None without one."""
+    meter, score, match = runtime.level.doubt, decision.doubt, decision.match
+    if meter is None or score is None or match is None:
+        return None
+    new = runtime.level.new_obstacle(match, vector)
+    if new is None:
+        return DoubtFacts(score, meter.settings.threshold)
+    words, name = words_for(runtime.robot.infrared), runtime.definition.names[new.feature]
+    reads, taught = words.reading(name, new.here), words.reading(name, new.taught)
+    return DoubtFacts(score, meter.settings.threshold, words.place(name), reads, taught)
 
 
 def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:

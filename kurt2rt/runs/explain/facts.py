@@ -118,6 +118,21 @@ class LevelFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class DoubtFacts:
+    """Doubt about the action of the nearest RLA, and the sensor that causes most of it."""
+
+    score: float
+    threshold: float
+    """Score from which the robot asks."""
+    sensor: str = ""
+    """Position of the sensor ahead that sees an obstacle nearer than lessons that drive on; empty without one."""
+    reads: str = ""
+    """Its reading in words, such as 13 cm."""
+    taught: str = ""
+    """Reading that all such lessons but at most one reach or stay beyond, in words."""
+
+
+@dataclass(frozen=True, slots=True)
 class DecisionFacts:
     """Decision of one tick with the facts it rested on."""
 
@@ -165,6 +180,8 @@ class DecisionFacts:
     """Infra-red sensors that do not count, by position and name, such as `front left edge (s15)`."""
     hindrances: tuple[str, ...] = ()
     """Causes that would have stopped the robot without a stop or manual driving: values of DecisionCause."""
+    doubt: DoubtFacts | None = None
+    """None if the robot has no score of doubt, and at a standstill for another reason."""
 
     @property
     def stopped_because(self) -> str:

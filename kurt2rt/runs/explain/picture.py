@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.gridspec import SubplotSpec
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.decision import ASKING, DecisionCause
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.perception.sensor_words import SensorWords, words_for
 from kurt2rt.core.rla.rla import MID
@@ -135,7 +135,7 @@ def _heading(
 def _colour_of(facts: DecisionFacts, colours: Mapping[str, str]) -> str:
     if facts.action is not None and not facts.latched:
         return TEACHER if facts.cause == DecisionCause.TEACHER else colours[facts.action]
-    return ASKS if facts.cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES) and not facts.latched else STANDS
+    return ASKS if facts.cause in ASKING and not facts.latched else STANDS
 
 
 def _situations(

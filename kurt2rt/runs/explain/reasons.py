@@ -6,7 +6,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
 from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
 
 _STANDS = {
@@ -17,7 +17,11 @@ _STANDS = {
     DecisionCause.AT_GOAL: "it is at its goal",
     DecisionCause.NO_WAY: "no way leads to its goal",
     DecisionCause.TOUCHES: "it touches something",
+    DecisionCause.DOUBT: "it doubts its action",
 }
+
+_TOLD_DOUBT = 1.0
+"""Least doubt that is told of a robot that drives: that of 1 % of the ticks of a usual drive."""
 
 _NOTHING_BESIDE = (DecisionCause.BLIND, DecisionCause.AT_GOAL, DecisionCause.NO_WAY)
 """Causes without a hypothetical action: no situation, or a stand that the robot itself decided."""
@@ -32,6 +36,8 @@ def headline(facts: DecisionFacts) -> str:
         if facts.cause == DecisionCause.TEACHER:
             return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
         return facts.action
+    if facts.cause == DecisionCause.DOUBT:
+        return "stands and asks: it doubts its action"
     if facts.cause == DecisionCause.UNKNOWN:
         return "stands and asks the way" if facts.asks_at == MID else "stands and asks"
     return f"stands: {_STANDS.get(DecisionCause(facts.cause), facts.cause)}"
@@ -56,9 +62,11 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
             f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
         )
     if facts.cause == DecisionCause.RLA:
-        lines += _rla_drives(facts.basic)
+        lines += [*_rla_drives(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.HELD:
-        lines += _held(facts.basic)
+        lines += [*_held(facts.basic), *_doubts_a_little(facts.doubt)]
+    elif facts.cause == DecisionCause.DOUBT:
+        lines += _doubts(facts.basic, facts.doubt)
     elif facts.cause == DecisionCause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
         lines += _autonomous_action(facts)
@@ -128,6 +136,28 @@ def _touches(facts: DecisionFacts) -> list[str]:
     why, leader = reason_text(standing_of(facts)), facts.basic.leader
     says = "an RLA goes on toward it" if leader is None else f"{format_rla(leader)} goes on toward it"
     return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
+
+
+def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
+    leader = level.leader
+    if leader is None or doubt is None:
+        return ["The robot doubts its action, so it asks."]
+    return [
+        f"{format_rla(leader)} would drive, at {format_nearness(leader)}, but the robot doubts it and asks: "
+        f"{_why_doubt(doubt)}. Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}."
+    ]
+
+
+def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
+    if doubt is None or doubt.score < _TOLD_DOUBT:
+        return []
+    return [f"Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}: {_why_doubt(doubt)}."]
+
+
+def _why_doubt(doubt: DoubtFacts) -> str:
+    if not doubt.sensor:
+        return "the situation is farther from the lesson than usual"
+    return f"{doubt.sensor} sees {doubt.reads}, and lessons to drive on reach {doubt.taught}"
 
 
 def _asks(level: LevelFacts) -> list[str]:

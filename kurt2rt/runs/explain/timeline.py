@@ -276,6 +276,8 @@ def _classified(entry: TickEntry) -> tuple[Kind, str]:
         return (Kind.LED if decision.cause is DecisionCause.TEACHER else Kind.DRIVES), decision.action
     if decision.cause is DecisionCause.TOUCHES:
         return Kind.ASKS, "asks: touches something"
+    if decision.cause is DecisionCause.DOUBT:
+        return Kind.ASKS, "asks: doubts"
     if decision.cause is DecisionCause.UNKNOWN:
         return Kind.ASKS, "asks the way" if decision.asks_at != BASIC else "asks"
     return Kind.STANDS, decision.cause.value

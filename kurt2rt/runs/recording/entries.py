@@ -51,6 +51,8 @@ class DecisionEntry(NamedTuple):
     asks_at: str
     mid: MidEntry | None
     plan: PlanStep | None
+    doubt: float | None = None
+    """None in recordings from before 2026-11-23, and if the task sets no doubt."""
 
 
 class OpinionEntry(NamedTuple):
@@ -151,6 +153,7 @@ def decision_entry(decision: Decision) -> DecisionEntry:
         asks_at=decision.asks_at,
         mid=None if decision.mid is None else _mid_entry(decision.mid),
         plan=decision.plan,
+        doubt=decision.doubt,
     )
 
 

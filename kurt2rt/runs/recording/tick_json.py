@@ -113,6 +113,7 @@ def _decision(decision: DecisionEntry) -> dict[str, Any]:
                 }
             ),
             "plan": None if decision.plan is None else _tuple(decision.plan),
+            "doubt": decision.doubt,
         }
     )
 

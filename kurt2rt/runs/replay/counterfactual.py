@@ -17,8 +17,11 @@ from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
-_DECIDES = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN})
-"""Causes in which knowledge decides; otherwise the robot stands for another reason, or a teacher drives."""
+_DECIDES = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN, DecisionCause.DOUBT})
+"""Causes in which knowledge decides, also where the robot doubts it.
+
+In any other the robot stands for another reason, or a teacher drives.
+"""
 
 AnswerSource = Callable[[TickRecord, Runtime], PolicyAnswers]
 """Function that returns the answers of some knowledge to a replayed tick."""

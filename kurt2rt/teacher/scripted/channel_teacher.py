@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
@@ -196,7 +196,7 @@ async def _state_at(robot: TeacherClient, tick: int) -> State:
 def view_of_state(state: State) -> TeacherView:
     """Return the teacher's view of a state from the channel."""
     return TeacherView(
-        state.cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES),
+        state.cause in ASKING,
         state.action is not None,
         state.action,
         state.infrared_counts,

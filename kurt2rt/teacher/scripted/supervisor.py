@@ -72,5 +72,5 @@ def _should_move(state: State) -> bool:
     A robot that asks or is blind is not, unless it is autonomous. A robot at a bumper or stopped by the guard is,
     because it may not come free by itself.
     """
-    alone = state.cause == DecisionCause.UNKNOWN and state.phase == Phase.AUTONOMOUS
+    alone = state.cause in (DecisionCause.UNKNOWN, DecisionCause.DOUBT) and state.phase == Phase.AUTONOMOUS
     return state.action is not None or state.cause == DecisionCause.TOUCHES or state.stopped is not None or alone

@@ -7,6 +7,7 @@ from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.critic.state import CriticState
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, question_text, standing_headline
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
@@ -86,6 +87,7 @@ def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | Mi
         words=words,
         worth=state.nearest_value,
         touches=question_text(state.stands),
+        doubts=state.cause == DecisionCause.DOUBT,
     )
 
 
@@ -95,7 +97,8 @@ def expects_answer(state: State | None) -> bool:
         return True
     if state.asks_at == MID:
         return False  # the nearest RLA of the state is the mid level's
-    return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
+    doubts = state.cause == DecisionCause.DOUBT
+    return doubts or state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
 
 
 def expects_mid_answer(mid: MidState) -> bool:

@@ -168,6 +168,7 @@ STATES = st.builds(
     plan_says=NAMES,
     nearest_value=st.none() | FINITE,
     hold=st.none() | st.builds(HoldState, NAMES, NAMES, NAMES, NUMBERS, st.booleans()),
+    doubt=st.none() | FINITE,
     progress=st.builds(Progress, st.integers(0, 60), st.none() | st.integers(0, 100), NUMBERS),
 )
 
@@ -228,7 +229,7 @@ def test_state_with_any_value_is_valid_or_refused(key: str, anything: object) ->
 
 def test_state_of_a_robot_without_progress_is_understood() -> None:
     picture = cbor2.loads(encode_state(state(progress=Progress(60, 87, 3))))
-    del picture["pg"], picture["nv"], picture["hd"]
+    del picture["pg"], picture["nv"], picture["hd"], picture["db"]
     assert decode_state(cbor2.dumps(picture)) == state()
 
 

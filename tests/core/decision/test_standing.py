@@ -152,6 +152,10 @@ def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     assert desk.record.standing == DRIVES
 
 
+_ASK = (StandReason.ASKS, StandReason.DOUBTS, StandReason.ASKS_THE_WAY)
+"""Reasons of a question, which a status line words itself."""
+
+
 @pytest.mark.parametrize("reason", list(StandReason))
 def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReason) -> None:
     for needs_go in (False, True):
@@ -162,7 +166,7 @@ def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReas
         if reason is not StandReason.DRIVES:
             assert reason_text(standing) in text
             assert (GO_ON_PAGE in text) is needs_go
-            assert short_text(standing) or (not needs_go and reason in (StandReason.ASKS, StandReason.ASKS_THE_WAY))
+            assert short_text(standing) or (not needs_go and reason in _ASK)
 
 
 def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:

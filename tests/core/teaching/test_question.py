@@ -6,12 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hal.robot_settings import load_robot
+from kurt2rt.core.basic.doubt import NewObstacle
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
-from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_the_way
+from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_doubt, ask_the_way
 from tests.core.rla.helpers import created, withdrawn
 
 NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
@@ -131,3 +132,15 @@ def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:
     asked = ask_the_way(system.match(nowhere, level=MID), words)
     assert asked.here == ()
     assert str(asked) == "I don't know where I am: set me down at a place that has a name, and say at which one I am"
+
+
+def test_question_of_a_doubt_begins_with_the_new_obstacle() -> None:
+    question = asked((100, 100, 100, 100, 100, 100, 100), (110, 190, 100, 100, 100, 100, 100))
+    doubt = ask_in_doubt(question, NewObstacle(0, 110.0, 70.0), NAMES)
+    assert [(each.name, each.in_condition) for each in doubt.differing] == [("s1", 70.0), ("s2", 100.0)]
+    assert str(doubt) == "I doubt RLA 1, which says curve_left here, teach me; s1: 110, was 70; s2: 190, was 100"
+
+
+def test_question_of_a_doubt_by_distance_alone_keeps_its_order() -> None:
+    question = asked((100, 100, 100, 100, 100, 100, 100), (110, 190, 100, 100, 100, 100, 100))
+    assert ask_in_doubt(question, None, NAMES) == replace(question, doubts=True)

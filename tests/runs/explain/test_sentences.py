@@ -9,7 +9,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact
+from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LessonFact
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.sentences import (
     format_guard,
@@ -247,3 +247,21 @@ def test_touching_robot_names_the_rla_that_drives_on_toward_it() -> None:
     assert format_guard(touches) == ""
     pushes = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("rear bumper",))
     assert headline(pushes) == "stands: it touches something behind"
+
+
+def test_doubting_robot_names_the_sensor_that_sees_an_obstacle() -> None:
+    doubt = DoubtFacts(3.41, 2.8, "front left", "13 cm", "40 cm")
+    doubting = replace(standing(DecisionCause.DOUBT), doubt=doubt)
+    assert headline(doubting) == "stands and asks: it doubts its action"
+    assert format_reasons(doubting) == [
+        "RLA 17 (forward) would drive, at 4 of R 10, but the robot doubts it and asks: front left sees 13 cm, and "
+        "lessons to drive on reach 40 cm. Doubt 3.4, it asks from 2.8."
+    ]
+
+
+def test_driving_robot_tells_a_rare_doubt_but_no_usual_one() -> None:
+    doubted = replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8))
+    assert format_reasons(doubted)[1:] == [
+        "Doubt 1.2, it asks from 2.8: the situation is farther from the lesson than usual."
+    ]
+    assert len(format_reasons(replace(doubted, doubt=DoubtFacts(0.9, 2.8)))) == 1

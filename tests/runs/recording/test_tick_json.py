@@ -63,6 +63,7 @@ decisions = some.builds(
     some.sampled_from(("basic", "mid")),
     some.none() | mids,
     some.none() | plans,
+    some.none() | number,
 )
 opinions = some.builds(OpinionEntry, some.integers(-1, 1), text, number, maybe_id, number, number, some.booleans())
 surprises = some.builds(

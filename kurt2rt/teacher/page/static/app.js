@@ -92,10 +92,10 @@ function teach(action) {
     sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
     return;
   }
-  // Beyond R, and at a withdrawn action, there is nothing to correct: the touch is an answer.
-  const { nearest, nearest_action: its, distance, radius, asks_at: at } = link.state;
+  // Beyond R, at a withdrawn action and in doubt the touch is an answer: it also confirms the action of the RLA.
+  const { nearest, nearest_action: its, distance, radius, asks_at: at, cause } = link.state;
   // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
-  const asks = at === BASIC && (nearest === null || its === WITHDRAWN || distance === null || distance > radius);
+  const asks = at === BASIC && (cause === "doubt" || nearest === null || its === WITHDRAWN || distance === null || distance > radius);
   sendLesson(actionPad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
 }
 

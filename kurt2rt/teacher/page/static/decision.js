@@ -30,7 +30,7 @@ function taught(state) {
 // Returns whether the robot's own text says why it stands; a question is worded here, with the nearest RLA.
 function standsFor(state) {
   const { needs_go: waits, reason } = state.stands;
-  return waits || !["drives", "asks", "asks the way"].includes(reason);
+  return waits || !["drives", "asks", "doubts", "asks the way"].includes(reason);
 }
 
 function valueNow({ nearest_value: value }) {
@@ -48,6 +48,8 @@ export function sentence(state) {
       return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
+    case "doubt":
+      return `I doubt RLA ${state.nearest}${of(state)} here, which says ${words(state.nearest_action)}, teach me`;
     case "unknown":
       if (state.asks_at === MID) {
         if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {

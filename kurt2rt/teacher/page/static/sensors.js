@@ -25,7 +25,7 @@ function visible(question) {
 // Returns the differing sensors while the robot asks: their texts by name.
 export function differing(state, hello) {
   const names = new Set(hello.sensors.map(([name]) => name));
-  const asks = state.cause === "unknown" ? visible(state.question) : [];
+  const asks = ["unknown", "doubt"].includes(state.cause) ? visible(state.question) : [];
   return new Map(asks.filter(([name]) => names.has(name)).map(([name, , , , here]) => [name, here.replace(/ within.*| or less/, "")]));
 }
 

@@ -1,0 +1,192 @@
+"""Doubt: a score of the action that is about to drive, which grows where lessons say little about the situation."""
+
+from collections.abc import Iterable, Mapping
+from operator import sub
+from typing import Annotated, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, model_validator
+
+from behaviors.behaviour import Behaviour, DrivesOn
+from hal.robot_settings import InfraredSettings
+from hal.settings import Settings
+from kurt2rt.core.perception.definition import Reading, SituationDefinition
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
+
+_AHEAD_DEG = 60.0
+"""A sensor looks ahead if its heading is nearer than this to the robot's: KURT2 has five such sensors."""
+
+_RELEASE = 0.8
+"""Fraction of the threshold below which a doubt ends: readings flicker, and the robot would creep on with them."""
+
+_LESSONS = 2
+"""A reading is new if fewer lessons than this were given at one as high, so that one wrong lesson hides no obstacle."""
+
+
+class DoubtSettings(Settings):
+    """Scales of the two parts of doubt, and its threshold, as uncorrected drives gave them."""
+
+    usual_distance: Annotated[float, Field(ge=0, le=1)]
+    """Median of distance / R of an uncorrected drive where the robot was taught: no doubt up to it."""
+    rare_distance: Annotated[float, Field(gt=0, le=1)]
+    """99th percentile of it, which counts 1."""
+    rare_counts: Annotated[float, Field(gt=0, le=1000)]
+    """99th percentile of the counts by which a reading ahead exceeds the lessons; it counts 1."""
+    threshold: Annotated[float, Field(gt=0, le=1000)]
+    """Doubt from which the robot asks, chosen for a budget of questions in uncorrected drives."""
+    asks: bool = True
+    """Stand and ask at a doubt; False only tells the score."""
+    alone: bool = False
+    """Stand at a doubt if no teacher can be asked, too: in phase 5 and exams."""
+
+    @model_validator(mode="after")
+    def _rare_is_beyond_usual(self) -> Self:
+        if self.rare_distance <= self.usual_distance:
+            raise ValueError(f"rare_distance must be above usual_distance ({self.usual_distance:g})")
+        return self
+
+
+class NewObstacle(NamedTuple):
+    """Sensor that sees an obstacle nearer than the lessons of actions that drive on."""
+
+    feature: int
+    """Index of the sensor's reading in the situation."""
+    here: float
+    """Its reading in counts."""
+    taught: float
+    """Reading that was taught, in counts."""
+
+    @property
+    def counts(self) -> float:
+        """Difference of both readings in counts."""
+        return self.here - self.taught
+
+
+def features_ahead(definition: SituationDefinition, infrared: InfraredSettings) -> tuple[int, ...]:
+    """Return the indices of the readings in a situation whose sensors look ahead."""
+    headings = {sensor.name: sensor.heading_deg for sensor in infrared.sensors}
+    return tuple(
+        index
+        for index, feature in enumerate(definition.features)
+        if isinstance(feature, Reading) and abs(headings[feature.sensor]) < _AHEAD_DEG
+    )
+
+
+def actions_ahead(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
+    """Return the names of the actions that move the robot forward by their own set points."""
+    return frozenset(
+        name for name, action in repertoire.items() if isinstance(action, DrivesOn) and action.forward_m_s > 0.0
+    )
+
+
+class DoubtMeter:
+    """Score of doubt: distance of the nearest RLA, plus an obstacle ahead nearer than in lessons that drive on.
+
+    Deterministic and without history: a function of the situation and the knowledge.
+    """
+
+    def __init__(
+        self, system: RlaSystem, settings: DoubtSettings, features: tuple[int, ...], actions: Iterable[str]
+    ) -> None:
+        """Connect the knowledge.
+
+        Args:
+            system: RLAs whose lessons count.
+            settings: scales and threshold.
+            features: indices of the readings that look ahead.
+            actions: names of the actions that drive on.
+        """
+        self.settings = settings
+        self._usual = settings.usual_distance
+        self._per_distance = 1.0 / (settings.rare_distance - settings.usual_distance)
+        self._per_count = 1.0 / settings.rare_counts
+        self._system = system
+        self._features = features
+        self._actions = frozenset(actions)
+        self._rows: dict[int, tuple[float, ...]] = {}
+        """Readings ahead in the condition of each RLA that drives on, by its id."""
+        self._taught: dict[str, tuple[float, ...]] | None = None
+        """Highest taught readings by behaviour; None after the knowledge changed."""
+        self._nearest: int | None = None
+        """Nearest RLA of the last score since a lesson."""
+        self._nearest_limits: tuple[float, ...] = ()
+
+    def on_lesson(self) -> None:
+        """Read the lessons again at the next score, because an RLA was created, changed or removed."""
+        self._taught = None
+
+    def score(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> float:
+        """Return the doubt about `action` in a situation (d,): 0 none, 1 as at 1 % of the ticks of a usual drive."""
+        radius = match.radius
+        off = match.distance / radius - self._usual if radius > 0.0 else 0.0
+        score = off * self._per_distance if off > 0.0 else 0.0
+        if action in self._actions:
+            limits = self._limits(match.rla.rla_id, behaviour)
+            if limits:
+                most = max(map(sub, map(situation.item, self._features), limits))
+                if most > 0.0:
+                    score += most * self._per_count
+        return score
+
+    def obstacle(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> NewObstacle | None:
+        """Return the sensor ahead that exceeds the lessons most in a situation (d,); None if none does."""
+        if action not in self._actions:
+            return None
+        limits = self._limits(match.rla.rla_id, behaviour)
+        found = [NewObstacle(i, situation.item(i), limit) for i, limit in zip(self._features, limits, strict=False)]
+        most = max(found, key=lambda each: each.counts, default=None)
+        return None if most is None or most.counts <= 0.0 else most
+
+    def _limits(self, nearest: int, behaviour: str) -> tuple[float, ...]:
+        """Return the highest taught reading of each sensor ahead; empty before enough lessons.
+
+        Readings of the nearest RLA count even if no other lesson has such: an answer ends the doubt that it is about.
+        """
+        if self._taught is None:
+            self._taught = self._read_lessons()
+            self._nearest = None
+        if self._nearest != nearest:
+            limits, own = self._taught.get(behaviour, ()), self._rows.get(nearest)
+            self._nearest = nearest
+            self._nearest_limits = limits if own is None else tuple(map(max, limits, own))
+        return self._nearest_limits
+
+    def _read_lessons(self) -> dict[str, tuple[float, ...]]:
+        rows: dict[int, tuple[float, ...]] = {}
+        of: dict[str, list[tuple[float, ...]]] = {}
+        for rla in self._system.active_rlas:
+            if rla.level == BASIC and rla.action in self._actions:
+                row = rows[rla.rla_id] = self._rows.get(rla.rla_id) or self._row(rla)
+                of.setdefault(rla.behaviour, []).append(row)
+        self._rows = rows
+        return {
+            behaviour: tuple(sorted(column)[-_LESSONS] for column in zip(*taught, strict=True))
+            for behaviour, taught in of.items()
+            if len(taught) >= _LESSONS
+        }
+
+    def _row(self, rla: Rla) -> tuple[float, ...]:
+        return tuple(rla.condition[i] for i in self._features)
+
+
+class DoubtWatch:
+    """Doubt of a level: it begins at the threshold and ends below a fraction of it."""
+
+    def __init__(self, meter: DoubtMeter) -> None:
+        self.meter = meter
+        settings = meter.settings
+        self._threshold, self._release = settings.threshold, settings.threshold * _RELEASE
+        self._asks, self._stands_alone = settings.asks, settings.asks and settings.alone
+        self._doubts = False
+
+    def update(self, score: float, *, alone: bool) -> bool:
+        """Return whether the robot stands for doubt, after a tick with this score; `alone`: no teacher can be asked."""
+        self._doubts = score >= (self._release if self._doubts else self._threshold)
+        return self._doubts and (self._stands_alone if alone else self._asks)
+
+    def end(self) -> None:
+        """End a doubt, because the robot stands for another reason."""
+        self._doubts = False
