@@ -14,7 +14,7 @@ from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, Stop, Teach
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView, radius_fraction
@@ -90,6 +90,8 @@ async def _teach(
         if first is None:
             first = before = state.tick
         if state.tick - first >= over_at:
+            with suppress(NoAnswerError):  # without messages the robot ends the hold itself
+                await robot.let_go()
             break
         if teacher.phase is Phase.SUPERVISED and state.tick - first >= corrections_from:
             teacher.begin_phase(Phase.CORRECTIONS)
@@ -208,13 +210,21 @@ def view_of_state(state: State) -> TeacherView:
 
 
 async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
-    """Send a command once; return the number of lessons that it made, 0 if it was refused or not answered."""
+    """Send a command once; return 1 if it gave a lesson, 0 if it was refused or not answered; a hold counts as one."""
     try:
         match command:
             case Teach(action=action, decision_tick=of):
                 answer = await robot.answer(action, of=tick if of is None else of)
+            case Correct(action=action, put_back=True):
+                answer = await robot.correct(action, late=True)
             case Correct(action=action, decision_tick=of):
                 answer = await robot.correct(action, of=tick if of is None else of)
+            case HoldAction(action=action):
+                robot.press_action(action)
+                return 0
+            case Stop():
+                released = await robot.let_go()
+                return int(released is not None and released.accepted)
             case DeleteRla(rla_id=rla_id):
                 answer = await robot.delete(rla_id)
             case _:

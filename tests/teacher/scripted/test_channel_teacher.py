@@ -10,12 +10,14 @@ from hal.robot_settings import load_robot
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.requests import (
     HelloRequest,
+    HoldRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
     Request,
     ResumeRequest,
     SessionRequest,
+    StopRequest,
     TakeRequest,
 )
 from kurt2rt.channel.security.pairing import local_pairing
@@ -24,7 +26,8 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import AUTO
-from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
+from kurt2rt.core.teacher_settings import QUICK_TEACHER
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
@@ -262,6 +265,22 @@ async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
     assert robot.all_of(PursueRequest) == []
     assert robot.state.stopped is not None
     assert robot.state.stopped.reason is StopReason.SESSION_OVER
+
+
+async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInRobot, client: TeacherClient) -> None:
+    robot.mind = Mind(robot)
+    holding = QUICK_TEACHER.model_copy(update={"corrects_by": "hold", "hold_s": 0.2})
+    task = taught_by(short(each_phase_s=2.0), holding)
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
+            await robot.hears(PhaseRequest, 2)
+            robot.show(cause="rla", action="back", rla=1)
+            (held, *_) = await robot.hears(HoldRequest)
+            (released, *_) = await robot.hears(StopRequest)
+            tasks.cancel_scope.cancel()
+    assert held.action != "back"
+    assert released.press_id == held.press_id
 
 
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
