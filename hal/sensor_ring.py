@@ -46,7 +46,7 @@ class SubstituteReadings:
         self._near_counts = infrared.plateau_counts
 
     def __call__(self, counts: tuple[int, ...], broken: Collection[int]) -> tuple[int, ...]:
-        """Return the counts, one per sensor, with the mean of the neighbours in place of each broken sensor.
+        """Return the counts, one per sensor, with the highest of the neighbours in place of each broken sensor.
 
         A sensor without a working neighbour reads as if something were right before it, so that the robot turns away
         or asks.
@@ -56,5 +56,5 @@ class SubstituteReadings:
         trusted = list(counts)
         for place in broken:
             working = [counts[each] for each in self._neighbours[place].substitutes if each not in broken]
-            trusted[place] = round(sum(working) / len(working)) if working else self._near_counts
+            trusted[place] = max(working, default=self._near_counts)
         return tuple(trusted)

@@ -8,7 +8,7 @@ from collections.abc import Container
 from enum import StrEnum
 from typing import NamedTuple
 
-from hal.robot_settings import InfraredSettings
+from hal.robot_settings import RobotSettings
 from hal.sensor_ring import Neighbours, neighbours_of
 
 
@@ -45,9 +45,11 @@ class BrokenSensor(NamedTuple):
 
 TURNS = 4
 """Each tick looks at every fourth sensor: a sensor measures every 38 ms (docs/the-robot.md#noise-and-timing)."""
-STUCK_TICKS = 400
-"""Ticks of driving within a band of STUCK_BAND: 83 measurements or more. A working sensor takes 68 % of them there
-with nothing in view and fewer otherwise; the longest such time of healthy drives was 1.2 s."""
+STUCK_TIMES = 4
+"""Times `frozen_infrared_s`, of driving within STUCK_BAND, until a sensor is stuck: 4 s are 83 measurements or more.
+
+A working sensor takes 68 % of its measurements there with nothing in view; healthy drives had at most 1.2 s.
+"""
 STUCK_BAND = 2
 """Width in counts: a converter's last bit flickers also with a constant voltage."""
 FLICKERS_TICKS = 100
@@ -62,7 +64,7 @@ DIFFERS_COUNTS = 60
 """Difference to both neighbours that contradicts them."""
 SEES_NOTHING_TICKS = 450
 """Ticks of driving in such a contradiction; the longest time of healthy drives was 0.3 s. A neighbour that is stuck
-high is noticed before, after STUCK_TICKS."""
+high is noticed before, after 400 ticks of driving."""
 PHANTOM_TICKS = 450
 """Ticks of driving in the opposite contradiction, which a thin post explains for long."""
 SWING_COUNTS = 100
@@ -72,11 +74,14 @@ SWING_COUNTS = 100
 class SensorWatch:
     """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
 
-    def __init__(self, infrared: InfraredSettings) -> None:
+    def __init__(self, robot: RobotSettings) -> None:
+        infrared = robot.infrared
+        stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s)
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
         self._states = [
-            _SensorState(place, near, lowest, highest) for place, near in enumerate(neighbours_of(infrared.sensors))
+            _SensorState(place, near, lowest, highest, stuck_ticks)
+            for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
         self._by_turn = [self._states[turn::TURNS] for turn in range(TURNS)]
         self._ticks = self._driven = 0
@@ -149,6 +154,7 @@ class _SensorState:
         "_lowest",
         "_quiet_high",
         "_quiet_low",
+        "_stuck_ticks",
         "changed",
         "high_ticks",
         "low_ticks",
@@ -158,10 +164,11 @@ class _SensorState:
         "suspect",
     )
 
-    def __init__(self, place: int, near: Neighbours, lowest: float, highest: float) -> None:
+    def __init__(self, place: int, near: Neighbours, lowest: float, highest: float, stuck_ticks: int) -> None:
         self.place = place
         self._before, self._after = near.before, near.after
         self._lowest, self._highest = lowest, highest
+        self._stuck_ticks = stuck_ticks
         self._has_witnesses = True
         self.restart(0)
 
@@ -202,14 +209,14 @@ class _SensorState:
         elif drove and self._has_witnesses:
             self._compare(counts[self._before], counts[self._after], drove)
         self.suspect = bool(
-            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= STUCK_TICKS
+            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= self._stuck_ticks
         )
 
     def fault(self, driven: int) -> SensorFault | None:
         """Return the sign that the sensor is broken; None without one. `driven`: ticks that the robot has driven."""
         if self.out_ticks >= RANGE_TICKS:
             return SensorFault.OUT_OF_RANGE
-        if driven - self.still_from >= STUCK_TICKS:
+        if driven - self.still_from >= self._stuck_ticks:
             return SensorFault.STUCK
         swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
         if swing >= SWING_COUNTS and self.low_ticks >= SEES_NOTHING_TICKS:

@@ -220,7 +220,7 @@ class _Assembly:
             timer=TickTimer(),
             appraisal_perception=AppraisalPerception(self.critic, self._settings),
             expectations=self.expectations,
-            sensor_watch=SensorWatch(infrared) if checks else None,
+            sensor_watch=SensorWatch(self._settings) if checks else None,
             substitute=SubstituteReadings(infrared) if checks else None,
         )
 

@@ -47,9 +47,9 @@ def test_substitute_without_a_broken_sensor_returns_the_counts() -> None:
     assert SubstituteReadings(INFRARED)(counts, ()) is counts
 
 
-def test_substitute_of_one_sensor_is_its_neighbours_mean() -> None:
+def test_substitute_of_a_sensor_is_the_highest_neighbour() -> None:
     read = SubstituteReadings(INFRARED)(counts_of(s1=301, s9=100, s15=0), (PLACES["s15"],))
-    assert read == counts_of(s1=301, s9=100, s15=200)
+    assert read == counts_of(s1=301, s9=100, s15=301)
 
 
 def test_substitute_leaves_out_a_broken_neighbour() -> None:

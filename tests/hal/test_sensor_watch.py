@@ -5,18 +5,20 @@ from collections.abc import Callable
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.robot_settings import RobotSettings, load_robot
 from hal.sensor_watch import (
     RANGE_TICKS,
     SEES_NOTHING_TICKS,
-    STUCK_TICKS,
+    STUCK_TIMES,
     TURNS,
     BrokenSensor,
     SensorFault,
     SensorWatch,
 )
 
-INFRARED = load_robot().infrared
+ROBOT = load_robot()
+INFRARED = ROBOT.infrared
+STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.can.cycle_s)
 PLACES = {name: place for place, name in enumerate(INFRARED.names)}
 
 Fault = Callable[[int], int]
@@ -26,8 +28,8 @@ Fault = Callable[[int], int]
 class Drive:
     """Readings of 18 noisy sensors, of which some see a wall that comes and goes, and a watch."""
 
-    def __init__(self) -> None:
-        self.watch = SensorWatch(INFRARED)
+    def __init__(self, robot: RobotSettings = ROBOT) -> None:
+        self.watch = SensorWatch(robot)
         self.faults: dict[str, Fault] = {}
         self.near: tuple[str, ...] = ()
         """Sensors that see a wall for 2 s in every 4 s."""
@@ -81,6 +83,14 @@ def test_watch_finds_a_stuck_sensor_in_four_seconds(drive: Drive, name: str, cou
 def test_watch_finds_a_stuck_sensor_whose_last_bit_flickers(drive: Drive) -> None:
     drive.faults["s9"] = lambda tick: 212 + tick // 4 % 3
     assert [each.title for each in drive.run(STUCK_TICKS + 3 * TURNS)] == ["front left (s9)"]
+
+
+def test_watch_waits_longer_for_robots_with_quiet_sensors() -> None:
+    guard = ROBOT.guard.model_copy(update={"frozen_infrared_s": 2.0})
+    drive = Drive(ROBOT.model_copy(update={"guard": guard}))
+    drive.faults["s9"] = lambda _: 212
+    assert drive.run(2 * STUCK_TICKS - TURNS) == ()
+    assert len(drive.run(3 * TURNS)) == 1
 
 
 def test_watch_does_not_count_time_in_which_the_robot_stands(drive: Drive) -> None:

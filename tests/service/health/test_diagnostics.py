@@ -9,6 +9,7 @@ from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.robot_settings import load_robot
+from hal.sensor_watch import BrokenSensor, SensorFault
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.diagnostics import LATELY_S, Counted, Diagnostics
@@ -169,3 +170,19 @@ def test_diagnostics_orders_by_urgency_then_duration(ward: Ward) -> None:
     ward.look(replace(CALM, errors={"channel": "a", "recording": "b"}))
     troubles = ward.look(replace(CALM, encoder_age_s=1.0, errors={"recording": "b", "channel": "a"}))
     assert [each.name for each in troubles] == ["encoders", "channel", "recording"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "code"),
+    [
+        (SensorFault.STUCK, TroubleCode.SENSOR_STUCK),
+        (SensorFault.OUT_OF_RANGE, TroubleCode.SENSOR_OUT_OF_RANGE),
+        (SensorFault.SEES_NOTHING, TroubleCode.SENSOR_SEES_NOTHING),
+        (SensorFault.SEES_A_PHANTOM, TroubleCode.SENSOR_SEES_A_PHANTOM),
+    ],
+)
+def test_broken_sensors_are_a_trouble_each(fault: SensorFault, code: TroubleCode) -> None:
+    sensors = (BrokenSensor(14, "s15", "front left edge", fault, 70), BrokenSensor(0, "s1", "left front", fault, 294))
+    first, second = Ward().look(replace(CALM, broken_sensors=sensors))
+    assert (first.code, first.name, first.numbers, first.urgent) == (code, "front left edge (s15)", (70,), False)
+    assert (second.code, second.name, second.numbers) == (code, "left front (s1)", (294,))
