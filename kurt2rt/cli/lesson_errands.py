@@ -52,8 +52,9 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
             draw_errands(factory, task.exam.worlds[0], outcome, pictures[-1])
+    tables = list(all_tables(outcomes, navigation_settings(task), task.teaching.profile.name))
     if options.as_json:
-        print_json({"tables": tables_of(all_tables(outcomes, navigation_settings(task))), "pictures": pictures})
+        print_json({"tables": tables_of(tables), "pictures": pictures})
         return
     pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"
-    print_whole(console_of(), *map(as_rich, all_tables(outcomes, navigation_settings(task))), pictures_told)
+    print_whole(console_of(), *map(as_rich, tables), pictures_told)

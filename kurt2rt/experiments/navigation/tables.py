@@ -2,9 +2,11 @@
 
 import statistics
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import ceil
 
 from behaviors.metrics.errands import ErrandsSettings
+from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
@@ -21,10 +23,13 @@ _TITLES: dict[Strategy, str] = {
 }
 
 
-def all_tables(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Table]:
-    """Yield all tables."""
+def all_tables(
+    outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teacher: str = SUPERHUMAN
+) -> Iterator[Table]:
+    """Yield all tables; `teacher` is the name of the scripted teacher."""
     yield targets_table(outcomes, course)
-    yield runs_table(outcomes, course)
+    runs = runs_table(outcomes, course)
+    yield replace(runs, note=f"{runs.note} Taught by the scripted teacher {teacher}.")
     yield robots_table(outcomes, course)
 
 

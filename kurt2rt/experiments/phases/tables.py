@@ -60,7 +60,8 @@ def phases_targets_table(study: PhasesStudy, not_judged_because: Sequence[str]) 
 def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
     """Yield all tables. `reasons`: those against judging."""
     yield phases_targets_table(study, reasons)
-    yield exam_table("Phase by phase", PATH, study, f"{SUCCESS} {_PHASE_4}")
+    taught_by = f"Taught by the scripted teacher {study.plan.task.teaching.profile.name}."
+    yield exam_table("Phase by phase", PATH, study, f"{taught_by} {SUCCESS} {_PHASE_4}")
     yield teachers_table(study)
     yield workload_table("What the teacher had to do", (PHASE_2, PHASE_3, PHASE_4), study)
     yield critic_table(study)

@@ -56,8 +56,13 @@ def taught_table(summaries: Sequence[RouteSummary]) -> Table:
         words=2,
         note=f"Medians of {summaries[0].robots} robots. Asks and corrections first of the mid level, then of the basic "
         "one. Missed: junctions that the mid level did not notice, where the teacher commanded. Robot time, without "
-        "the streets, which were taught before.",
+        f"the streets, which were taught before. {_taught_by(summaries)}",
     )
+
+
+def _taught_by(summaries: Sequence[RouteSummary]) -> str:
+    names = sorted({job.task.teaching.profile.name for each in summaries for job in each.experiment.jobs})
+    return f"Taught by the scripted teacher {' or '.join(names)}."
 
 
 def exam_table(summaries: Sequence[RouteSummary]) -> Table:
@@ -108,6 +113,7 @@ def robot_table(outcome: RouteOutcome, task: TaskSettings) -> Table:
     """Return the table of one robot, with the paper's numbers."""
     drive, paper = outcome.drive, task.paper
     rows = (
+        ("teacher", task.teaching.profile.name, "a person"),
         ("mid-level RLAs", str(outcome.mid_rlas), str(paper.rlas)),
         ("teaching, s of robot time", f"{outcome.teaching_s:.0f}", paper.teaching_time_text),
         ("questions of the mid level", str(outcome.mid_asks), ""),

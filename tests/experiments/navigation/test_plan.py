@@ -80,7 +80,9 @@ def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
 
 
 def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
-    assert len(list(all_tables([done.outcome], navigation_settings(done.plan.task)))) == 3
+    tables = list(all_tables([done.outcome], navigation_settings(done.plan.task), "ordinary"))
+    assert len(tables) == 3
+    assert "the scripted teacher ordinary." in tables[1].note
     picture = tmp_path / "robot.png"
     draw_errands(STAGE, "manhattan", done.outcome, picture)
     assert imread(picture).shape[0] > 400
