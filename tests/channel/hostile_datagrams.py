@@ -135,6 +135,7 @@ class HostileDatagrams:
             "decision_tick": None,
             "level": "basic",
             "alternative": False,
+            "segments": tuple(range(chance.randrange(4))),
             "late": chance.choice((True, False)),
             "features": (("x_m", 1.0), ("wall_left", 1.0)),
             "tolerance": 0.1,

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.teaching.question import FeatureDifference
 
 ASKING = State(
@@ -59,6 +59,8 @@ COMMANDS = MidState(
 """Mid-level RLA 12 has the robot turn left."""
 
 SURPRISED = SurpriseState(tick=1230, level="mid", rla=12, follow_up=15, times=3.5, new=False)
+
+SHOWN = ShownState(teacher="phone", press_id=91, actions=("forward", "back"), from_ticks=(800, 860), ticks=(60, 40))
 
 HELD = HoldState(teacher="phone", action="turn_left", lesson="phone-hold-90", lessons=3, on=True)
 

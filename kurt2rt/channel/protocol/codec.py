@@ -23,11 +23,12 @@ from kurt2rt.channel.protocol.schema import (
     decode_strictly,
     encode_plainly,
 )
-from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.decision.standing_text import stop_of_text, stop_text
 from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.core.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 
@@ -173,6 +174,9 @@ _PROGRESS = (Int(0, WINDOW_S), OrNone(Int(0, 100)), _NUMBER)
 """The fields of Progress."""
 _HOLD = (_NAME, _NAME, _NAME, _NUMBER, Flag())
 """The fields of HoldState."""
+_SEGMENTS = ManyOf(_NUMBER, most=MOST_SEGMENTS)
+_SHOWN = (_NAME, _NUMBER, ManyOf(_NAME, most=MOST_SEGMENTS), _SEGMENTS, _SEGMENTS)
+"""The fields of ShownState."""
 _STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing."""
 _STOP = (_NAME, _LINE)
@@ -197,6 +201,7 @@ def encode_state(state: State) -> bytes:
     picture["nv"] = state.nearest_value
     picture["hd"] = _row(state.hold, _HOLD)
     picture["db"] = state.doubt
+    picture["dm"] = _row(state.shown, _SHOWN)
     standing = state.standing
     # Older devices read the stop from its sentence.
     picture["st"] = _tidied(stop_text(state.stopped), _LINE)
@@ -223,6 +228,9 @@ def decode_state(payload: bytes) -> State:
     nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
     hold = OrNone(Row(_HOLD))("hold", picture.get("hd"))
     doubt = OrNone(_FINITE)("doubt", picture.get("db"))
+    shown = OrNone(Row(_SHOWN))("shown drive", picture.get("dm"))
+    if shown is not None and not len(shown[2]) == len(shown[3]) == len(shown[4]):
+        raise WireError("shown drive: has to have as many actions as ticks")
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
     sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
@@ -238,13 +246,15 @@ def decode_state(payload: bytes) -> State:
         progress=NO_PROGRESS if progress is None else Progress(*progress),
         stopped=stopped,
         hold=None if hold is None else HoldState(*hold),
+        shown=None if shown is None else ShownState(*shown),
         standing=None if standing is None else _standing(*standing, stopped=stopped),
         **values,
     )
 
 
 def _row(
-    value: MidState | HoldState | SurpriseState | Progress | tuple[Any, ...] | None, checks: tuple[Check, ...]
+    value: MidState | HoldState | ShownState | SurpriseState | Progress | tuple[Any, ...] | None,
+    checks: tuple[Check, ...],
 ) -> Any:
     if value is None:
         return None

@@ -20,6 +20,7 @@ from kurt2rt.channel.protocol.schema import (
 )
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 
 VERSION = 4
 """Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""
@@ -200,6 +201,16 @@ class CorrectRequest(CommandRequest):
     """Level of the wrong decision."""
     late: Annotated[bool, Flag()] = False
     """Without a tick: give it to the decision that this teacher reacted to, by their known delay."""
+
+
+@_at("/shown", depth=2)
+class ShownRequest(CommandRequest):
+    """Teach segments of the newest drive by hand."""
+
+    press_id: Number
+    """Press that was driven."""
+    segments: Annotated[tuple[int, ...], ManyOf(Int(0, LARGEST_NUMBER), most=MOST_SEGMENTS)]
+    """Indexes of the segments that are right."""
 
 
 @_at("/reward")

@@ -70,6 +70,21 @@ class HoldState:
 
 
 @dataclass(frozen=True, slots=True)
+class ShownState:
+    """Newest drive by hand that was not taught yet, as segments of the nearest actions, oldest first."""
+
+    teacher: str
+    press_id: int
+    """Press that was driven; a confirmation names it."""
+    actions: tuple[str, ...]
+    """Action of each segment."""
+    from_ticks: tuple[int, ...]
+    """First tick of each segment."""
+    ticks: tuple[int, ...]
+    """Length of each segment in ticks."""
+
+
+@dataclass(frozen=True, slots=True)
 class State:
     """State of the robot at one tick. Commands name the tick of the state that the teacher saw."""
 
@@ -165,6 +180,8 @@ class State:
     """Newest hold; None before the first, and from a robot of an older version."""
     doubt: float | None = None
     """Doubt about the action that drives, or would; None if the robot has no score of doubt, or stands otherwise."""
+    shown: ShownState | None = None
+    """Newest drive by hand that can be taught; None without one, and from a robot of an older version."""
     standing: Standing | None = None
     """None from a robot of an older version."""
 

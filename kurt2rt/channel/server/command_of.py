@@ -19,6 +19,7 @@ from kurt2rt.channel.protocol.requests import (
     SeekRlaRequest,
     SessionRequest,
     SetLocationRequest,
+    ShownRequest,
     TakeRequest,
     UndoRequest,
 )
@@ -43,6 +44,7 @@ from kurt2rt.core.teaching.commands import (
     StopSeeking,
     Take,
     Teach,
+    TeachShown,
     Undo,
 )
 
@@ -56,6 +58,8 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Teach(command_id, device, action, tick, level, alternative, request.seen)
         case CorrectRequest(action=action, decision_tick=tick, level=level, late=late):
             return Correct(command_id, device, action, tick, level, late, request.seen)
+        case ShownRequest(press_id=press_id, segments=segments):
+            return TeachShown(command_id, device, press_id, segments)
         case RewardRequest(value=value, decision_tick=tick):
             return Reward(command_id, device, value, tick)
         case AppraiseRequest(appraisal=appraisal, decision_tick=tick):

@@ -2,7 +2,7 @@
 
 from typing import TypedDict
 
-from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.mid_state import mid_state, surprise_state
@@ -104,6 +104,7 @@ class StateBuilder:
             surprise=self._surprise,
             hold=self._hold(),
             doubt=decision.doubt,
+            shown=self._shown(record.tick),
             progress=runtime.progress.progress(),
             standing=record.standing,
             **self._nearest(record),
@@ -171,6 +172,14 @@ class StateBuilder:
             return None
         on = held_press is not None and held_press == hold.press_id
         return HoldState(hold.teacher, hold.action, hold.lesson, hold.lessons, on)
+
+    def _shown(self, tick: int) -> ShownState | None:
+        demonstration = self._runtime.handler.demonstration
+        segments, press_id = demonstration.segments(tick), demonstration.press_id
+        if press_id is None or not segments:
+            return None
+        actions, from_ticks, ticks = zip(*segments, strict=True)
+        return ShownState(demonstration.teacher, press_id, actions, from_ticks, ticks)
 
     def _late(self) -> float:
         health = self._parts.health()

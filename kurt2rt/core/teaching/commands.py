@@ -12,6 +12,9 @@ from kurt2rt.core.outcome import Code, Outcome
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 
+MOST_SEGMENTS = 12
+"""Largest number of segments of a drive by hand that are published; older ones stay untaught."""
+
 # Motor commands and presence: streams.
 
 

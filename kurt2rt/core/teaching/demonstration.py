@@ -19,6 +19,7 @@ from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 from kurt2rt.core.teaching.lesson_context import LessonContext
 
@@ -26,10 +27,10 @@ EVERY_TICKS = 10
 """Ticks of the robot between two samples of a demonstration: 0.1 s."""
 CAPACITY = 600
 """Largest number of samples, the last minute; older ones are dropped."""
-MOST_SEGMENTS = 24
-"""Largest number of segments that are published; older ones stay untaught."""
 _LEAST_SAMPLES = 3
 """A shorter run of one action, below 0.3 s, counts as the action before it: hands shake."""
+_SAME_DIRECTION = 0.05
+"""Distance between unit vectors of wheel speeds up to which two directions count as equal, about 3 degrees."""
 _STANDS_M_S = 0.03
 """Wheel speed below which a wheel counts as standing."""
 _SHOWABLE = (MotorPrimitive, KeepDistance, TurnByAngle)
@@ -181,15 +182,17 @@ class Demonstration:
 def nearest_action(repertoire: Repertoire, readings: SensorReadings, speeds: WheelSpeeds) -> str:
     """Return the action whose wheel speeds have the direction that is nearest to the driven ones.
 
-    The direction is compared, not the length, so that a teacher may show slowly. The first of equally near ones wins.
+    The direction counts first, so that a teacher may show slowly; of actions with about that direction, such as forward
+    and flee, the one with the nearest speeds.
     """
     driven = _direction(speeds)
 
-    def difference(name: str) -> float:
+    def difference(name: str) -> tuple[int, float]:
         behaviour = repertoire[name]
         behaviour.start()
-        left, right = _direction(behaviour.step(readings))
-        return math.hypot(left - driven[0], right - driven[1])
+        own = behaviour.step(readings)
+        turned = math.dist(_direction(own), driven)
+        return int(turned / _SAME_DIRECTION), math.dist(own, speeds)
 
     return min(repertoire, key=difference)
 

@@ -10,7 +10,7 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
 import hashlib
 import secrets
 import time
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from types import TracebackType
@@ -227,6 +227,24 @@ class TeacherClient:
     async def undo(self, lesson: str | None = None) -> Answer:
         """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands."""
         return await self._command(requests.UndoRequest, lesson=lesson)
+
+    async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
+        """Teach the newest drive by hand, as `State.shown` cuts it into actions; undone as one.
+
+        Args:
+            segments: Indexes of the segments that are right. None: all.
+            press_id: Press that the teacher saw, whose drive is taught. None: that of the newest state.
+
+        Raises:
+            ValueError: The newest state has no drive by hand to teach.
+            NoAnswerError: The robot does not answer.
+        """
+        shown = None if self.state is None else self.state.shown
+        if shown is None:
+            raise ValueError("there is no drive by hand to teach; drive by hand and let go first")
+        chosen = tuple(range(len(shown.actions)) if segments is None else segments)
+        press_id = shown.press_id if press_id is None else press_id
+        return await self._command(requests.ShownRequest, press_id=press_id, segments=chosen)
 
     # Motion
 

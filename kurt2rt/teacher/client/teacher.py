@@ -195,6 +195,7 @@ class Teacher:
     reward = _blocking(TeacherClient.reward)
     appraise = _blocking(TeacherClient.appraise)
     undo = _blocking(TeacherClient.undo)
+    teach_shown = _blocking(TeacherClient.teach_shown)
 
     # Motion
 

@@ -5,9 +5,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from kurt2rt.channel.protocol.requests import FASTEST, PACKAGE, SHA256_BYTES, UPLOAD_ID_BYTES
-from kurt2rt.channel.protocol.schema import Bytes, Check, Flag, Float, Int, OneOf, OneWord, OrNone, Text, WireError
+from kurt2rt.channel.protocol.schema import (
+    Bytes,
+    Check,
+    Flag,
+    Float,
+    Int,
+    ManyOf,
+    OneOf,
+    OneWord,
+    OrNone,
+    Text,
+    WireError,
+)
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
 
@@ -71,6 +84,10 @@ COMMANDS: Mapping[str, CommandKind] = {
     "correct_at": CommandKind(
         lambda robot, given, _: robot.correct(given["action"], of=given["tick"]),
         {"action": _NAME, "tick": Int(0, 2**53)},
+    ),
+    "teach_shown": CommandKind(
+        lambda robot, given, _: robot.teach_shown(given["segments"], press_id=given["press_id"]),
+        {"press_id": Int(0, 2**53), "segments": ManyOf(Int(0, MOST_SEGMENTS - 1), most=MOST_SEGMENTS)},
     ),
     "reward": CommandKind(lambda robot, given, tick: robot.reward(given["value"], of=tick), {"value": OneOf((1, -1))}),
     "appraise": CommandKind(

@@ -63,6 +63,7 @@ def state_view(
         "guard": [reason for reason in state.guard if reason not in _SPEED_CHANGES],
         "mid": plain(state.mid),
         "surprise": plain(state.surprise),
+        "shown": plain(state.shown),
         "place": None if place is None else asdict(place),
         "progress": asdict(state.progress),
         "link": {

@@ -49,15 +49,16 @@ from kurt2rt.channel.protocol.schema import (
     Row,
     Text,
 )
-from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 from tests.channel.hostile_datagrams import HostileDatagrams
-from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.channel.states import COMMANDS, SHOWN, SURPRISED, state
 
 BOOT = b"boot"
 ID = b"12345678"
@@ -102,6 +103,12 @@ def values(check: Check) -> st.SearchStrategy[Any]:
 REQUESTS = st.one_of(
     [st.builds(kind, **{name: values(check) for name, check in checks_of(kind)}) for kind in PATHS.values()]
 )
+
+
+def shown_states(segments: int) -> st.SearchStrategy[ShownState]:
+    names, numbers = (st.tuples(*[each] * segments) for each in (NAMES, NUMBERS))
+    return st.builds(ShownState, NAMES, NUMBERS, names, numbers, numbers)
+
 
 STATES = st.builds(
     State,
@@ -167,6 +174,7 @@ STATES = st.builds(
     plan=WORDS,
     plan_says=NAMES,
     nearest_value=st.none() | FINITE,
+    shown=st.none() | st.integers(0, MOST_SEGMENTS).flatmap(shown_states),
     hold=st.none() | st.builds(HoldState, NAMES, NAMES, NAMES, NUMBERS, st.booleans()),
     doubt=st.none() | FINITE,
     progress=st.builds(Progress, st.integers(0, 60), st.none() | st.integers(0, 100), NUMBERS),
@@ -269,6 +277,8 @@ def test_request_not_flat_list_is_refused() -> None:
         ("/lessons", [2.0], "count has to be a whole number from 0 to 20"),
         ("/watch", [BOOT, -1], "seen has to be a whole number from 0 to 9007199254740992"),
         ("/correct", [BOOT, ID, 0, "turn_left", None, "basic", 1], "late has to be true or false"),
+        ("/shown", [BOOT, ID, 0, 7, [-1]], "segments has to be a whole number from 0 to 9007199254740992"),
+        ("/shown", [BOOT, ID, 0, 7, [0] * 13], "segments has to be a list of up to 12"),
         ("/hold", [BOOT, 0, 0, ""], "action has to be text of 1 to 64 printable characters"),
         ("/hold", [BOOT, 0, -1, "back"], "press_id has to be a whole number from 0 to 9007199254740992"),
         ("/hold", [BOOT, 0, 0], "/hold takes a list of 4: [boot, seen, press_id, action]"),
@@ -424,3 +434,10 @@ def test_rows_and_lists_count_what_they_hold() -> None:
 def test_mischief_knows_the_fields_of_every_request(kind: type[Request]) -> None:
     request = HostileDatagrams(1, lambda: (b"boot", 0)).valid(kind)
     assert decode_request(kind.path, encode_request(request)) == request
+
+
+def test_shown_drive_of_unequal_lists_is_refused() -> None:
+    body = cbor2.loads(encode_state(state(shown=SHOWN)))
+    body["dm"][2] = ["forward"]
+    with pytest.raises(WireError):
+        decode_state(cbor2.dumps(body))

@@ -27,7 +27,7 @@ from kurt2rt.channel.protocol.schema import (
 from kurt2rt.core.decision.standing import Standing
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import robot_at_work
-from tests.channel.states import COMMANDS, HELD, SURPRISED, state
+from tests.channel.states import COMMANDS, HELD, SHOWN, SURPRISED, state
 from tests.service.health.reports import ILL
 
 TEXT = (Path(__file__).parents[3] / "docs" / "the-wire.md").read_text(encoding="utf-8")
@@ -52,9 +52,10 @@ def test_every_key_of_the_picture_is_explained() -> None:
     assert keys <= explained, keys - explained
 
 
-@pytest.mark.parametrize("key", ["mid", "su", "sd", "hd"])
+@pytest.mark.parametrize("key", ["mid", "su", "sd", "hd", "dm"])
 def test_wire_page_rows_have_the_documented_places(key: str) -> None:
-    row = cbor2.loads(encode_state(state(mid=COMMANDS, surprise=SURPRISED, standing=Standing(), hold=HELD)))[key]
+    shown = state(mid=COMMANDS, surprise=SURPRISED, standing=Standing(), hold=HELD, shown=SHOWN)
+    row = cbor2.loads(encode_state(shown))[key]
     written = re.search(rf"`{key}` is `\[(.*?)\]`", PICTURE)
     assert written is not None
     assert len(written[1].split(", ")) == len(row)
@@ -98,6 +99,8 @@ def in_words(check: object) -> str:
             return f"{in_words(inner)}, or null"
         case ManyOf(Row(checks), most):
             return f"up to {most} of `[{'; '.join(map(in_words, checks))}]`"
+        case ManyOf(inner, most):
+            return f"list of up to {most}: {in_words(inner)}"
     raise AssertionError(check)
 
 

@@ -101,6 +101,34 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             assert line.undone
 
 
+async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with listening_robot(live, tmp_path) as port, TeacherClient(device.folder, port=port) as robot:
+            assert (await robot.take()).accepted
+            await state_where(robot, teacher="phone")
+            async with robot.driving() as drive:
+                assert drive.set(0.2, 0.2)
+                await anyio.sleep(0.6)
+            with anyio.fail_after(20.0):
+                async for state in robot.states():
+                    if state.shown is not None:
+                        break
+            assert state.shown is not None
+            assert (state.shown.teacher, state.shown.actions) == ("phone", ("forward",))
+            answer = await robot.teach_shown()
+            assert answer.outcome is not None
+            assert answer.outcome.code is ResultCode.DEMONSTRATION_TAUGHT
+            lesson = answer.outcome.fields["lesson"]
+            with anyio.fail_after(20.0):
+                async for state in robot.states():
+                    if state.lessons and not state.unsaved:
+                        break
+            assert [line.command_id for line in await robot.lessons()] == [lesson]
+            assert (await robot.undo(str(lesson))).accepted
+            await state_where(robot, rlas=0)
+
+
 async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:

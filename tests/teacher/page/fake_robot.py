@@ -1,7 +1,7 @@
 """Client of a robot that answers as the test says and notes its calls."""
 
 import math
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
@@ -196,6 +196,9 @@ class FakeRobot(TeacherClient):
 
     async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
         return await self._answer("appraise", appraisal, of)
+
+    async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
+        return await self._answer("teach_shown", segments, press_id)
 
     async def undo(self, lesson: str | None = None) -> Answer:
         return await self._answer("undo", lesson)

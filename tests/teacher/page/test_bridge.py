@@ -466,6 +466,7 @@ COMMANDS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("answer", {"action": "turn_left", "level": "mid", "beside": True}, ("answer", "turn_left", 102, "mid", True)),
     ("correct", {"action": "turn_left", "level": "mid"}, ("correct", "turn_left", 102, "mid")),
     ("correct_at", {"action": "spin_left", "tick": 40}, ("correct", "spin_left", 40)),
+    ("teach_shown", {"press_id": 91, "segments": [0, 2]}, ("teach_shown", [0, 2], 91)),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
     ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),

@@ -20,6 +20,7 @@ import { BASIC, MID } from "./mid_text.js";
 import { showProgress } from "./progress.js";
 import { Rewind } from "./rewind.js";
 import { drawRobot } from "./robot_view.js";
+import { Shown } from "./shown.js";
 import { SessionPanel } from "./session.js";
 import { Simulation } from "./simulation.js";
 import { text } from "./texts.js";
@@ -47,6 +48,7 @@ const session = new SessionPanel(sendCommand);
 const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
 const simulation = new Simulation(sendCommand);
+const shownDrive = new Shown((pressId, segments) => sendCommand("teach_shown", { press_id: pressId, segments }, "teach what was shown"));
 const rewind = new Rewind({ stop, onChange: draw });
 const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args), rewind);
 
@@ -55,7 +57,7 @@ let page = { seat: "elsewhere", device: "", robot: "" };
 
 // ---- Commands
 
-const TEACHES = ["answer", "correct", "correct_at", "reward", "appraise", "undo", "name"];
+const TEACHES = ["answer", "correct", "correct_at", "teach_shown", "reward", "appraise", "undo", "name"];
 let pendingLessons = 0; // commands of TEACHES without an answer
 let answered = 0; // number of the newest answered one
 
@@ -220,6 +222,7 @@ link.addEventListener("hello", ({ detail }) => {
   critic.build(hello);
   world.setHello(hello);
   rewind.setHello(hello);
+  shownDrive.setHello(hello);
   files.build(hello);
   exam.build(hello);
   setText($("what"), hello.what || `Task ${words(hello.task)}`);
@@ -285,6 +288,7 @@ function show() {
   decision.show(state, hello);
   announce(state);
   actionPad.show(state);
+  shownDrive.show(state, page.device);
   midPad.show(state);
   goals.show(state);
   critic.show(state, lessons.newestOf(CRITIC));

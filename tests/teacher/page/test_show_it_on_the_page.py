@@ -1,0 +1,56 @@
+"""Show it on the page: what was driven by hand is seen as actions, and taught once the teacher has confirmed it."""
+
+import pytest
+
+from kurt2rt.channel.protocol.state import ShownState
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
+from tests.teacher.page.test_browser import assert_handy
+
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+SHOWN = ShownState("local", 91, ("forward", "spin_left", "forward"), (100, 280, 340), (180, 60, 240))
+
+
+@pytest.fixture
+def lesson(a_lesson: Lesson) -> Lesson:
+    a_lesson.begin(shown=SHOWN, stopped=ActiveStop(StopReason.LET_GO, "local"), left_m_s=0.0, right_m_s=0.0)
+    a_lesson.phone.touch("#tab-drive")
+    a_lesson.phone.wait(lambda: a_lesson.phone.shows("#shown"), "the drive is offered")
+    return a_lesson
+
+
+def test_shown_segments_are_taught_but_for_those_left_out(lesson: Lesson) -> None:
+    phone = lesson.phone
+    assert phone.text("#teach-shown") == "Teach what I showed"
+    phone.touch("#shown-list button:nth-child(2)")
+    assert phone.text("#teach-shown") == "Teach 2 of 3"
+    phone.touch("#teach-shown")
+    phone.wait(lambda: lesson.robot.told_of("teach_shown"), "the confirmation is sent")
+    assert lesson.robot.told_of("teach_shown") == [("teach_shown", (0, 2), 91)]
+
+
+def test_nothing_chosen_cannot_be_taught(lesson: Lesson) -> None:
+    for number in (1, 2, 3):
+        lesson.phone.touch(f"#shown-list button:nth-child({number})")
+    assert lesson.phone.has("#teach-shown:disabled")
+
+
+def test_not_now_leaves_the_drive_untaught(lesson: Lesson) -> None:
+    lesson.phone.touch("#drop-shown")
+    lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")
+    assert lesson.robot.told_of("teach_shown") == []
+
+
+@pytest.mark.parametrize("shown", [None, ShownState("anna", 91, ("forward",), (100,), (180,))])
+def test_drive_of_no_one_or_of_another_is_not_offered(lesson: Lesson, shown: ShownState | None) -> None:
+    lesson.show(shown=shown)
+    lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")
+
+
+def test_shown_segments_fit_every_screen(lesson: Lesson) -> None:
+    for size in SIZES:
+        lesson.phone.turn(size, touch=size != LAPTOP)
+        lesson.phone.show(f"18-show it-{size[0]}x{size[1]}")
+        assert_handy(lesson.phone, size, "drive")
+    lesson.phone.turn(PORTRAIT)
