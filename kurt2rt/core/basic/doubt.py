@@ -105,7 +105,8 @@ class DoubtMeter:
         self._per_count = 1.0 / settings.rare_counts
         self._system = system
         self._features = features
-        self._actions = frozenset(actions)
+        self.actions = frozenset(actions)
+        """Names of the actions that drive on."""
         self._rows: dict[int, tuple[float, ...]] = {}
         """Readings ahead in the condition of each RLA that drives on, by its id."""
         self._taught: dict[str, tuple[float, ...]] | None = None
@@ -123,7 +124,7 @@ class DoubtMeter:
         radius = match.radius
         off = match.distance / radius - self._usual if radius > 0.0 else 0.0
         score = off * self._per_distance if off > 0.0 else 0.0
-        if action in self._actions:
+        if action in self.actions:
             limits = self._limits(match.rla.rla_id, behaviour)
             if limits:
                 most = max(map(sub, map(situation.item, self._features), limits))
@@ -133,7 +134,7 @@ class DoubtMeter:
 
     def obstacle(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> NewObstacle | None:
         """Return the sensor ahead that exceeds the lessons most in a situation (d,); None if none does."""
-        if action not in self._actions:
+        if action not in self.actions:
             return None
         limits = self._limits(match.rla.rla_id, behaviour)
         found = [NewObstacle(i, situation.item(i), limit) for i, limit in zip(self._features, limits, strict=False)]
@@ -158,7 +159,7 @@ class DoubtMeter:
         rows: dict[int, tuple[float, ...]] = {}
         of: dict[str, list[tuple[float, ...]]] = {}
         for rla in self._system.active_rlas:
-            if rla.level == BASIC and rla.action in self._actions:
+            if rla.level == BASIC and rla.action in self.actions:
                 row = rows[rla.rla_id] = self._rows.get(rla.rla_id) or self._row(rla)
                 of.setdefault(rla.behaviour, []).append(row)
         self._rows = rows

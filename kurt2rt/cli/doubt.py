@@ -1,0 +1,84 @@
+"""`kurt2rt doubt`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.doubt.drive import DoubtSetup, with_doubt
+from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
+from kurt2rt.experiments.study.pool import run_jobs
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.platform.text_table import print_whole
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt doubt`."""
+
+    taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --seeds leaves them.")]
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-4.")] = "0-4"
+    world: Annotated[
+        list[str] | None,
+        typer.Option(help="World to drive in; may be given again. Default: those of the exam."),
+    ] = None
+    seconds: Annotated[float, typer.Option(metavar="SECONDS", min=1.0, help="Seconds of each drive.")] = 200.0
+    jobs: Jobs = ALL_PROCESSORS
+    robot_settings: RobotName = "kurt2"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def doubt(options: _Options) -> None:
+    """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
+
+    Each robot drives without a teacher in each world twice: once with doubt
+    that is only told, once with doubt that stops it.
+
+    For example:
+
+        kurt2rt lesson --task wall_following --seeds 915-919
+        kurt2rt doubt results/lesson --seeds 915-919 --world rooms-8100
+    """
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    settings = load_robot(options.robot_settings)
+    task = with_doubt(load_task(options.task), stands=False)
+    factory = Kurt2SimulationFactory(settings)
+    worlds = options.world or list(task.exam.worlds)
+    factory.require_worlds(*worlds)
+    work = [
+        DoubtJob(
+            factory,
+            settings,
+            task,
+            options.taught / f"{task.name}-{seed}.knowledge",
+            DoubtSetup(world, seed, options.seconds, stands),
+        )
+        for stands in (False, True)
+        for seed in parse_seeds(options.seeds)
+        for world in worlds
+    ]
+    columns = (TextColumn("drives"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        bar = progress.add_task("drives", total=len(work))
+        logs = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
+    told, stands = logs[: len(work) // 2], logs[len(work) // 2 :]
+    assert task.learning.doubt is not None
+    tables = [score_table(told, task.learning.doubt.threshold), collision_table(told, stands)]
+    if options.as_json:
+        print_json({"tables": tables_of(tables)})
+        return
+    for each in tables:
+        print_whole(console_of(), as_rich(each))

@@ -1,0 +1,1 @@
+"""Study of doubt: how well its score tells wrong actions and collisions."""

@@ -1,0 +1,128 @@
+"""Drive without a teacher in which the doubt of each tick is logged."""
+
+import random
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+
+import numpy as np
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import Simulation, SimulationFactory
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.doubt.measures import DriveLog
+from kurt2rt.experiments.lockstep.episode import Episode
+from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
+from kurt2rt.runtime import Runtime
+
+_UNANSWERED_S = 10.0
+"""Time after which a robot that asks, and gets no answer, is set down at another start."""
+_STUCK_S = 15.0
+_SETTLES_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class DoubtSetup:
+    """World, seed and duration of one drive."""
+
+    world: str
+    seed: int
+    duration_s: float
+    stands: bool
+    """True if the robot stands at a doubt; False if it only tells the score."""
+
+
+def with_doubt(task: TaskSettings, *, stands: bool) -> TaskSettings:
+    """Return the task with a robot that stands at a doubt also without a teacher, or only tells its score.
+
+    Raises hal.settings.SettingsError if the task sets no doubt.
+    """
+    doubt = task.learning.doubt
+    if doubt is None:
+        raise SettingsError("sets no doubt", where=f"task {task.name}: learning.doubt", do="give its scales there")
+    doubt = doubt.model_copy(update={"asks": stands, "alone": stands})
+    return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
+
+
+async def drive(
+    factory: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    setup: DoubtSetup,
+    on_progress: Callable[[float], None],
+) -> DriveLog:
+    """Drive in the setup's world and return the log; `on_progress` gets the simulated seconds once a second.
+
+    Raises:
+        hal.settings.SettingsError: task and world do not fit, or the task sets no doubt.
+    """
+    task = with_doubt(task, stands=setup.stands)
+    with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:
+        runtime = build_unattended_runtime(simulation, settings, task, events, Statistics())
+        run = DoubtRun(simulation, runtime, setup, on_progress)
+        await run.run(round(setup.duration_s / run.period_s))
+        return run.log()
+
+
+class DoubtRun(Episode):
+    """Episode that logs doubt, missed turns and collisions."""
+
+    def __init__(
+        self, simulation: Simulation, runtime: Runtime, setup: DoubtSetup, on_progress: Callable[[float], None]
+    ) -> None:
+        chance = random.Random(f"doubt in world {setup.world}, seed {setup.seed}")
+        super().__init__(simulation, runtime, chance, stuck_after_s=_STUCK_S, on_progress=on_progress)
+        self._world = setup.world
+        self._policy = runtime.task.policy.build(runtime.robot.infrared)
+        meter = runtime.level.doubt
+        assert meter is not None
+        self._drives_on = meter.actions
+        self._settles = round(_SETTLES_S / self.period_s)
+        self._unanswered = round(_UNANSWERED_S / self.period_s)
+        self._asked_ticks = 0
+        self._settled_at = 0
+        self._doubt: list[float] = []
+        self._distance: list[float] = []
+        self._driving: list[bool] = []
+        self._missed: list[bool] = []
+        self._collisions: list[int] = []
+        self._counted = 0
+
+    def on_tick(self, record: TickRecord) -> None:
+        """Log one tick; set the robot down elsewhere if it is stuck or its question is not answered."""
+        self.measure()
+        decision, match = record.decision, record.decision.match
+        right = self._policy.choose(record.readings.infrared_counts, record.behaviour)
+        drives_on = decision.action in self._drives_on
+        self._doubt.append(decision.doubt or 0.0)
+        self._distance.append(0.0 if match is None else match.distance / match.radius)
+        self._driving.append(decision.driving and record.tick >= self._settled_at)
+        self._missed.append(drives_on and right not in self._drives_on)
+        if self.simulation.collisions > self._counted:
+            self._counted = self.simulation.collisions
+            self._collisions.append(len(self._doubt) - 1)
+        if record.guard_result.latched:
+            self.simulation.rescue()
+            self.send(Resume(self.next_id("go"), "experimenter"))
+        self._asked_ticks = self._asked_ticks + 1 if decision.asking else 0
+        if self._asked_ticks >= self._unanswered or self.is_stuck(waiting=decision.asking):
+            self.reposition()
+            self._asked_ticks = 0
+            self._settled_at = record.tick + self._settles
+
+    def log(self) -> DriveLog:
+        """Return the ticks so far."""
+        return DriveLog(
+            world=self._world,
+            doubt=np.array(self._doubt),
+            distance=np.array(self._distance),
+            driving=np.array(self._driving, dtype=np.bool_),
+            missed=np.array(self._missed, dtype=np.bool_),
+            collisions=tuple(self._collisions),
+        )

@@ -1,0 +1,93 @@
+"""Jobs of the doubt study: one robot in one world, with doubt that is only told, and with doubt that stops it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.doubt.drive import DoubtSetup, drive
+from kurt2rt.experiments.doubt.measures import DriveLog, judge_score, threshold_for
+from kurt2rt.experiments.study.pool import Progress
+from kurt2rt.experiments.study.table import Table
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+TICKS_PER_MINUTE = 6000
+
+
+@dataclass(frozen=True, slots=True)
+class DoubtJob:
+    """Job of one taught robot in one world."""
+
+    factory: SimulationFactory
+    settings: RobotSettings
+    task: TaskSettings
+    knowledge: Path
+    setup: DoubtSetup
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.task.name}, seed {self.setup.seed}, world {self.setup.world}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of the drive in s."""
+        return self.setup.duration_s
+
+    def run(self, tell: Progress) -> DriveLog:
+        """Drive. Raises KnowledgeError, SettingsError."""
+        events = read_lessons(self.knowledge, self.settings, self.task)
+        return anyio.run(drive, self.factory, self.settings, self.task, events, self.setup, tell)
+
+
+def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
+    """Return the quality of doubt at its threshold, and of distance / R with no more questions, of drives on end."""
+    doubt, distance = [log.doubt for log in logs], [log.distance for log in logs]
+    minutes = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
+    collisions = sum(len(log.collisions) for log in logs)
+    found = judge_score(logs, doubt, threshold)
+    control = judge_score(logs, distance, threshold_for(logs, distance, found.questions))
+    rows = tuple(
+        (
+            name,
+            f"{each.auc:.2f}",
+            f"{each.caught} of {collisions}",
+            f"{2 * each.questions / max(minutes, 1e-9):.2f}",
+            f"{2 * each.false_questions / max(minutes, 1e-9):.2f}",
+        )
+        for name, each in (("doubt", found), ("distance / R", control))
+    )
+    return Table(
+        title=f"Doubt that is only told, {len(logs)} drives, {minutes:.0f} minutes",
+        columns=("score", "AUC", "collisions caught", "questions in 2 min", "of them false"),
+        rows=rows,
+        note="Wrong: the policy turns away and the robot does not, for 0.3 s; or a collision follows within 2 s.",
+    )
+
+
+def collision_table(told: Sequence[DriveLog], stands: Sequence[DriveLog]) -> Table:
+    """Return the collisions of drives with doubt that is only told, and with doubt that stops the robot."""
+    rows = []
+    for name, logs in (("only told", told), ("stands", stands)):
+        minutes = sum(len(log.doubt) for log in logs) / TICKS_PER_MINUTE
+        driven = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
+        count = sum(len(log.collisions) for log in logs)
+        rows.append(
+            (
+                name,
+                str(count),
+                f"{100 * count / max(minutes, 1e-9):.1f}",
+                f"{100 * count / max(driven, 1e-9):.1f}",
+                f"{100 * driven / max(minutes, 1e-9):.0f} %",
+            )
+        )
+    return Table(
+        title=f"Collisions without a teacher, {len(told)} drives each",
+        columns=("doubt", "collisions", "in 100 min", "in 100 driven min", "time driven"),
+        rows=tuple(rows),
+        note="A question that is not answered for 10 s sets the robot down at another start.",
+    )

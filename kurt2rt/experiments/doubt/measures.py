@@ -1,0 +1,114 @@
+"""Measures of a score against wrong actions and collisions, from the ticks of uncorrected drives."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Scores = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+BEFORE_TICKS = 200
+"""Ticks before a collision that count as leading to it: 2 s."""
+WRONG_TICKS = 30
+"""Ticks for which an action has to be wrong without a break to count: 0.3 s."""
+_TOO_LATE_TICKS = 10
+"""A score that rises later than 0.1 s before a collision warns too late to stop."""
+_APART_TICKS = 300
+"""Ticks below the threshold after which the next crossing is another question: an answer takes 3 s."""
+
+
+@dataclass(frozen=True, slots=True)
+class DriveLog:
+    """Ticks of one drive; all arrays have shape (n,)."""
+
+    world: str
+    doubt: Scores
+    distance: Scores
+    """Distance / R of the nearest RLA."""
+    driving: Flags
+    """True while an RLA's action drives and the robot was not set down in the last second."""
+    missed: Flags
+    """True where the teacher's policy turns away and the robot does not."""
+    collisions: tuple[int, ...]
+    """Ticks in which collisions began."""
+
+
+@dataclass(frozen=True, slots=True)
+class ScoreResult:
+    """Quality of a score at one threshold."""
+
+    auc: float
+    """Probability that a wrong tick scores higher than a right one; NaN without wrong ticks."""
+    caught: int
+    """Collisions that the score told before."""
+    questions: int
+    false_questions: int
+    """Questions that neither a wrong action nor a collision followed within 2 s."""
+
+
+def wrong_ticks(log: DriveLog) -> Flags:
+    """Return the ticks (n,) with a lasting missed turn away, or with a collision within 2 s."""
+    wrong = np.zeros(len(log.missed), dtype=np.bool_)
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], log.missed.astype(np.int8), [0]))))
+    for begin, end in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True):
+        wrong[begin:end] = end - begin >= WRONG_TICKS
+    for tick in log.collisions:
+        wrong[max(0, tick - BEFORE_TICKS) : tick] = True
+    return wrong
+
+
+def area_under_curve(scores: Scores, wrong: Flags) -> float:
+    """Return the area under the ROC curve of scores (n,); NaN without wrong or right ticks."""
+    positives = int(wrong.sum())
+    negatives = len(wrong) - positives
+    if not positives or not negatives:
+        return float("nan")
+    _, places, counts = np.unique(scores, return_inverse=True, return_counts=True)
+    ranks = np.cumsum(counts) - (counts - 1) / 2
+    above = float(ranks[places][wrong].sum()) - positives * (positives + 1) / 2
+    return above / (positives * negatives)
+
+
+def question_ticks(scores: Scores, driving: Flags, threshold: float) -> list[int]:
+    """Return the ticks at which a robot with these scores (n,) would begin to ask."""
+    found: list[int] = []
+    last = -_APART_TICKS - 1
+    for tick in np.flatnonzero((scores >= threshold) & driving).tolist():
+        if tick - last > _APART_TICKS:
+            found.append(tick)
+        last = tick
+    return found
+
+
+def judge_score(logs: Sequence[DriveLog], scores: Sequence[Scores], threshold: float) -> ScoreResult:
+    """Return the quality of one score over all drives; `scores`: of each drive, shape (n,) each."""
+    wrong = [wrong_ticks(log) for log in logs]
+    auc = area_under_curve(
+        np.concatenate([each[log.driving] for log, each in zip(logs, scores, strict=True)]),
+        np.concatenate([each[log.driving] for log, each in zip(logs, wrong, strict=True)]),
+    )
+    caught = questions = false_questions = 0
+    for log, score, bad in zip(logs, scores, wrong, strict=True):
+        warned = (score >= threshold) & log.driving
+        for tick in log.collisions:
+            caught += bool(warned[max(0, tick - BEFORE_TICKS) : max(0, tick - _TOO_LATE_TICKS)].any())
+        asked = question_ticks(score, log.driving, threshold)
+        questions += len(asked)
+        false_questions += sum(not bad[tick : tick + BEFORE_TICKS].any() for tick in asked)
+    return ScoreResult(auc, caught, questions, false_questions)
+
+
+def threshold_for(logs: Sequence[DriveLog], scores: Sequence[Scores], questions: int) -> float:
+    """Return the lowest threshold at which drives with these scores have at most so many questions."""
+    candidates = np.unique(np.concatenate(scores))
+    low, high = 0, len(candidates) - 1
+    while low < high:
+        middle = (low + high) // 2
+        found = sum(
+            len(question_ticks(each, log.driving, float(candidates[middle])))
+            for log, each in zip(logs, scores, strict=True)
+        )
+        low, high = (low, middle) if found <= questions else (middle + 1, high)
+    return float(candidates[low])

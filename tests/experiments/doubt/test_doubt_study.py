@@ -1,0 +1,104 @@
+"""Study of doubt: its measures by hand, and a robot in the real simulator."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.doubt.drive import DoubtSetup, with_doubt
+from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
+from kurt2rt.experiments.doubt.measures import (
+    DriveLog,
+    Scores,
+    area_under_curve,
+    judge_score,
+    question_ticks,
+    threshold_for,
+    wrong_ticks,
+)
+from tests.experiments.helpers import ROBOT, STAGE, teach
+
+TICKS = 3000
+
+
+def log(doubt: Scores, *, missed: tuple[slice, ...] = (), collisions: tuple[int, ...] = ()) -> DriveLog:
+    """Return a drive of 30 s with this doubt, half as great a distance, and wrong actions at `missed`."""
+    flags = np.zeros(TICKS, dtype=np.bool_)
+    for each in missed:
+        flags[each] = True
+    return DriveLog("a", doubt, doubt / 2, np.ones(TICKS, dtype=np.bool_), flags, collisions)
+
+
+def pulses(*ticks: int) -> Scores:
+    """Return scores that are 0, and 5 for 0.5 s from each of these ticks."""
+    scores = np.zeros(TICKS)
+    for tick in ticks:
+        scores[tick : tick + 50] = 5.0
+    return scores
+
+
+def test_area_under_curve_of_known_scores() -> None:
+    wrong = np.array([False, False, True, True])
+    assert area_under_curve(np.array([1.0, 2.0, 3.0, 4.0]), wrong) == 1.0
+    assert area_under_curve(np.array([1.0, 3.0, 2.0, 4.0]), wrong) == 0.75
+    assert area_under_curve(np.zeros(4), wrong) == 0.5
+    assert math.isnan(area_under_curve(np.zeros(4), np.zeros(4, dtype=np.bool_)))
+
+
+def test_wrong_ticks_are_lasting_misses_and_two_seconds_before_a_crash() -> None:
+    wrong = wrong_ticks(log(pulses(), missed=(slice(100, 129), slice(500, 530)), collisions=(2000,)))
+    assert np.flatnonzero(wrong).tolist() == [*range(500, 530), *range(1800, 2000)]
+
+
+def test_crossings_three_seconds_apart_are_two_questions() -> None:
+    driving = np.ones(TICKS, dtype=np.bool_)
+    assert question_ticks(pulses(100, 300, 1000), driving, 5.0) == [100, 1000]
+    driving[:1020] = False
+    assert question_ticks(pulses(100, 300, 1000), driving, 5.0) == [1020]
+
+
+def test_judge_score_counts_caught_collisions_and_false_questions() -> None:
+    scores = pulses(1000, 2500)
+    result = judge_score([log(scores, collisions=(1100, 2100, 2505))], [scores], 5.0)
+    assert (result.caught, result.questions, result.false_questions) == (1, 2, 0)
+    alarm = judge_score([log(scores)], [scores], 5.0)
+    assert (alarm.caught, alarm.questions, alarm.false_questions) == (0, 2, 2)
+
+
+def test_threshold_for_a_budget_keeps_to_it() -> None:
+    scores = pulses(100, 1000)
+    scores[1000:1050] = 7.0
+    threshold = threshold_for([log(scores)], [scores], 1)
+    assert threshold == 7.0
+    assert len(question_ticks(scores, np.ones(TICKS, dtype=np.bool_), threshold)) == 1
+
+
+def test_tables_have_doubt_and_its_control() -> None:
+    told = [log(pulses(1000), collisions=(1100,))]
+    first, second = score_table(told, 5.0).rows
+    assert (first[0], first[2:]) == ("doubt", ("1 of 1", "4.00", "0.00"))
+    assert second[0] == "distance / R"
+    rows = collision_table(told, [log(pulses())]).rows
+    assert [row[:3] for row in rows] == [("only told", "1", "200.0"), ("stands", "0", "0.0")]
+
+
+def test_task_without_doubt_is_refused() -> None:
+    with pytest.raises(SettingsError, match="sets no doubt"):
+        with_doubt(load_task("fleeing"), stands=True)
+
+
+@pytest.mark.deep  # a lesson and two drives in the simulator
+def test_robot_that_stands_at_a_doubt_collides_no_more_often(tmp_path: Path) -> None:
+    task = load_task("wall_following")
+    knowledge = teach(tmp_path / "taught.knowledge", task, seed=3).knowledge
+    told, stands = (
+        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, stands)).run(lambda _: None)
+        for stands in (False, True)
+    )
+    assert len(told.doubt) == len(stands.doubt) == 6000
+    assert told.doubt.max() > 1.0
+    assert stands.driving.sum() <= told.driving.sum()
+    assert len(stands.collisions) <= len(told.collisions)

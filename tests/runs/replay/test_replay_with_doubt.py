@@ -1,0 +1,48 @@
+"""Recorded run of a robot that doubts: replayed bit for bit, and explained."""
+
+from pathlib import Path
+
+from hal.simulation import Pose
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Resume, Teach, Watch
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.reasons import format_reasons
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from tests.runs.replay.stories import NAME, Scene, record_story
+
+
+def drives_to_a_wall(scene: Scene, record: TickRecord) -> None:
+    """Teach the robot to drive forward far from walls, twice; answer a doubt of two seconds with a turn."""
+    inbox, tick = scene.runtime.inbox, record.tick
+    if tick == 1:
+        scene.simulation.put(Pose(2.0, 2.0, 0.0))
+        inbox.put(Resume("go", NAME))
+    inbox.put(Watch(NAME, tick))
+    if tick in (20, 40):
+        inbox.put(Teach(f"t{tick}", NAME, "forward"))
+    scene.presses += record.decision.cause is DecisionCause.DOUBT
+    if scene.presses == 200 and record.decision.cause is DecisionCause.DOUBT:
+        inbox.put(Teach("turn", NAME, "spin_right"))
+
+
+def test_run_with_doubts_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
+    task = load_task("wall_following", changes={"learning.doubt.asks": "true"})
+    run = read_run(record_story("walls", tmp_path, seconds=7, other=drives_to_a_wall, task=task))
+    causes, actions, told = [], set[str | None](), set[str]()
+    replay = Replay(run)
+    for entry, record in replay:
+        assert compare(entry, record) == []
+        causes.append(entry.decision.cause)
+        actions.add(entry.decision.action)
+        if entry.decision.cause is DecisionCause.DOUBT:
+            facts = collect_facts(replay.runtime, record, lambda _: "")
+            assert facts.doubt is not None
+            assert facts.doubt.score == entry.decision.doubt
+            told.update(format_reasons(facts))
+    assert causes.count(DecisionCause.DOUBT) >= 200
+    assert actions == {None, "forward", "spin_right"}
+    assert any("lessons to drive on reach" in each for each in told)
