@@ -200,7 +200,7 @@ class CorrectRequest(CommandRequest):
     level: Level = BASIC
     """Level of the wrong decision."""
     late: Annotated[bool, Flag()] = False
-    """Without a tick: give it to the decision that this teacher reacted to, by their known delay."""
+    """Give it to the decision that this teacher reacted to, before the named state by their known delay."""
 
 
 @_at("/shown", depth=2)

@@ -106,7 +106,7 @@ class Correct:
     level: str = BASIC
     """Level of the wrong decision, as in `Teach`."""
     put_back: bool = False
-    """True for a person's press: without a `decision_tick` it is about the decision before `seen_tick` by the
+    """True for a person's press: it is about the decision before `decision_tick`, or else before `seen_tick`, by the
     teacher's delay."""
     seen_tick: int | None = None
     """Newest state that the teacher had; None: the present tick."""

@@ -20,18 +20,19 @@ class LatePresses:
         """Return a late press with the tick of its decision, and any other command unchanged.
 
         Args:
-            command: a press is late if it is a correction of the basic level with `put_back` and without a tick.
+            command: a press is late if it is a correction of the basic level with `put_back`.
             speed: robot seconds in one second.
         """
         if not isinstance(command, Correct) or not _is_late(command) or self._recent.newest < 0:
             return command
-        given = self._recent.newest if command.seen_tick is None else min(command.seen_tick, self._recent.newest)
+        seen = command.seen_tick if command.decision_tick is None else command.decision_tick
+        given = self._recent.newest if seen is None else min(seen, self._recent.newest)
         back_ticks = self._delay.ticks(command.teacher, speed)
         return replace(command, seen_tick=given, decision_tick=self._decision(given, back_ticks))
 
     def described(self, command: Command, outcome: Outcome) -> Outcome:
         """Return the outcome of a late press with the decision that it was given to; any other one unchanged."""
-        if not isinstance(command, Correct) or not command.put_back or command.level != BASIC:
+        if not isinstance(command, Correct) or not _is_late(command):
             return outcome
         meant, given = command.decision_tick, command.seen_tick
         if meant is None or given is None or not self._recent.contains(meant):
@@ -53,4 +54,4 @@ class LatePresses:
 
 
 def _is_late(command: Correct) -> bool:
-    return command.put_back and command.decision_tick is None and command.level == BASIC
+    return command.put_back and command.level == BASIC

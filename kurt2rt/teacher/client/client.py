@@ -183,8 +183,8 @@ class TeacherClient:
             action: Right action of the repertoire; at level MID a taught behaviour.
             of: Tick of the state that is meant. None: the present decision.
             level: BASIC or MID.
-            late: Without `of`: correct the decision that a person reacts to, before the newest state by their delay,
-                which the robot learns from their answers to its questions. The answer says which decision it was.
+            late: Correct the decision that a person reacted to, before the state of `of` by their delay, which the
+                robot learns from their answers to its questions. The answer says which decision it was.
         """
         return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level, late=late)
 
@@ -348,6 +348,18 @@ class TeacherClient:
                 await self._open.try_end_press(handle.press_id)
             raise
         handle.released = await self._open.end_press(handle.press_id)
+
+    async def hold_for(self, action: str, seconds: float) -> Answer:
+        """Hold an action for a time; see `hold`.
+
+        Returns:
+            Answer to the release, with the number of lessons; the refusal of a hold that ended before its time.
+        """
+        async with self.hold(action) as handle:
+            await handle.wait(seconds)
+        ended = handle.released or handle.ended or self._drive.refusal
+        assert ended is not None, "a hold that is not released was refused"
+        return ended
 
     # Goals
 

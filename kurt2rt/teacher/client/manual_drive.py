@@ -5,6 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
+import anyio
+
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
 from kurt2rt.channel.protocol.requests import DriveRequest, HoldRequest, StreamRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
@@ -19,6 +21,7 @@ BEAT_S = 0.02
 lost messages that long comes once in hours at 50 messages a second, and several times a minute at 20."""
 BLIND_AFTER_S = 0.5
 """Age of the newest state from which on nothing is sent."""
+_POLL_S = 0.05
 _TIMEOUT_S = 1.0
 """Time after which an answer no longer counts."""
 
@@ -205,6 +208,15 @@ class PressHandle:
         if self._press_id is None or self._drive.press_id == self._press_id:
             return None
         return self._drive.refusal or local_refusal(RefusalCode.PRESS_OVER)
+
+    async def wait(self, seconds: float) -> None:
+        """Wait for a time, or until the press is ended by a refusal or another call."""
+        ends_s = anyio.current_time() + seconds
+        while self._press_id is not None and self.ended is None:
+            left_s = ends_s - anyio.current_time()
+            if left_s <= 0.0:
+                return
+            await anyio.sleep(min(left_s, _POLL_S))
 
     def _press(self, press: Callable[[], bool]) -> bool:
         """Begin or change the press; return whether it is on."""

@@ -18,10 +18,9 @@ import anyio
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
-from kurt2rt.teacher.client.manual_drive import PressHandle
 
 LOCAL_DEVICE = Path("var/devices/local")
 """Pairing that `kurt2rt run` makes for programs of its own machine."""
@@ -205,6 +204,8 @@ class Teacher:
     run = _blocking(TeacherClient.run)
     place = _blocking(TeacherClient.place)
 
+    hold_for = _blocking(TeacherClient.hold_for)
+
     def drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
         """Drive by hand for a time, then stop.
 
@@ -217,17 +218,6 @@ class Teacher:
             WireError: The speeds are out of range.
         """
         return self._call(lambda: self._drive(left_m_s, right_m_s, seconds))
-
-    def hold(self, action: str, seconds: float) -> Answer:
-        """Hold an action for a time: the robot does it, and is taught it on the way (hold to correct).
-
-        An exception in the calling thread, such as KeyboardInterrupt, ends the hold at once.
-
-        Returns:
-            The robot's answer to the release, with the number of lessons; the refusal if the hold ended before its
-            time.
-        """
-        return self._call(lambda: self._hold(action, seconds))
 
     # In the caller's thread
 
@@ -295,19 +285,5 @@ class Teacher:
             if not handle.set(left_m_s, right_m_s):
                 refusal = handle.ended or self._client.refusal
                 return "" if refusal is None else refusal.text or refusal.why
-            await _until_ended(handle, seconds)
+            await handle.wait(seconds)
             return "" if handle.ended is None else handle.ended.text or handle.ended.why
-
-    async def _hold(self, action: str, seconds: float) -> Answer:
-        async with self._client.hold(action) as handle:
-            await _until_ended(handle, seconds)
-        ended = handle.released or handle.ended or self._client.refusal
-        assert ended is not None
-        return ended
-
-
-async def _until_ended(handle: PressHandle, seconds: float) -> None:
-    """Wait for a time, or until the press is ended by a refusal."""
-    ends_s = time.monotonic() + seconds
-    while handle.press_id is not None and handle.ended is None and (left_s := ends_s - time.monotonic()) > 0.0:  # noqa: ASYNC110 - a clock
-        await anyio.sleep(min(left_s, _POLL_S))

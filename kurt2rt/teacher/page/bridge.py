@@ -18,7 +18,7 @@ from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand, is_resumption, max_state_age_s
 from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
-from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow, Why
+from kurt2rt.teacher.page.messages import Hidden, HoldPress, PageHeartbeat, PageMessage, Press, Release, StopNow, Why
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.sent_states import SentState
 from kurt2rt.teacher.page.slow_state import SlowState
@@ -127,7 +127,7 @@ class Bridge:
                     self._presence.end()
                     self._update_presence()
                 self._release(connection)
-            case Press():
+            case Press() | HoldPress():
                 self._on_press(connection, message)
             case Release():
                 self._release(connection)
@@ -156,7 +156,7 @@ class Bridge:
             self._update_presence()
         connection.wake()
 
-    def _on_press(self, connection: PageConnection, press: Press) -> None:
+    def _on_press(self, connection: PageConnection, press: Press | HoldPress) -> None:
         if self._ending_presses:
             return  # the last press has not ended yet; the next message of this press comes in 50 ms
         if not self._has_control(connection):
@@ -169,7 +169,10 @@ class Bridge:
             connection.deadman.release()
             _end_press_of(connection, self._press_refusal())
         elif connection.deadman.press(press.press_id, age_s, now_s):
-            self._robot.press(press.left_m_s, press.right_m_s)
+            if isinstance(press, HoldPress):
+                self._robot.press_action(press.action)
+            else:
+                self._robot.press(press.left_m_s, press.right_m_s)
 
     def _on_command(self, connection: PageConnection, command: PageCommand) -> None:
         number = command.number
@@ -295,7 +298,7 @@ class Bridge:
             and state.teacher == self._device
             and state.phase < Phase.AUTONOMOUS
             and state.action is not None
-            and not state.by_hand  # the end of a press stops the robot
+            and not state.by_hand  # after a drive the robot stands, and after a hold a later state stops it
         )
 
     async def _stop_unseen(self) -> None:

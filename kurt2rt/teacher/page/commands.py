@@ -77,7 +77,10 @@ COMMANDS: Mapping[str, CommandKind] = {
         {"action": _NAME, "level": _LEVEL, "beside": Flag()},
     ),
     "correct": CommandKind(
-        lambda robot, given, tick: robot.correct(given["action"], of=tick, level=given["level"]),
+        # A person reacts late; the robot knows by how much, and its answer says which decision it corrected.
+        lambda robot, given, tick: robot.correct(
+            given["action"], of=tick, level=given["level"], late=given["level"] == BASIC
+        ),
         {"action": _NAME, "level": _LEVEL},
     ),
     # Tick of an earlier state, which the page kept and the teacher picked; the robot checks that it still knows it.

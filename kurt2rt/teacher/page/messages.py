@@ -43,8 +43,18 @@ class Press:
 
 
 @dataclass(frozen=True, slots=True)
+class HoldPress:
+    """A button of an action is held (hold to correct); 20 times a second."""
+
+    press_id: int
+    """Number of the press, in one sequence with those of `Press`."""
+    action: str
+    picture: int | None
+
+
+@dataclass(frozen=True, slots=True)
 class Release:
-    """The deadman switch was let go."""
+    """The deadman switch, or the button of an action, was let go."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,12 +73,13 @@ class Why:
     """The page's own number of this message, repeated in the answer."""
 
 
-PageMessage = PageHeartbeat | Hidden | Press | Release | StopNow | Why | PageCommand
+PageMessage = PageHeartbeat | Hidden | Press | HoldPress | Release | StopNow | Why | PageCommand
 
 _FIELDS: Mapping[str, Mapping[str, Check]] = {
     "beat": {"picture": _PICTURE, "at_ms": Float(1e15, "ms")},
     "hidden": {},
     "press": {"hold": _COUNTER, "left_m_s": _SPEED_M_S, "right_m_s": _SPEED_M_S, "picture": _PICTURE},
+    "hold": {"hold": _COUNTER, "action": Text(64, least=1), "picture": _PICTURE},
     "release": {},
     "stop": {"number": _COUNTER},
     "why": {"number": _COUNTER},
@@ -99,6 +110,8 @@ def parse(text: str) -> PageMessage:
     fields = _checked(kind, _FIELDS[kind], content)
     if kind == "press":
         return Press(fields["hold"], fields["left_m_s"], fields["right_m_s"], fields["picture"])
+    if kind == "hold":
+        return HoldPress(fields["hold"], fields["action"], fields["picture"])
     if kind != "order":
         return _TYPES[kind](**fields)
     name = fields["name"]

@@ -64,6 +64,7 @@ def state_view(
         "mid": plain(state.mid),
         "surprise": plain(state.surprise),
         "shown": plain(state.shown),
+        "hold": plain(state.hold),
         "place": None if place is None else asdict(place),
         "progress": asdict(state.progress),
         "link": {

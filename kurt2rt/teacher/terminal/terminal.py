@@ -290,7 +290,11 @@ class TerminalTeacher:
                 return robot.hand_over()
             case [action] if action in hello.actions:
                 # The same word answers a question and corrects a robot that drives.
-                return robot.answer(action, of=tick) if expects_answer(state) else robot.correct(action, of=tick)
+                if expects_answer(state):
+                    return robot.answer(action, of=tick)
+                return robot.correct(action, of=tick, late=True)
+            case ["hold", action, seconds] if action in hello.actions and _is_number(seconds):
+                return robot.hold_for(action, float(seconds))
             case ["rewind", seconds, action] if action in hello.actions and _is_rewind(seconds):
                 return robot.correct_earlier(action, float(seconds))
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
@@ -323,7 +327,7 @@ class TerminalTeacher:
 def _moves(text: str) -> bool:
     """Return whether a line may set the robot in motion."""
     match text.split():
-        case ["go" | "resume" | "step" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
+        case ["go" | "resume" | "step" | "hold" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
             return True
     return False
 

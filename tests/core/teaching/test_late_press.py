@@ -106,6 +106,8 @@ def test_correction_without_the_option_is_about_the_present(driving: Corridor) -
     assert driving.system.rlas[-1].condition == condition(driving, driving.ticks)
 
 
-def test_correction_of_a_named_tick_is_not_put_back(driving: Corridor) -> None:
-    named = Correct("named", "Ann", "back", driving.ticks - 5, put_back=True, seen_tick=driving.ticks)
-    assert given(driving, named).outcome.fields["decision_tick"] == named.decision_tick
+def test_late_press_on_a_named_state_counts_from_that_state(driving: Corridor) -> None:
+    shown = driving.ticks - 5
+    named = Correct("named", "Ann", "back", shown, put_back=True, seen_tick=driving.ticks)
+    fields = given(driving, named).outcome.fields
+    assert (fields["decision_tick"], fields["put_back_ticks"]) == (shown - DELAY, DELAY)

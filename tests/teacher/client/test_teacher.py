@@ -93,7 +93,7 @@ def test_hold_teaches_for_its_time_and_tells_how_many(robot: RobotProcess) -> No
         while teacher.state.rlas:
             assert teacher.undo().accepted
         teacher.wait_for_question()
-        answer = teacher.hold("forward", seconds=0.3)
+        answer = teacher.hold_for("forward", seconds=0.3)
         assert answer.outcome is not None
         assert (answer.code, answer.outcome.fields["lessons"]) == (ResultCode.HOLD_RELEASED, 1)
         teacher.wait_until(lambda state: state.cause == "rla")
@@ -101,7 +101,7 @@ def test_hold_teaches_for_its_time_and_tells_how_many(robot: RobotProcess) -> No
         assert teacher.undo().accepted
         teacher.wait_until(lambda state: not state.rlas)
         teacher.stop()
-        assert teacher.hold("forward", seconds=10.0).code is RefusalCode.ROBOT_STOPPED
+        assert teacher.hold_for("forward", seconds=10.0).code is RefusalCode.ROBOT_STOPPED
         assert teacher.resume().accepted
 
 

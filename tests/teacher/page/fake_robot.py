@@ -157,6 +157,11 @@ class FakeRobot(TeacherClient):
         self.pressing = True
         return True
 
+    def press_action(self, action: str) -> bool:
+        self._hear(("hold", action))
+        self.pressing = True
+        return True
+
     async def let_go(self) -> Answer | None:
         self.pressing = False
         return await self._answer("let_go")

@@ -16,7 +16,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.teacher.client.answer import local_refusal
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.commands import PageCommand
-from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow
+from kurt2rt.teacher.page.messages import Hidden, HoldPress, PageHeartbeat, PageMessage, Press, Release, StopNow
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.texts import PageNotice
 from kurt2rt.teacher.page.texts import text_of as page_text_of
@@ -241,6 +241,17 @@ async def test_silence_of_250_ms_ends_the_press(fixture: BridgeFixture, page: Pa
     assert page.last("let_go")["text"] == page_text_of(PageNotice.PRESS_LOST)
 
 
+async def test_held_action_is_sent_until_released(fixture: BridgeFixture, page: Page) -> None:
+    await page.see(teacher="phone")
+    for _ in range(3):
+        page.say(HoldPress(1, "forward", page.picture))
+    assert fixture.told("hold") == [("hold", "forward")] * 3
+    page.say(Release())
+    await settled()
+    page.say(HoldPress(1, "forward", page.picture))
+    assert [each[0] for each in fixture.told("hold", "let_go")] == ["hold"] * 3 + ["let_go"]
+
+
 async def test_presses_after_a_stall_do_not_drive(fixture: BridgeFixture, page: Page) -> None:
     await page.see(teacher="phone")
     page.press(press_id=1)
@@ -379,7 +390,7 @@ async def test_command_has_the_tick_of_the_page_s_state(fixture: BridgeFixture, 
     await page.command("reward", value=-1)
     await page.command("appraise", appraisal="bad")
     assert fixture.told("correct", "reward", "appraise") == [
-        ("correct", "spin_left", 500),
+        ("correct", "spin_left", 500, "late"),
         ("reward", -1, 500),
         ("appraise", "bad", 500),
     ]

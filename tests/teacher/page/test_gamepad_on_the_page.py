@@ -129,3 +129,27 @@ def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
     driving.phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
     polled(driving.phone)
     assert presses(driving) == []
+
+
+CROSS_UP = "pad.buttons[12] = {pressed: %s, touched: false, value: 0}"
+
+
+def test_gamepad_cross_holds_an_action_while_it_is_down(driving: Lesson) -> None:
+    phone = driving.phone
+    phone.run(CROSS_UP % "true")
+    phone.wait(lambda: driving.told("hold"), "the action is held")
+    assert set(driving.told("hold")) == {"forward"}
+    phone.run(CROSS_UP % "false")
+    phone.wait(lambda: driving.robot.told_of("let_go"), "it is released")
+    assert presses(driving) == []
+
+
+def test_gamepad_hold_ended_by_the_page_needs_a_new_press(driving: Lesson) -> None:
+    phone = driving.phone
+    phone.run(CROSS_UP % "true")
+    phone.wait(lambda: driving.told("hold"), "the action is held")
+    phone.run("dispatchEvent(new Event('blur'))")
+    phone.wait(lambda: driving.robot.told_of("let_go"), "it is released")
+    count = len(driving.told("hold"))
+    polled(phone)
+    assert len(driving.told("hold")) == count

@@ -1,6 +1,8 @@
-// Buttons of the robot's actions: a touch answers a question, or corrects a robot that drives.
+// Buttons of the robot's actions: a touch answers a question, or corrects a robot that drives; a held one does both
+// on the way.
 
 import { glyph } from "./glyphs.js";
+import { holdButton } from "./hold_to_correct.js";
 
 export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
 
@@ -20,12 +22,15 @@ export function words(action) {
 export class ActionPad {
   #box;
   #choose;
+  #press;
   #buttons = new Map();
   names = [];
 
-  constructor(box, choose) {
+  // `choose` is called for a tap; `press` is the TapOrHold of the buttons.
+  constructor(box, choose, press) {
     this.#box = box;
     this.#choose = choose;
+    this.#press = press;
   }
 
   build(names) {
@@ -51,6 +56,7 @@ export class ActionPad {
       button.style.gridColumn = `${place[1]} / span ${place[2]}`;
       button.classList.toggle("wide", place[2] > 1);
     }
+    holdButton(button, name, this.#press);
     button.addEventListener("click", () => this.#choose(name));
     this.#buttons.set(name, button);
     return button;
@@ -62,6 +68,10 @@ export class ActionPad {
       button.classList.toggle("current", name === state.action && state.stands.reason === "drives");
       button.classList.toggle("nearest", state.stands.asks && name === state.nearest_action);
     }
+  }
+
+  markHeld(name, held) {
+    this.#buttons.get(name)?.classList.toggle("held", held);
   }
 
   markOutcome(name, outcome) {

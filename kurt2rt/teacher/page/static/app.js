@@ -10,6 +10,7 @@ import { Explanation } from "./explanation.js";
 import { Files } from "./files.js";
 import { gamepad } from "./gamepad.js";
 import { Goals } from "./goals.js";
+import { HoldToCorrect, TapOrHold } from "./hold_to_correct.js";
 import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
@@ -37,7 +38,9 @@ const LIST_MS = 5000;
 const link = new Link();
 const drive = new Drive(link);
 const decision = new Decision();
-const actionPad = new ActionPad($("actions"), teach);
+const hold = new HoldToCorrect(link);
+const buttonPress = new TapOrHold(hold, mayHold);
+const actionPad = new ActionPad($("actions"), teach, buttonPress);
 const lessons = new Lessons((lesson) => sendCommand("undo", { lesson }));
 const midPad = new MidLevelPad(teachBehaviour);
 const goals = new Goals(sendCommand);
@@ -82,10 +85,46 @@ let hideTimer = null;
 
 function showMessage(outcome, sentence) {
   const line = $("said");
+  $("undo-hold").hidden = true;
   line.className = outcome;
   setText(line, sentence);
   clearTimeout(hideTimer);
-  if (outcome !== "pending") hideTimer = setTimeout(() => setText(line, "\u00a0"), MESSAGE_MS);
+  if (outcome === "pending") return;
+  hideTimer = setTimeout(() => {
+    setText(line, "\u00a0");
+    $("undo-hold").hidden = true;
+  }, MESSAGE_MS);
+}
+
+// ---- Hold to correct
+
+let heldHere = null; // id of the lessons of this page's last hold
+
+// A hold does not let a stopped robot drive; a long touch is a tap there.
+function mayHold() {
+  return inControl() && link.fresh && !rewind.open && !link.state.stands.needs_go;
+}
+
+hold.addEventListener("change", ({ detail }) => {
+  actionPad.markHeld(detail.action, detail.held);
+  if (detail.held) heldHere = null;
+  else if (heldHere === null) showMessage("saved", text("held", { action: words(detail.action), lessons: 0 }));
+});
+
+// Shows the lessons of this page's hold while it lasts, and offers to undo them together when it is over.
+function showHold({ hold: told }) {
+  if (!told || told.teacher !== page.device) return;
+  if (hold.held && told.on) heldHere = told.lesson;
+  if (heldHere !== told.lesson) return;
+  const fields = { action: words(told.action), lessons: told.lessons };
+  if (told.on) {
+    showMessage("pending", text("holding", fields));
+  } else {
+    heldHere = undefined;
+    showMessage("saved", text("held", fields));
+    $("undo-hold").hidden = !told.lessons;
+    $("undo-hold").onclick = () => sendCommand("undo", { lesson: told.lesson });
+  }
 }
 
 function teach(action) {
@@ -200,8 +239,13 @@ const resume = () => {
   return sendCommand("resume", {}, "go");
 };
 
-async function stop() {
+function releaseAll() {
   drive.release();
+  hold.release();
+}
+
+async function stop() {
+  releaseAll();
   showMessage("pending", "stop …");
   showAnswer(await link.stop());
 }
@@ -244,8 +288,10 @@ link.addEventListener("health", ({ detail }) => health.update(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
 link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
 link.addEventListener("let_go", ({ detail }) => {
-  drive.release();
-  showMessage("refused", detail.text || text("driveEnded"));
+  const ended = hold.held ? "holdEnded" : "driveEnded";
+  heldHere = undefined;
+  releaseAll();
+  showMessage("refused", detail.text || text(ended));
 });
 link.addEventListener("silent", ({ detail }) => setText($("no-picture-why"), detail.text));
 link.addEventListener("open", () => {
@@ -294,6 +340,7 @@ function show() {
   critic.show(state, lessons.newestOf(CRITIC));
   showWarnings(state);
   health.show(state);
+  showHold(state);
   if (state.refused && drive.held) showMessage("refused", state.refused);
   session.show(state, inControl());
   showControl();
@@ -329,7 +376,7 @@ function showFreshness() {
   document.body.classList.toggle("no-picture", lost);
   for (const id of CONTROLLED) $(id).inert = lost || !inControl();
   if (lost) {
-    drive.release();
+    releaseAll();
     setText($("link-text"), "no picture");
     $("go").disabled = true;
   }
@@ -368,7 +415,7 @@ function showControl() {
   box.hidden = inControl() || !state;
   for (const id of CONTROLLED) $(id).inert = !inControl() || !link.fresh;
   if (box.hidden) return;
-  drive.release();
+  releaseAll();
   const another = state.teacher && state.teacher !== page.device;
   const { teacher } = state;
   const reason = another ? "otherTeacher" : { elsewhere: "controlElsewhere", free: "controlFree" }[page.seat] ?? "noTeacher";
@@ -414,7 +461,7 @@ function applyPace() {
 }
 
 function showTab(name) {
-  drive.release();
+  releaseAll();
   for (const each of TABS) {
     $(each).hidden = each !== name;
     $(`tab-${each}`).setAttribute("aria-selected", String(each === name));
@@ -461,6 +508,8 @@ keyboard({
     if (midPad.level === MID) midPad.names[i] && midPad.choose(midPad.names[i]);
     else if (actionPad.names[i]) teach(actionPad.names[i]);
   },
+  press: new TapOrHold(hold, mayHold),
+  actionOf: (i) => (inControl() && midPad.level !== MID ? actionPad.names[i] ?? null : null),
   reward: (value) => inControl() && reward(value),
   undo: () => inControl() && $("undo-last").checkVisibility() && $("undo-last").click(),
   rewind: () => $("rewind").click(),
@@ -468,7 +517,7 @@ keyboard({
   help,
   mayDrive: () => inControl() && link.fresh,
 });
-gamepad({ drive, mayDrive: () => inControl() && link.fresh, showMessage });
+gamepad({ drive, hold, actions: () => actionPad.names, mayDrive: () => inControl() && link.fresh, mayHold, showMessage });
 
 // ---- The screen stays on where the browser allows it.
 

@@ -7,8 +7,11 @@ const DIRECTIONS = {
 
 const hasFocus = () => document.activeElement !== null && document.activeElement !== document.body;
 
-export function keyboard({ drive, stop, resume, act, reward, undo, rewind, why, help, mayDrive }) {
+export function keyboard({ drive, stop, resume, act, press, actionOf, reward, undo, rewind, why, help, mayDrive }) {
   const down = new Set();
+  let digitDown = null; // code of the digit that is down
+  let digitAct = null; // what a tap of it does
+  let digitHolds = false; // whether it may be held
 
   const steer = () => {
     const sum = [0, 0];
@@ -42,6 +45,18 @@ export function keyboard({ drive, stop, resume, act, reward, undo, rewind, why, 
       return;
     }
     const digit = /^Digit([1-9])$|^Numpad([1-9])$/.exec(event.code);
+    if (digit) {
+      event.preventDefault();
+      if (event.repeat || digitDown !== null) return;
+      digitDown = event.code;
+      const i = Number(digit[1] ?? digit[2]) - 1;
+      const action = actionOf(i);
+      if (action === null) act(i); // this digit can only be tapped
+      else press.begin(action);
+      digitAct = () => act(i);
+      digitHolds = action !== null;
+      return;
+    }
     const does =
       event.code === "Space" ? stop
       : enter ? resume
@@ -52,7 +67,6 @@ export function keyboard({ drive, stop, resume, act, reward, undo, rewind, why, 
       : event.key.toLowerCase() === "u" ? undo
       : event.key.toLowerCase() === "r" ? rewind
       : event.key.toLowerCase() === "y" ? why
-      : digit ? () => act(Number(digit[1] ?? digit[2]) - 1)
       : null;
     if (!does) return;
     event.preventDefault();
@@ -62,9 +76,15 @@ export function keyboard({ drive, stop, resume, act, reward, undo, rewind, why, 
     // Space has stopped the robot; it must not press the focused button too.
     if (event.code === "Space" && event.target.matches?.("button")) event.preventDefault();
     if (down.delete(event.code)) steer();
+    if (event.code === digitDown) {
+      digitDown = null;
+      if (digitHolds && press.end()) digitAct();
+    }
   });
   const releaseAll = () => {
     down.clear();
+    digitDown = null;
+    press.cancel();
     drive.release();
   };
   addEventListener("blur", releaseAll);

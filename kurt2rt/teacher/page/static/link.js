@@ -16,6 +16,7 @@ export class Link extends EventTarget {
   #stateMs = -Infinity;
   #wasFresh = false;
   #number = 0;
+  #pressId = 0;
   #waiting = new Map();
   #stopPending = false;
   #stopSent = false;
@@ -75,6 +76,18 @@ export class Link extends EventTarget {
   why() {
     if (!this.fresh) return Promise.resolve({ accepted: false, text: text("whyWithoutPicture") });
     return this.#request({ kind: "why" });
+  }
+
+  // Number of a new press; presses of speeds and of actions count in one sequence.
+  nextPress() {
+    return ++this.#pressId;
+  }
+
+  // Sends a message of a held action; false without a fresh state.
+  hold(pressId, action) {
+    if (!this.fresh) return false;
+    this.#send({ kind: "hold", hold: pressId, action, picture: this.picture });
+    return true;
   }
 
   press(pressId, left, right) {

@@ -28,7 +28,7 @@ export class Drive extends EventTarget {
     const speed = (share) => Math.round((share / fastest) * this.most * 100) / 100;
     this.#speeds = [speed(y + TURN_SHARE * x), speed(y - TURN_SHARE * x)];
     if (!this.held) {
-      this.#pressId += 1;
+      this.#pressId = this.#link.nextPress();
       this.#timer = setInterval(() => this.#send(), PRESS_MS);
       this.#send();
     }
