@@ -12,8 +12,8 @@ from tests.core.test_tick import Corridor
 from tests.teacher.helpers import resume, teach
 
 LEASE = 24
-DELAY = 100
-"""Ticks by which a press of a teacher without answers is put back."""
+DELAY = 25
+"""Ticks by which the lessons of a hold are put back if the teacher has given no answers."""
 
 
 def hold(corridor: Corridor, action: str = "back", press: int = 7, *, teacher: str = "Ann", age: int = 0) -> HoldAction:
@@ -150,7 +150,7 @@ def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
 
 def test_first_lesson_is_about_the_decision_one_delay_before(driving: Corridor) -> None:
     for counts in (130, 135):
-        for _ in range(DELAY // 2):
+        for _ in range(DELAY):
             driving.run(counts)
     meant = condition(driving, driving.ticks + 1 - DELAY)
     driving.run(135, hold(driving))
@@ -211,11 +211,11 @@ def test_hold_before_the_first_lesson_teaches() -> None:
     assert actions(corridor) == {1: "back"}
 
 
-def test_hold_looks_back_at_most_two_seconds(driving: Corridor) -> None:
+def test_hold_of_a_slow_teacher_looks_back_half_a_second(driving: Corridor) -> None:
     teach_slowly(driving)
-    assert driving.school.delay.ticks("Ann", 1) == 200
+    assert driving.school.delay.hand_ticks("Ann", 1) == 50
     wrong = driving.run(118).tick
-    for _ in range(199):
+    for _ in range(49):
         driving.run(100)
     driving.run(100, hold(driving))
     assert condition(driving, wrong) in [rla.condition for rla in driving.system.rlas if rla.action == "back"]
@@ -228,7 +228,7 @@ def test_hold_skips_ticks_by_hand_and_at_standstill(driving: Corridor) -> None:
     for _ in range(30):
         driving.run(110)
     driving.run(110, resume())
-    held(driving, 40, 110)
+    held(driving, DELAY, 110)
     assert events(driving) == []
 
 

@@ -44,8 +44,8 @@ class _Press:
 class HoldLessons:
     """Builder of the lessons of a held action.
 
-    Each 0.1 s the situation that the teacher reacted to, before the present tick by the link's lag and the teacher's
-    delay, becomes a lesson with the held action, unless the robot would do that action there already.
+    Each 0.1 s the situation that the teacher reacted to, before the present tick by the link's lag and the delay of the
+    teacher's hand, becomes a lesson with the held action, unless the robot would do that action there already.
     """
 
     def __init__(self, lessons: LessonBuilder, system: RlaSystem, recent: DecisionHistory, delay: TeacherDelay) -> None:
@@ -89,7 +89,7 @@ class HoldLessons:
         if tick < press.due:
             return None
         press.due = tick + EVERY_TICKS
-        back_ticks = press.lag_ticks + self._delay.ticks(hold.teacher, speed)
+        back_ticks = press.lag_ticks + self._delay.hand_ticks(hold.teacher, speed)
         meant = min(max(tick - back_ticks, press.earliest), self._recent.newest)
         if not self._recent.contains(meant) or not self._recent.teachable(meant):
             return None

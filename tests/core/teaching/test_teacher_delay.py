@@ -77,3 +77,13 @@ def test_delay_is_counted_in_real_time_at_any_speed() -> None:
     delay = TeacherDelay()
     asked_and_answered(delay, *[240] * 4, speed=4)
     assert (delay.ticks("Ann", 1), delay.ticks("Ann", 4)) == (60, 240)
+
+
+@pytest.mark.parametrize(("took", "hand"), [(125, 31), (75, 18), (400, 50)])
+def test_hand_is_four_times_as_fast_as_an_answer(took: int, hand: int) -> None:
+    delay = TeacherDelay()
+    for asked in range(0, 4000, 1000):
+        delay.on_decision(asked, asks=True)
+        delay.on_answer("Ann", asked + took, 1)
+        delay.on_decision(asked + took, asks=False)
+    assert delay.hand_ticks("Ann", 1) == hand
