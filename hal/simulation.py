@@ -211,13 +211,13 @@ class SimulatedWorld(Protocol):
         ...
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Shift a wall or obstacle. Raises ValueError in a sentence for the teacher."""
+        """Shift a wall or obstacle. Raises WorldRefusedError."""
         ...
 
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Put the robot elsewhere. Raises ValueError in a sentence for the teacher."""
+        """Put the robot elsewhere. Raises WorldRefusedError."""
         ...
 
     def put_robot_back(self) -> None:
-        """Put the robot where the run began. Raises ValueError in a sentence for the teacher."""
+        """Put the robot where the run began. Raises WorldRefusedError."""
         ...

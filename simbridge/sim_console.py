@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import TextIO
 
 from hal.simulation import Pose
+from hal.world_refusal import WorldRefusedError
 from simbridge.simulated_world import Kurt2World
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_settings import WorldSettings
@@ -169,6 +170,6 @@ def _numbers(words: list[str], count: int) -> list[float] | None:
 def _done(do: Callable[[], None], said: str) -> str:
     try:
         do()
-    except ValueError as error:
+    except WorldRefusedError as error:
         return str(error)
     return said

@@ -4,6 +4,7 @@ import shapely
 
 from hal.robot_settings import GeometrySettings
 from hal.simulation import Pose, SimulatedPlace, SimulatedPost, Street, Wall, WorldPlan
+from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.geometry import rectangle
@@ -61,28 +62,25 @@ class Kurt2World:
         return plan_of(self._world, self._version)
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Shift a wall or obstacle; not onto the robot. Raises ValueError."""
-        try:
-            world = self._world.moved(name, dx_m, dy_m)
-        except KeyError as error:
-            raise ValueError(error.args[0]) from error
+        """Shift a wall or obstacle; not onto the robot. Raises WorldRefusedError."""
+        world = self._world.moved(name, dx_m, dy_m)
         if self._stands_on_robot(world, name):
-            raise ValueError(f"{name} would stand where the robot is")
+            raise WorldRefusedError(WorldRefusal.WALL_ON_ROBOT, name=name)
         self._world = world
         self._version += 1
         self._simulation.submit(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
 
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Put the robot down elsewhere, wheels still. Raises ValueError."""
+        """Put the robot down elsewhere, wheels still. Raises WorldRefusedError."""
         pose = Pose(x_m, y_m, heading_rad)
         if self._world.clearance_m(pose, self._geometry) == 0.0:
-            raise ValueError("there is no room for the robot there")
+            raise WorldRefusedError(WorldRefusal.NO_ROOM)
         self._simulation.submit(lambda: self._robot.place(pose))
 
     def put_robot_back(self) -> None:
-        """Put the robot down where the run began, wheels still. Raises ValueError."""
+        """Put the robot down where the run began, wheels still. Raises WorldRefusedError."""
         if self._world.clearance_m(self._start, self._geometry) == 0.0:
-            raise ValueError("a wall stands where the run began; move it")
+            raise WorldRefusedError(WorldRefusal.START_BLOCKED)
         self._simulation.submit(lambda: self._robot.place(self._start))
 
     def _stands_on_robot(self, world: WorldSettings, name: str) -> bool:

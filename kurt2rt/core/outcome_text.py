@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from enum import StrEnum
 from string import Formatter
 
+from hal.world_refusal import WorldRefusal
+from kurt2rt.core.decision.goal_text import goal_text
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.rla import BASIC, rla_title
@@ -58,7 +60,7 @@ _TEXTS: dict[Code, str] = {
     ResultCode.ACTION_RUNS: "{action} for {ticks} ticks",
     ResultCode.BEHAVIOUR_WANTED: "{wanted} is wanted",
     ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "{wanted} is wanted until the next junction is passed",
-    ResultCode.GOAL_SOUGHT: "{says}",
+    ResultCode.GOAL_SOUGHT: "{sought}",
     ResultCode.GOAL_DROPPED: "no goal is sought",
     ResultCode.LOCATED: "the robot is at {name}",
     ResultCode.SITUATION_NAMED: "situation named: {name}",
@@ -79,7 +81,8 @@ _TEXTS: dict[Code, str] = {
     ResultCode.COPIED: "{name}, {size} bytes",
     ResultCode.EXAM_BEGUN: "the exam has begun; the robot goes on meanwhile",
     ResultCode.SPEED_SET: "speed {times}",
-    ResultCode.NEXT_RUN: "{says}",
+    ResultCode.NEXT_RUN: "world {world}, task {task}: the robot stands until Go",
+    ResultCode.KNOWLEDGE_LOADED: "{lessons} lessons loaded: the robot stands until Go",
     ResultCode.WALL_MOVED: "{name} moved",
     ResultCode.ROBOT_PLACED: "the robot stands elsewhere",
     RefusalCode.ANOTHER_TEACHES: "{teacher} teaches now; ask to be handed over to, or {take}",
@@ -139,13 +142,23 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.DOES_NOT_FIT: "{says}",
     RefusalCode.NOT_SIMULATED: "this robot is not simulated",
     RefusalCode.OWN_TIME: "a simulated wire has a time of its own; start kurt2rt run without --wire",
-    RefusalCode.WORLD_REFUSES: "{says}",
+    RefusalCode.NO_WALL: WorldRefusal.NO_WALL.text,
+    RefusalCode.WALL_ON_ROBOT: WorldRefusal.WALL_ON_ROBOT.text,
+    RefusalCode.NO_ROOM: WorldRefusal.NO_ROOM.text,
+    RefusalCode.START_BLOCKED: WorldRefusal.START_BLOCKED.text,
     RefusalCode.EXAM_UNDER_WAY: "an exam is under way; wait for its end",
     RefusalCode.EXAM_FAILED: "{says}",
+    RefusalCode.EXAM_CRASHED: "the exam failed: {error}",
     RefusalCode.NEXT_RUN_UNDER_WAY: "the next run is being prepared; wait for it",
     RefusalCode.NEXT_RUN_FAILED: "{says}",
+    RefusalCode.NEXT_RUN_CRASHED: "the next run cannot begin: {error}",
+    RefusalCode.TAUGHT_BY_SCRIPT: "the scripted teacher teaches this run; start kurt2rt run without --auto",
+    RefusalCode.NO_WORLD: "world: {world!r} is not known; give one of {known}, rooms-N, streets-N",
+    RefusalCode.NO_TASK: "task: {task!r} is not known; give one of {known}",
     RefusalCode.COPY_FAILED: "{says}",
-    RefusalCode.NO_FILE: "{says}",
+    RefusalCode.COPY_CRASHED: "the copy failed: {error}",
+    RefusalCode.NO_FILE: "{name}: is no copy of this run of the program; save or export again",
+    RefusalCode.FILE_UNREADABLE: "{says}",
     RefusalCode.UPLOAD_UNKNOWN: "this upload was not begun here, or another one has taken its place; begin again at 0",
     RefusalCode.UPLOAD_GAP: "a part is missing: got the part at {offset}, the next byte is {size}",
     RefusalCode.UPLOAD_TOO_LARGE: "the file is too large (at most {most_bytes} bytes); give it to kurt2rt run",
@@ -176,14 +189,15 @@ _EVENT_TEXTS = {
 }
 
 _ONLY_BEHAVIOUR = "the only behaviour"
-_MADE_OF = {"title": "rla", "wanted": "behaviour"}
-"""Name in a text -> field that it is made of."""
+_MADE_OF = {"title": ("rla",), "wanted": ("behaviour",), "sought": ("goal", "status")}
+"""Name in a text -> fields that it is made of."""
 
 
 def fields_of(code: Code) -> frozenset[str]:
     """Return the names of the fields in the text of a code."""
     shown = {name for _, name, _, _ in Formatter().parse(_TEXTS[code]) if name}
-    return frozenset(_MADE_OF.get(name, name) for name in shown - _WORDS[Surface.LOG].keys())
+    named = shown - _WORDS[Surface.LOG].keys()
+    return frozenset(each for name in named for each in _MADE_OF.get(name, (name,)))
 
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
@@ -209,6 +223,8 @@ def _put_back_text(fields: Mapping[str, Field]) -> str:
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
     shown = {key: _plain(key, each) for key, each in fields.items()}
     shown["wanted"] = shown.get("behaviour") or _ONLY_BEHAVIOUR
+    if "goal" in fields:
+        shown["sought"] = goal_text(str(fields.get("status")), str(fields["goal"]))
     rla = fields.get("rla")
     if isinstance(rla, int):
         shown["title"] = rla_title(rla, str(fields.get("behaviour", "")), str(fields.get("level", BASIC)))

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import anyio.to_thread
 
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, shipped_names
+from hal.settings import shipped_names
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
@@ -19,6 +19,7 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import Phase
@@ -36,7 +37,6 @@ from kurt2rt.runtime import empty_system
 
 _GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
-_BY_SCRIPT = "the scripted teacher teaches this run; start kurt2rt run without --auto"
 _ZIP = b"PK"
 
 
@@ -103,20 +103,17 @@ class SimulatedRuns:
             self._view = await anyio.to_thread.run_sync(self._list_choices)
         return self._view
 
-    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
-        """Check and keep the next run; return what to tell the teacher. Raises ValueError in one line."""
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> Outcome:
+        """Check and keep the next run; return its world and task. Raises CommandRefusedError."""
         if self._taught_by_script:
-            raise ValueError(_BY_SCRIPT)
+            raise CommandRefusedError(RefusalCode.TAUGHT_BY_SCRIPT)
         view = await self.view()
         if world is not None and world not in (*view.worlds, view.world) and not _GENERATED.fullmatch(world):
-            raise ValueError(f"world: {world!r} is not known; give one of {', '.join(view.worlds)}, rooms-N, streets-N")
+            raise CommandRefusedError(RefusalCode.NO_WORLD, world=world, known=view.worlds)
         if task is not None and task not in (view.task, *(each.name for each in view.tasks)):
-            raise ValueError(f"task: {task!r} is not known; give one of {', '.join(each.name for each in view.tasks)}")
-        try:
-            self.next = await anyio.to_thread.run_sync(self._prepare, world, task, fresh, teacher)
-        except (SettingsError, KnowledgeError) as error:
-            raise ValueError(str(error)) from error
-        return f"world {self.next.world}, task {self.next.task_name}: the robot stands until Go"
+            raise CommandRefusedError(RefusalCode.NO_TASK, task=task, known=tuple(each.name for each in view.tasks))
+        self.next = await anyio.to_thread.run_sync(self._prepare, world, task, fresh, teacher)
+        return Outcome.of(ResultCode.NEXT_RUN, world=self.next.world, task=self.next.task_name)
 
     def advance(self) -> str:
         """Make the next run the present one, before it begins; return what to log of its knowledge file, or "".
@@ -135,15 +132,19 @@ class SimulatedRuns:
             loaded.rename(knowledge)
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"
 
-    async def load(self, content: bytes, teacher: TeacherNow) -> str:
-        """Check and keep the knowledge that the next run begins with. Raises ValueError in one line."""
+    async def load(self, content: bytes, teacher: TeacherNow) -> Outcome:
+        """Check and keep the knowledge that the next run begins with; return its number of lessons.
+
+        Raises CommandRefusedError, KnowledgeError, SettingsError.
+        """
         if self._taught_by_script:
-            raise ValueError(_BY_SCRIPT)
+            raise CommandRefusedError(RefusalCode.TAUGHT_BY_SCRIPT)
         try:
             self.next, lessons = await anyio.to_thread.run_sync(self._load, content, teacher)
-        except (KnowledgeError, SettingsError, OSError) as error:
-            raise ValueError(str(error)) from error
-        return f"{lessons} lessons loaded: the robot stands until Go"
+        except OSError as error:
+            folder = self.present.knowledge.parent
+            raise KnowledgeError(KnowledgeCode.FOLDER_NOT_WRITABLE, where=folder, error=error.strerror) from error
+        return Outcome.of(ResultCode.KNOWLEDGE_LOADED, lessons=lessons)
 
     def _load(self, content: bytes, teacher: TeacherNow) -> tuple[SimulatedRun, int]:
         present = self.present

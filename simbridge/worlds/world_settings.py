@@ -11,6 +11,7 @@ from pydantic import Field, field_validator, model_validator
 from hal.robot_settings import GeometrySettings
 from hal.settings import Settings
 from hal.simulation import Pose
+from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.worlds.geometry import Point, polygons_of, rectangle
 from simbridge.worlds.obstacle_settings import (
     Coordinate,
@@ -136,11 +137,9 @@ class WorldSettings(Settings):
         return sorted({(round(at.x, 6), round(at.y, 6)) for at in places if isinstance(at, shapely.Point) and at})
 
     def moved(self, name: str, dx_m: float, dy_m: float) -> Self:
-        """Return a copy with one named wall or obstacle moved. Raises KeyError that lists the names."""
+        """Return a copy with one named wall or obstacle moved. Raises WorldRefusedError that lists the names."""
         if name not in self.names:
-            raise KeyError(
-                f"world {self.name}: nothing is named {name!r}; there are: {', '.join(self.names) or 'none'}"
-            )
+            raise WorldRefusedError(WorldRefusal.NO_WALL, world=self.name, name=name, known=tuple(self.names))
         return self.model_copy(
             update={
                 kind: tuple(part.moved(dx_m, dy_m) if part.name == name else part for part in getattr(self, kind))

@@ -27,7 +27,7 @@ from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStat
 from kurt2rt.channel.server.reply import Reply
 from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, Sender
 from kurt2rt.channel.server.resources import Keys
-from kurt2rt.core.outcome import Outcome, outcome_in
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, outcome_in
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
@@ -116,15 +116,17 @@ class Runs:
     async def view(self) -> SimulationView:
         return SimulationView("a", "wall_following", ("a", "b"), (TaskName("eight", "Teach it to drive an eight"),))
 
-    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> Outcome:
         if world == "nowhere":
-            raise ValueError("world: 'nowhere' is not known")
+            raise CommandRefusedError(RefusalCode.NO_WORLD, world=world, known=("a", "b"))
+        if world == "broken":
+            raise RuntimeError("no such thing")
         self.prepared.append((world, task, fresh, teacher))
-        return "the robot stands until Go"
+        return Outcome.of(ResultCode.NEXT_RUN, world=world or "a", task=task or "wall_following")
 
-    async def load(self, content: bytes, teacher: TeacherNow) -> str:
+    async def load(self, content: bytes, teacher: TeacherNow) -> Outcome:
         self.prepared.append((content, teacher))
-        return "loaded"
+        return Outcome.of(ResultCode.KNOWLEDGE_LOADED, lessons=1)
 
 
 class ChannelFixture:

@@ -13,6 +13,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
+from kurt2rt.core.decision.errors import UnknownActionError
+from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import BeginSession, SetPhase, Take
@@ -20,12 +22,15 @@ from kurt2rt.knowledge.exchange.package import export_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.teacher import TeacherClient
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.channel.channel_fixture import ChannelFixture
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
+from tests.knowledge.refusals import refused
 
 ROBOT, TASK = load_robot(), load_task("wall_following")
 TEACHER = TeacherNow("phone", 2, "noon")
@@ -42,8 +47,8 @@ def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
 
 async def test_next_run_of_another_task_has_its_own_world_and_file(tmp_path: Path) -> None:
     runs = runs_in(tmp_path)
-    text = await runs.prepare(None, "eight", False, TEACHER)
-    assert text == "world two_objects, task eight: the robot stands until Go"
+    outcome = await runs.prepare(None, "eight", False, TEACHER)
+    assert outcome == Outcome.of(ResultCode.NEXT_RUN, world="two_objects", task="eight")
     assert runs.present.task_name == "wall_following"
     assert runs.advance() == ""
     assert (runs.present.world, runs.present.knowledge) == ("two_objects", tmp_path / "eight.knowledge")
@@ -73,26 +78,31 @@ async def test_next_run_in_phase_5_with_a_session_stands_until_go(tmp_path: Path
 
 
 @pytest.mark.parametrize(
-    ("world", "task", "why"),
+    ("world", "task", "code"),
     [
-        ("/etc/passwd", None, "world: '/etc/passwd' is not known; give one of a, b, c"),
-        ("rooms-1e3", None, "rooms-N, streets-N"),
-        (None, "../eight", "task: '../eight' is not known; give one of circle"),
+        ("/etc/passwd", None, RefusalCode.NO_WORLD),
+        ("rooms-1e3", None, RefusalCode.NO_WORLD),
+        (None, "../eight", RefusalCode.NO_TASK),
     ],
 )
 async def test_next_run_with_unknown_world_or_task_is_refused(
-    tmp_path: Path, world: str | None, task: str | None, why: str
+    tmp_path: Path, world: str | None, task: str | None, code: RefusalCode
 ) -> None:
     runs = runs_in(tmp_path)
-    with pytest.raises(ValueError, match=why):
+    with pytest.raises(CommandRefusedError) as caught:
         await runs.prepare(world, task, False, TEACHER)
+    view = await runs.view()
+    given: dict[str, Field] = {"world": world, "known": view.worlds}
+    if code is RefusalCode.NO_TASK:
+        given = {"task": task, "known": tuple(each.name for each in view.tasks)}
+    assert caught.value.outcome == Outcome(code, given)
     assert runs.next is None
 
 
 async def test_next_run_with_knowledge_of_another_task_is_refused(tmp_path: Path) -> None:
     open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("fleeing")).close()
     runs = runs_in(tmp_path)
-    with pytest.raises(ValueError, match="taught for the task 'fleeing'"):
+    with refused(KnowledgeCode.OTHER_TASK, taught="fleeing", wanted="eight"):
         await runs.prepare(None, "eight", False, TEACHER)
     assert runs.next is None
 
@@ -102,14 +112,17 @@ async def test_next_run_with_a_file_that_has_a_writer_is_refused(tmp_path: Path,
     runs = runs_in(tmp_path)
     with (
         open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("eight")),
-        pytest.raises(ValueError, match="another kurt2rt is writing it"),
+        refused(KnowledgeCode.ANOTHER_WRITER),
     ):
         await runs.prepare(None, "eight", fresh, TEACHER)
 
 
 async def test_next_run_under_a_scripted_teacher_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="start kurt2rt run without --auto"):
-        await runs_in(tmp_path, taught_by_script=True).prepare("b", None, False, TEACHER)
+    runs = runs_in(tmp_path, taught_by_script=True)
+    for begun in (runs.prepare("b", None, False, TEACHER), runs.load(b"", TEACHER)):
+        with pytest.raises(CommandRefusedError) as caught:
+            await begun
+        assert caught.value.outcome == Outcome(RefusalCode.TAUGHT_BY_SCRIPT)
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +143,7 @@ async def test_loaded_knowledge_replaces_the_file_and_keeps_a_copy(tmp_path: Pat
     if form == "archive":
         export_knowledge(taught, tmp_path / "out.zip", ROBOT, TASK, None, stamp="2026-11-22T10:00:00.000+00:00")
     content = (tmp_path / "out.zip" if form == "archive" else taught).read_bytes()
-    assert await runs.load(content, TEACHER) == "1 lessons loaded: the robot stands until Go"
+    assert await runs.load(content, TEACHER) == Outcome.of(ResultCode.KNOWLEDGE_LOADED, lessons=1)
     assert runs.advance() == f"the knowledge up to now is kept as {tmp_path / 'walls.knowledge.1'}"
     with Journal.read_only(tmp_path / "walls.knowledge") as loaded:
         assert len(list(loaded.entries())) == 1
@@ -151,10 +164,10 @@ async def test_upload_that_is_no_knowledge_is_refused_in_one_line(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     runs = runs_in(Path())
-    with pytest.raises(ValueError, match=f"^{why}") as refused:
+    with pytest.raises(KnowledgeError, match=f"^{why}") as caught:
         await runs.load(content, TEACHER)
-    assert "\n" not in str(refused.value)
-    assert str(tmp_path) not in str(refused.value)
+    assert "\n" not in str(caught.value)
+    assert str(tmp_path) not in str(caught.value)
     assert runs.next is None
     assert names_in(tmp_path) == []
 
@@ -162,7 +175,7 @@ async def test_upload_that_is_no_knowledge_is_refused_in_one_line(
 async def test_upload_of_another_tasks_knowledge_is_refused(tmp_path: Path) -> None:
     other = tmp_path / "eight.knowledge"
     open_knowledge(other, ROBOT, load_task("eight")).close()
-    with pytest.raises(ValueError, match="the uploaded file: taught for the task 'eight'"):
+    with pytest.raises(KnowledgeError, match="the uploaded file: taught for the task 'eight'"):
         await runs_in(tmp_path).load(other.read_bytes(), TEACHER)
 
 
@@ -177,7 +190,7 @@ def unable(path: Path) -> Path:
 async def test_upload_with_an_unknown_action_is_refused(tmp_path: Path) -> None:
     content = unable(tmp_path / "given.knowledge").read_bytes()
     runs = runs_in(tmp_path)
-    with pytest.raises(ValueError, match="RLA 1 has the action fly, which the repertoire lacks"):
+    with pytest.raises(KnowledgeError, match="RLA 1 has the action fly, which the repertoire lacks"):
         await runs.load(content, TEACHER)
     assert runs.next is None
     assert not [name for name in names_in(tmp_path) if name.startswith(".")]
@@ -188,7 +201,7 @@ async def test_next_run_with_an_unknown_action_is_refused(tmp_path: Path) -> Non
     await runs.prepare(None, "eight", False, TEACHER)
     runs.advance()
     unable(tmp_path / "walls.knowledge")
-    with pytest.raises(ValueError, match="RLA 1 has the action fly, which the repertoire lacks"):
+    with pytest.raises(UnknownActionError, match="RLA 1 has the action fly, which the repertoire lacks"):
         await runs.prepare(None, "wall_following", False, TEACHER)
     assert runs.next is None
 
@@ -197,10 +210,10 @@ async def test_present_file_under_another_tasks_name_is_set_aside(tmp_path: Path
     first = SimulatedRun("a", TASK, "wall_following", tmp_path / "eight.knowledge")
     runs = SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=False)
     with open_knowledge(first.knowledge, ROBOT, TASK):
-        with pytest.raises(ValueError, match="taught for the task 'wall_following'"):
+        with refused(KnowledgeCode.OTHER_TASK, taught="wall_following", wanted="eight"):
             await runs.prepare(None, "eight", False, TEACHER)
         assert runs.next is None
-        assert "task eight" in await runs.prepare(None, "eight", True, TEACHER)  # set aside, then
+        assert (await runs.prepare(None, "eight", True, TEACHER)).fields["task"] == "eight"  # set aside, then
     runs.advance()
     assert (tmp_path / "eight.knowledge.1").exists()
 

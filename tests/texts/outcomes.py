@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import Surface, event_error_text, fields_of, text_of
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
@@ -15,7 +16,9 @@ SAMPLES: dict[str, Field] = {
     "command_id": "t/1",
     "delete": 4,
     "earlier": "ann-1",
+    "error": "OSError(5)",
     "features": ("smell",),
+    "goal": "door",
     "known": ("back", "forward"),
     "later": "ann-3",
     "lesson": "ann-2",
@@ -36,10 +39,13 @@ SAMPLES: dict[str, Field] = {
     "size": 4096,
     "teacher": "Ann",
     "teachers": ("Ann", "Ben"),
+    "status": "planning",
+    "task": "eight",
     "tick": 1200,
     "ticks": 50,
     "times": 4,
     "was": "back",
+    "world": "a",
 }
 """One value for every field that a text shows."""
 
@@ -76,6 +82,9 @@ def _each(surface: Surface) -> Iterator[tuple[str, str]]:
         yield f"{late.code}, put back to {'no RLA' if rla is None else 'an RLA'}", text
     wanted = Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="")
     yield f"{wanted.code}, without a name", text_of(wanted, surface)
+    for status in (*(each.value for each in GoalStatus if each is not GoalStatus.NONE), "of a newer robot"):
+        sought = Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status=status)
+        yield f"{sought.code}, {status}", text_of(sought, surface)
     unnamed = Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
     yield f"{unnamed.code}, none known", text_of(unnamed, surface)
 

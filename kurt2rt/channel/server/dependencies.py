@@ -10,6 +10,7 @@ from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.requests import BOOT_BYTES
 from kurt2rt.channel.protocol.simulation import SimulationView
+from kurt2rt.core.outcome import Outcome
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import Speed
@@ -84,10 +85,10 @@ class RunControl(Protocol):
         """Return the simulated world and task, and those to choose from."""
         ...
 
-    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
-        """Check the next run and keep it until the present one ends; return the line for the teacher.
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> Outcome:
+        """Check the next run and keep it until the present one ends; return the outcome for the teacher.
 
-        Raises ValueError in one line.
+        Raises CommandRefusedError, UserError.
 
         Args:
             world: World by name. None: the present one.
@@ -97,10 +98,10 @@ class RunControl(Protocol):
         """
         ...
 
-    async def load(self, content: bytes, teacher: TeacherNow) -> str:
-        """Check knowledge for the next run and keep it until the present one ends; return the line for the teacher.
+    async def load(self, content: bytes, teacher: TeacherNow) -> Outcome:
+        """Check knowledge for the next run and keep it until the present one ends; return the outcome for the teacher.
 
-        Raises ValueError in one line.
+        Raises CommandRefusedError, UserError.
 
         Args:
             content: Archive of an export, or a knowledge file; the present knowledge is archived then.

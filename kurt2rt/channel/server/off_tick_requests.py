@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from hal.world_refusal import WorldRefusedError
 from kurt2rt.channel.protocol.exam_status import EXAM
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
@@ -28,12 +29,14 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
 from kurt2rt.channel.server.dependencies import ChannelDependencies, TeacherNow
+from kurt2rt.channel.server.failure import WORLD_REFUSALS, failure, known_failure
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, not_simulated, refusal, restarted, unsaved
 from kurt2rt.channel.server.upload import Upload
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.system_events import SpeedChanged
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
 
@@ -135,7 +138,7 @@ class OffTickRequests:
         try:
             await self._parts.copies.examine()
         except Exception as error:  # noqa: BLE001 - any failure goes to the teacher, and the robot goes on
-            failed = _failure(RefusalCode.EXAM_FAILED, "the exam failed", error)
+            failed = failure(RefusalCode.EXAM_FAILED, RefusalCode.EXAM_CRASHED, error)
             self._pending.settle(command_id, self._refused(failed))
         else:
             self._pending.settle(command_id, done(self._tick(), Outcome(ResultCode.EXAM_BEGUN)))
@@ -190,18 +193,16 @@ class OffTickRequests:
         self._begin(command_id, self._change_run(command_id, prepare))
         return None
 
-    async def _change_run(self, command_id: str, prepare: Callable[[], Awaitable[str]]) -> None:
+    async def _change_run(self, command_id: str, prepare: Callable[[], Awaitable[Outcome]]) -> None:
         try:
             await self._parts.copies.settle()  # lessons that wait for a failing disk would end with their run
-            line = await prepare()
+            outcome = await prepare()
         except Exception as error:  # noqa: BLE001 - any failure goes to the teacher, and the robot goes on
-            failed = _failure(
-                RefusalCode.NEXT_RUN_FAILED, "the next run cannot begin", error, (ValueError, KnowledgeError)
-            )
+            failed = failure(RefusalCode.NEXT_RUN_FAILED, RefusalCode.NEXT_RUN_CRASHED, error)
             self._pending.settle(command_id, self._refused(failed))
             self._changing_run = False
             return
-        self._pending.settle(command_id, done(self._tick(), Outcome.of(ResultCode.NEXT_RUN, says=line)))
+        self._pending.settle(command_id, done(self._tick(), outcome))
         # The answer, and the copies of it that a bad link needs, go out before the channel of this run closes.
         await asyncio.sleep(LAST_ANSWER_S)
         self._runtime.scheduler.end()
@@ -236,14 +237,16 @@ class OffTickRequests:
         try:
             part = await self._parts.copies.read(name, offset, PART_BYTES)
         except KnowledgeError as error:
-            return self._refused(Outcome.of(RefusalCode.NO_FILE, says=str(error)))
+            if error.code is KnowledgeCode.UNKNOWN_COPY:
+                return self._refused(Outcome.of(RefusalCode.NO_FILE, name=name))
+            return self._refused(known_failure(RefusalCode.FILE_UNREADABLE, error))
         return Reply(ReplyStatus.DONE, {"size": part.size_bytes, "part": part.content})
 
     async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
         try:
             copy = await copying
         except Exception as error:  # noqa: BLE001 - any failure goes to the teacher, and the robot goes on
-            failed = _failure(RefusalCode.COPY_FAILED, "the copy failed", error)
+            failed = failure(RefusalCode.COPY_FAILED, RefusalCode.COPY_CRASHED, error)
             self._pending.settle(command_id, unsaved(failed, self._tick()))
         else:
             copied = Outcome.of(ResultCode.COPIED, name=copy.name, size=copy.size_bytes)
@@ -270,8 +273,8 @@ class OffTickRequests:
             else:
                 world.put_robot(request.x_m, request.y_m, request.heading_rad)
             self._runtime.reposition()
-        except ValueError as error:
-            return self._refused(Outcome.of(RefusalCode.WORLD_REFUSES, says=str(error)))
+        except WorldRefusedError as error:
+            return self._refused(Outcome(WORLD_REFUSALS[error.code], error.fields))
         return done(self._tick(), Outcome(ResultCode.ROBOT_PLACED))
 
     def _world(self) -> Reply:
@@ -287,11 +290,3 @@ class OffTickRequests:
             "round": [list(post) for post in view.posts],
         }
         return Reply(ReplyStatus.DONE, body)
-
-
-def _failure(
-    code: RefusalCode, what: str, error: Exception, worded: tuple[type[Exception], ...] = (KnowledgeError,)
-) -> Outcome:
-    """Return the outcome of work that failed: an error of the `worded` types in its own words, any other as repr."""
-    text = str(error) if isinstance(error, worded) else f"{what}: {error!r}"
-    return Outcome.of(code, says=" ".join(text.split()))

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from kurt2rt.core.decision.goal import Goal
+from kurt2rt.core.decision.goal_text import goal_text
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import GroupAt, Target, Vector
@@ -73,21 +74,12 @@ class GoalPursuit:
         """Status in a few words; empty without a goal."""
         if self.goal is None:
             return ""
-        match self.status:
-            case GoalStatus.ARRIVED:
-                return f"arrived: {self.goal.text}"
-            case GoalStatus.PLANNING:
-                return f"planning the way to {self.goal.text}"
-            case GoalStatus.NO_WAY if self._lost_meaning:
-                return f"{self.goal.text} cannot be gone to any more: {self._lost_meaning}"
-            case GoalStatus.NO_WAY:
-                return f"no way from here to {self.goal.text}: nothing taught leads there"
-            case GoalStatus.LOST:
-                return f"lost on the way to {self.goal.text}: this place is not known; answer here, or set it down"
+        if self.status is GoalStatus.NO_WAY and self._lost_meaning:
+            return f"{self.goal.text} cannot be gone to any more: {self._lost_meaning}"
         left = 0 if self.plan is None else len(self.plan.edges)
         edge = None if self.plan is None else self.plan.next
-        if edge is None:
-            return f"on the way to {self.goal.text}: the plan begins behind the next junction"
+        if edge is None or self.status is not GoalStatus.UNDER_WAY:
+            return goal_text(self.status, self.goal.text)
         ways = "1 way" if left == 1 else f"{left} ways"
         return f"on the way to {self.goal.text}: {ways} left, now {edge.action} (RLA {edge.rla_id})"
 

@@ -85,13 +85,12 @@ class Navigator:
         """Named situations of the mid level."""
         return self._system.named_situations(MID)
 
-    def seek(self, goal: Goal) -> str:
-        """Set the goal and return its status in words. Raises CommandRefusedError for an unknown goal."""
+    def seek(self, goal: Goal) -> GoalStatus:
+        """Set the goal and return its status. Raises CommandRefusedError for an unknown goal."""
         target = self._target_of(goal)
         self._changes, self._rlas = self._system.changes, self._system.rlas_at(MID)
         self._begin(goal, target)
-        assert self.status is not None
-        return self.status.says
+        return self.goal_status
 
     def stop(self) -> None:
         """Drop the goal; the nearest mid-level RLA commands again from the next junction on."""

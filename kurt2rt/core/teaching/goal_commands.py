@@ -47,9 +47,9 @@ class GoalCommands:
             return Outcome(ResultCode.GOAL_DROPPED)
         if tick == self._planned_tick:  # a plan takes a good part of a tick
             raise CommandRefusedError(RefusalCode.GOAL_IN_SAME_TICK)
-        says = self._navigator.seek(command.goal)
+        status = self._navigator.seek(command.goal)
         self._planned_tick = tick
-        return Outcome.of(ResultCode.GOAL_SOUGHT, says=says)
+        return Outcome.of(ResultCode.GOAL_SOUGHT, goal=command.goal.text, status=status.value)
 
     def _locate(self, name: str, seen_tick: int) -> Outcome:
         if seen_tick < self._lessons.passed_at_tick:

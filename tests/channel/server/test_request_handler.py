@@ -65,6 +65,9 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.commands import Stop, Watch
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.platform.file_part import FilePart
 from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL
@@ -546,7 +549,25 @@ async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Chann
     parts = [await desk.ask(FileRequest("lessons.zip", offset)) for offset in (0, PART_BYTES, 2 * PART_BYTES)]
     assert b"".join(each.body["part"] for each in parts) == content
     assert [each.body["size"] for each in parts] == [len(content)] * 3
-    assert why(await desk.ask(FileRequest("../robot.key", 0))) == "refused"
+    unknown = await desk.ask(FileRequest("../robot.key", 0))
+    assert (why(unknown), outcome_of(unknown)) == ("refused", Outcome.of(RefusalCode.NO_FILE, name="../robot.key"))
+
+
+def not_durable(code: RefusalCode, line: str) -> Outcome:
+    """Return the outcome of work that a disk, whose line is shown, kept from being durable."""
+    return Outcome.of(code, cause="not durable", where="", says=line)
+
+
+async def test_file_of_a_failing_disk_tells_its_cause(desk: ChannelFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+    async def fail(*_: object) -> FilePart:
+        raise KnowledgeError(KnowledgeCode.COPY_UNREADABLE, where="saved/a", error="no such file")
+
+    monkeypatch.setattr(desk.shelf, "read", fail)
+    reply = await desk.ask(FileRequest("a", 0))
+    outcome = outcome_of(reply)
+    assert outcome is not None
+    assert (outcome.code, outcome.fields["cause"]) == (RefusalCode.FILE_UNREADABLE, "copy unreadable")
+    assert (outcome.fields["where"], outcome.fields["says"]) == ("saved/a", reply.body["text"])
 
 
 @pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])
@@ -554,6 +575,7 @@ async def test_save_on_failing_disk_is_unsaved_with_reason(desk: ChannelFixture,
     desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
     reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
     assert (reply.status, reply.body["text"]) == (ReplyStatus.UNSAVED, desk.shelf.problem)
+    assert outcome_of(reply) == not_durable(RefusalCode.COPY_FAILED, desk.shelf.problem)
 
 
 async def test_save_slow_copy_goes_on_and_answers_repetition() -> None:
@@ -579,6 +601,9 @@ async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
     first = await desk.ask(request, "bob")
     assert (first.status, await desk.ask(request, "bob")) == (ReplyStatus.DONE, first)
     assert desk.shelf.examined == 1
+    desk.shelf.problem = "the disk is full"
+    failed = await desk.ask(desk.command(ExamRequest), "bob")
+    assert outcome_of(failed) == not_durable(RefusalCode.EXAM_FAILED, "the disk is full")
     desk.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
     assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
     told = (await desk.ask(ExamStatusRequest())).body["exam"]
@@ -603,11 +628,15 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
     await desk.ask(desk.command(TakeRequest))
     await desk.ask(desk.command(SessionRequest, "noon"))
-    assert why(await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))) == "refused"
+    unknown = await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))
+    assert outcome_of(unknown) == Outcome.of(RefusalCode.NO_WORLD, world="nowhere", known=("a", "b"))
+    broken = await desk.ask(desk.command(NextRunRequest, "broken", None, False))
+    assert outcome_of(broken) == Outcome.of(RefusalCode.NEXT_RUN_CRASHED, error="RuntimeError('no such thing')")
     assert not ended
     request = desk.command(NextRunRequest, "b", "eight", True)
     reply = await desk.ask(request)
     assert (reply.status, await desk.ask(request)) == (ReplyStatus.DONE, reply)
+    assert outcome_of(reply) == Outcome.of(ResultCode.NEXT_RUN, world="b", task="eight")
     assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
     assert ended == [True]
     assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
@@ -621,7 +650,8 @@ async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pyt
     await desk.ask(desk.command(TakeRequest))
     desk.shelf.problem = "var/a.knowledge: the disk is full"
     reply = await desk.ask(desk.command(NextRunRequest, "b", None, False))
-    assert (why(reply), reply.body["text"]) == ("refused", "var/a.knowledge: the disk is full")
+    assert (why(reply), reply.body["text"]) == ("refused", desk.shelf.problem)
+    assert outcome_of(reply) == not_durable(RefusalCode.NEXT_RUN_FAILED, desk.shelf.problem)
     assert not desk.simulation.prepared
 
 
@@ -779,14 +809,17 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
 
 
-async def test_move_wall_impossible_is_refused_with_reason() -> None:
-    desk = ChannelFixture(ground=Yard())
-    for request in (
-        desk.command(MoveWallRequest, "tree", 0.5, 0.0),
-        desk.command(PlaceRequest, 50.0, 0.0, 0.0),
+async def test_impossible_change_of_the_world_is_refused_with_code() -> None:
+    desk = ChannelFixture(ground=Yard(start_blocked=True))
+    no_wall = Outcome.of(RefusalCode.NO_WALL, world="yard", name="tree", known=("box", "post"))
+    for request, outcome in (
+        (desk.command(MoveWallRequest, "tree", 0.5, 0.0), no_wall),
+        (desk.command(MoveWallRequest, "post", 0.5, 0.0), Outcome.of(RefusalCode.WALL_ON_ROBOT, name="post")),
+        (desk.command(PlaceRequest, 50.0, 0.0, 0.0), Outcome(RefusalCode.NO_ROOM)),
+        (desk.command(BackToStartRequest), Outcome(RefusalCode.START_BLOCKED)),
     ):
         refused = await desk.ask(request)
-        assert (why(refused), refused.body["text"]) == ("refused", "that cannot be")
+        assert (why(refused), outcome_of(refused)) == ("refused", outcome)
 
 
 # The critic.

@@ -7,6 +7,7 @@ import pymunk
 import pytest
 
 from hal.simulation import Pose
+from hal.world_refusal import WorldRefusedError
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 from tests.simbridge.rig import ROBOT, STAND, Rig, board, box, facing_wall, half_turn, post, quiet_robot, room
@@ -131,7 +132,7 @@ def test_moved_post_and_box_are_seen() -> None:
         rig.robot.world.move_wall("box", 0.383, 0.0)
         rig.run(0.1, STAND)
         assert [rig.reading("s11"), rig.reading("s14")] == pytest.approx([189, 189], abs=1)
-        with pytest.raises(KeyError, match=r"'shelf'.*post, box"):
+        with pytest.raises(WorldRefusedError, match=r"'shelf'.*post, box"):
             rig.robot.world.move_wall("shelf", 0.1, 0.0)
 
 

@@ -38,7 +38,6 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.question import FeatureDifference
@@ -103,7 +102,7 @@ class RobotStub:
             return Reply(ReplyStatus.DONE, {"health": plain_of(ILL)})
         if isinstance(request, SituationsRequest):
             return Reply(ReplyStatus.DONE, {"situations": ["the door", "the window"]})
-        return done(7, Outcome.of(ResultCode.GOAL_SOUGHT, says=f"{request.path} is done"))
+        return done(7, text=f"{request.path} is done")
 
 
 @asynccontextmanager

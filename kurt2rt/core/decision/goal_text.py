@@ -1,0 +1,18 @@
+"""Texts of the status of a goal."""
+
+from collections.abc import Mapping
+
+from kurt2rt.core.decision.plan_step import GoalStatus
+
+_TEXTS: Mapping[str, str] = {
+    GoalStatus.ARRIVED: "arrived: {goal}",
+    GoalStatus.PLANNING: "planning the way to {goal}",
+    GoalStatus.NO_WAY: "no way from here to {goal}: nothing taught leads there",
+    GoalStatus.LOST: "lost on the way to {goal}: this place is not known; answer here, or set it down",
+    GoalStatus.UNDER_WAY: "on the way to {goal}: the plan begins behind the next junction",
+}
+
+
+def goal_text(status: str, goal: str) -> str:
+    """Return a goal without a plan and its status in a line; a status of a newer robot stands as it is."""
+    return _TEXTS.get(status, "{goal}: {status}").format(goal=goal, status=status)
