@@ -51,6 +51,15 @@ _TEXTS: Mapping[FaultCode, str] = {
     FaultCode.SENSOR_DEAD: "{sensor} answers on no channel: check its plug and its 5 V, then repeat this step",
     FaultCode.CHANNEL_UNHEARD: "A chosen sensor's channel is not heard: take the step sensors first",
     FaultCode.NO_CALIBRATION: "No law was fitted: {says}",
+    FaultCode.LAW_DISTANCES: "No law was fitted: {least} distances at least, from 0.15 m or less to 0.40 m or more, "
+    "are needed",
+    FaultCode.LAW_FLAT: "No law was fitted: {near_counts:.0f} counts at {near_m:.2f} m and {far_counts:.0f} "
+    "at {far_m:.2f} m: they hardly fall with distance, so the sensor does not see the board, "
+    "or the channel is another sensor's",
+    FaultCode.LAW_SCATTER: "No law was fitted: the readings scatter too much around any law: "
+    "was the board where it was asked for?",
+    FaultCode.LAW_IMPLAUSIBLE: "No law was fitted: {counts:.0f} counts at {distance_m:.2f} m, "
+    "plausible are {least_counts:.0f} to {most_counts:.0f}",
     FaultCode.ROOM_NOT_CLEAR: "With nothing in view the sensor says as much as before a board at {distance_m:.2f} m: "
     "clear a metre around the robot, then repeat this step",
     FaultCode.BUMPERS_SILENT: "BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected",

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hal.errors import UserError
+from kurt2rt.checks.commission.fault import FaultCode, Field, StepFault
+from kurt2rt.checks.commission.fault_text import fault_text
 
 LEAST_DISTANCES = 4
 _OFFSETS_M = np.linspace(0.005, 0.12, 231)
@@ -23,7 +25,12 @@ _LEAST_RATIO = 2.5
 
 
 class IrCalibrationError(UserError, ValueError):
-    """Readings that cannot be fitted."""
+    """Readings that cannot be fitted; `fault` tells the reason."""
+
+    def __init__(self, code: FaultCode, **fields: Field) -> None:
+        """Word the fault."""
+        self.fault = StepFault(code, fields)
+        super().__init__(fault_text(self.fault))
 
 
 class IrReading(NamedTuple):
@@ -110,23 +117,26 @@ def _sigma(counts: float) -> float:
 def _require_range(readings: Sequence[IrReading]) -> None:
     distances = [each.distance_m for each in readings]
     if len(set(distances)) < LEAST_DISTANCES or min(distances) > 0.15 or max(distances) < 0.4:
-        raise IrCalibrationError(
-            f"{LEAST_DISTANCES} distances at least, from 0.15 m or less to 0.40 m or more, are needed"
-        )
+        raise IrCalibrationError(FaultCode.LAW_DISTANCES, least=LEAST_DISTANCES)
     near, far = (
-        np.median([each.counts for each in readings if each.distance_m == end(distances)]) for end in (min, max)
+        float(np.median([each.counts for each in readings if each.distance_m == end(distances)])) for end in (min, max)
     )
     if near < _LEAST_RATIO * far:
         raise IrCalibrationError(
-            f"{near:.0f} counts at {min(distances):.2f} m and {far:.0f} at {max(distances):.2f} m: they hardly fall "
-            "with distance, so the sensor does not see the board, or the channel is another sensor's"
+            FaultCode.LAW_FLAT, near_counts=near, near_m=min(distances), far_counts=far, far_m=max(distances)
         )
 
 
 def _require_plausible(fit: IrFit) -> None:
     near, far = fit.law.counts_at(_NEAR_M), fit.law.counts_at(_FAR_M)
     if fit.scatter > _WORST_SCATTER:
-        raise IrCalibrationError("the readings scatter too much around any law: was the board where it was asked for?")
-    for where, counts, (least, most) in (("0.10", near, _NEAR_COUNTS), ("0.60", far, _FAR_COUNTS)):
+        raise IrCalibrationError(FaultCode.LAW_SCATTER)
+    for distance_m, counts, (least, most) in ((_NEAR_M, near, _NEAR_COUNTS), (_FAR_M, far, _FAR_COUNTS)):
         if not least <= counts <= most:
-            raise IrCalibrationError(f"{counts:.0f} counts at {where} m, plausible are {least:.0f} to {most:.0f}")
+            raise IrCalibrationError(
+                FaultCode.LAW_IMPLAUSIBLE,
+                counts=counts,
+                distance_m=distance_m,
+                least_counts=least,
+                most_counts=most,
+            )

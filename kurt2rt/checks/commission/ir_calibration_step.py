@@ -48,7 +48,7 @@ class IrCalibrationStep:
         try:
             fit = await _fit_with_second_looks(stand, readings, {each.name: each for each in chosen}, findings)
         except IrCalibrationError as error:
-            result.fail(FaultCode.NO_CALIBRATION, says=str(error))
+            result.faults.append(error.fault)
             result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
             return result
         law = fit.law

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hal.robot_settings import InfraredSettings, RobotSettings
 from kurt2rt.checks.commission.fault import FaultCode
+from kurt2rt.checks.commission.fault_text import fields_of
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
@@ -64,27 +65,38 @@ def test_one_reading_with_the_board_elsewhere_is_left_out(at: int) -> None:
 
 
 @pytest.mark.parametrize(
-    ("taken", "why"),
+    ("taken", "code", "fields"),
     [
         (
             [IrReading("s11", d, 70.0) for d in DISTANCES_M],
-            "70 counts at 0.10 m and 70 at 0.60 m: they hardly fall",
+            FaultCode.LAW_FLAT,
+            {"near_counts": 70.0, "near_m": 0.1, "far_counts": 70.0, "far_m": 0.6},
         ),
-        ([IrReading("s11", d, 400.0 - 100.0 * d) for d in DISTANCES_M], "they hardly fall with distance"),
-        (readings(USUAL)[::-1][:3], "4 distances at least"),
-        ([each for each in readings(USUAL) if each.distance_m >= 0.2], "4 distances at least, from 0.15 m or less"),
-        (readings(IrLaw(25.0, 0.04, 0.0)), "179 counts at 0.10 m, plausible are 250 to 1000"),
+        ([IrReading("s11", d, 400.0 - 100.0 * d) for d in DISTANCES_M], FaultCode.LAW_FLAT, {"near_counts": 390.0}),
+        (readings(USUAL)[::-1][:3], FaultCode.LAW_DISTANCES, {"least": 4}),
+        ([each for each in readings(USUAL) if each.distance_m >= 0.2], FaultCode.LAW_DISTANCES, {"least": 4}),
+        (
+            readings(IrLaw(25.0, 0.04, 0.0)),
+            FaultCode.LAW_IMPLAUSIBLE,
+            {"distance_m": 0.1, "least_counts": 250.0, "most_counts": 1000.0},
+        ),
         (
             [IrReading("s11", d, c) for d, c in zip(DISTANCES_M, (540, 100, 500, 90, 300, 60, 200), strict=True)],
-            "scatter too much around any law",
+            FaultCode.LAW_SCATTER,
+            {},
         ),
-        ([IrReading("s11", d, USUAL.counts_at(0.7 - d)) for d in DISTANCES_M], "they hardly fall with distance"),
+        ([IrReading("s11", d, USUAL.counts_at(0.7 - d)) for d in DISTANCES_M], FaultCode.LAW_FLAT, {"far_m": 0.6}),
     ],
     ids=["dead", "flat", "too few", "too far", "too weak", "scatter", "upside down"],
 )
-def test_fit_law_implausible_readings_are_refused(taken: list[IrReading], why: str) -> None:
-    with pytest.raises(IrCalibrationError, match=why):
+def test_fit_law_implausible_readings_are_refused(
+    taken: list[IrReading], code: FaultCode, fields: dict[str, float]
+) -> None:
+    with pytest.raises(IrCalibrationError) as caught:
         fit_law(taken)
+    fault = caught.value.fault
+    assert (fault.code, frozenset(fault.fields)) == (code, fields_of(code))
+    assert {name: fault.fields[name] for name in fields} == fields
 
 
 # The step
@@ -165,7 +177,7 @@ async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) 
         await session.run("infrared")
     assert session.outcome("infrared") is StepOutcome.FAILED
     assert session.progress.findings.law is None
-    assert session.faults("infrared")[0].code is FaultCode.NO_CALIBRATION
+    assert session.faults("infrared")[0].code is FaultCode.LAW_FLAT
 
 
 async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
