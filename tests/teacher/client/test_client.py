@@ -253,6 +253,7 @@ async def test_correct_earlier_counts_back_from_the_last_drive(client: TeacherCl
     robot.mind = introduces_itself
     robot.showing = False
     drove = robot.show(left_m_s=0.3, right_m_s=0.2)
+    await seen(client, lambda: client.state == drove)
     stands = robot.show(left_m_s=0.0, right_m_s=0.0)
     await seen(client, lambda: client.state == stands)
     await client.correct_earlier("spin_left", 0.02)
