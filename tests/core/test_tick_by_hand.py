@@ -23,11 +23,13 @@ from kurt2rt.core.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    HoldAction,
     Resume,
     Reward,
     RunBehaviour,
     SetPhase,
     Stop,
+    Stream,
     Take,
     Teach,
     Undo,
@@ -332,8 +334,14 @@ def drive(_: str, who: str, tick: int, number: int) -> Drive:
     return Drive(who, tick, number, 0.1 + number / 100, 0.1)
 
 
+def hold(_: str, who: str, tick: int, number: int) -> HoldAction:
+    """Hold an action."""
+    return HoldAction(who, tick, number, "back" if number % 2 else "forward")
+
+
 KINDS: list[Kind] = [
     *[drive] * 5,
+    *[hold] * 3,
     *[lambda name, who, _, __: Stop(name, who)] * 3,
     *[lambda name, who, _, __: Resume(name, who)] * 2,
     *[lambda _, who, tick, __: Watch(who, tick)] * 2,
@@ -390,7 +398,7 @@ class Witness:
     def note(self, command: Command, tick: int, *, carried_out: bool) -> None:
         """Record a command that arrived in this tick."""
         match command:
-            case Drive(teacher=who, seen_tick=seen):
+            case Drive(teacher=who, seen_tick=seen) | HoldAction(teacher=who, seen_tick=seen):
                 self.messages.append((who, tick, seen))
             case Stop(teacher=who):
                 self.stops.add(who)
@@ -402,7 +410,7 @@ class Witness:
             case HandOver(teacher=who, to=to) if carried_out:
                 self.stops.discard(who)
                 self.teachers.update(() if to is None else (to,))
-        if carried_out or isinstance(command, Drive):
+        if carried_out or isinstance(command, Drive | HoldAction):
             self.teachers.add(command.teacher)
 
     def check(self, record: TickRecord, corridor: Corridor) -> None:
@@ -421,6 +429,13 @@ class Witness:
             press = (hand, decision.wheel_speeds.left_m_s)
             assert press not in self.drove or self.hand == hand
             self.drove.add(press)
+        if moves and decision.cause is DecisionCause.TEACHER and school.authority.held_press is not None:
+            assert school.active_stop is None
+            assert not self.stops
+            assert any(
+                who == teacher and record.tick - arrived < LEASE and record.tick - seen < REACH
+                for who, arrived, seen in self.messages
+            )
         if moves:
             assert not alone
             assert self.stops <= {teacher}
@@ -453,7 +468,7 @@ def test_three_random_teachers_keep_rules_of_manual_drive(
         record = corridor.run(counts, *commands)
         results = iter(record.results)
         for command in commands:
-            result = None if isinstance(command, Drive | Watch) else next(results)
+            result = None if isinstance(command, Stream) else next(results)
             carried_out = result is not None and result.accepted and result.code is not ResultCode.REPEATED
             witness.note(command, record.tick, carried_out=carried_out)
         witness.check(record, corridor)
