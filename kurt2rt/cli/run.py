@@ -234,7 +234,8 @@ def _program(options: _Options) -> "RobotProgram":
     from kurt2rt.cli.scripted_file import require_agreement
     from kurt2rt.cli.terminal_screen import TerminalScreen
     from kurt2rt.core.task_settings import load_task
-    from kurt2rt.service.program import RobotProgram, RunOptions
+    from kurt2rt.service.program import RobotProgram
+    from kurt2rt.service.run_options import RunOptions
     from kurt2rt.service.settings import load_service
     from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
 

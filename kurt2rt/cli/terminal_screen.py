@@ -26,7 +26,7 @@ _LEVELS = {"red": "<3>", "yellow": "<5>"}
 
 
 class TerminalScreen:
-    """Screen of the robot program (kurt2rt.service.program.ProgramScreen)."""
+    """Screen of the robot program (kurt2rt.service.program_screen.ProgramScreen)."""
 
     def __init__(
         self, console: Console, devices: Path, *, as_service: bool = False, phones: bool = False, browser: bool = False

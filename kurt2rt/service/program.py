@@ -8,10 +8,9 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import anyio
 
@@ -32,7 +31,7 @@ from kurt2rt.runs.recording.can_log import CanLog, open_can_log
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.assembly import RunSettings
-from kurt2rt.service.bus_names import NO_WIRE, SHARED, SIMULATED
+from kurt2rt.service.bus_names import SHARED
 from kurt2rt.service.child_processes import ChildProcesses
 from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.console_thread import ConsoleThread
@@ -40,13 +39,15 @@ from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.status_socket import serve_waiting, status_socket_path
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.missing_dependency import DependencyName
-from kurt2rt.service.open_robot import OpenedRobot, RobotOpener, open_robot
+from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.process_context import ProcessContext
+from kurt2rt.service.program_screen import ProgramScreen
+from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, with_unit_priority
-from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
-from kurt2rt.service.startup import RETRY_S, Dependency, StartupGate, require_folder
+from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
+from kurt2rt.service.startup import Dependency, StartupGate, require_folder
 from kurt2rt.service.startup_text import missing_text
 from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
@@ -58,80 +59,6 @@ if TYPE_CHECKING:
 
 _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """Options of the command line that are not in the settings."""
-
-    bus: str = SIMULATED
-    settings: str = "default"
-    """Name or path of the runtime settings, for the child processes."""
-    as_service: bool = False
-    """True if a service manager started the program."""
-    attended: bool = True
-    """True if teachers come over the channel."""
-    stopped: bool = False
-    """True if the robot stands until its teacher says resume."""
-    behaviour: str = ""
-    """Behaviour at the start; empty: the first of the task."""
-    page: bool = False
-    phones: bool = False
-    """True if the page is open to the network while a device is paired."""
-    scripted_teacher: str | None = None
-    """Name or path of the scripted teacher to start; None: none."""
-    page_port: int | None = None
-    """TCP port of the page; None: as the settings say."""
-    can_log: Path | None = None
-    """New file for all frames; None: frames are not logged."""
-    record: bool = True
-    """True if the run is recorded to the folder that the settings name."""
-    live_view: tuple[str, int] | None = None
-    """Host and port of the live view; None: no live view."""
-    seconds: float | None = None
-    """Length of the program's run in s; None: until a signal ends it."""
-    seed: int = 1
-    wire: str = NO_WIRE
-
-
-@dataclass(frozen=True, slots=True)
-class ProgramEnvironment:
-    """Environment of the program, replaced by tests."""
-
-    open_robot: RobotOpener = open_robot
-    on_timeout: Callable[[ShutdownStage], None] | None = force_exit
-    """Gets the stage of a program that does not end in time, as in `ShutdownHandler`."""
-    retry_s: float = RETRY_S
-    """Time between two attempts to find what is missing, in s."""
-
-
-class ProgramScreen(Protocol):
-    """Output of the program. The printer's thread calls all methods while it runs; the loop reads only `links`."""
-
-    @property
-    def links(self) -> tuple[str, ...]:
-        """Links to the teacher's page, with their tokens."""
-        ...
-
-    def print_line(self, text: str, style: str | None = None) -> None:
-        """Print a line. `style`: red for an error, yellow for a warning, another colour of rich, or None."""
-        ...
-
-    def lesson_saved(self, text: str) -> None:
-        """Print the text of a lesson that is durable."""
-        ...
-
-    def show_status(self, status: ProgramStatus, health: Health, trouble: str) -> None:
-        """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
-        ...
-
-    def page_line(self, line: str) -> None:
-        """Take a line that the page's program printed."""
-        ...
-
-    def close(self) -> None:
-        """Remove what stays in place."""
-        ...
 
 
 class RobotProgram:

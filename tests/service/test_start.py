@@ -26,7 +26,8 @@ from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot
-from kurt2rt.service.program import ProgramEnvironment, RobotProgram, RunOptions
+from kurt2rt.service.program import RobotProgram
+from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher import TeacherClient
 from tests.service.rig import SETTINGS, Rig, end_service, rig
