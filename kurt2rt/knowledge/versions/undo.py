@@ -38,11 +38,13 @@ class UndoPlan:
 
 
 def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = None, *, teacher: str) -> UndoPlan:
-    """Plan the undo of one lesson, or of all lessons of a teacher that stand, newest first; only reads the file.
+    """Plan the undo of one lesson, of a hold, or of all lessons of a teacher that stand, newest first.
+
+    It only reads the file.
 
     Args:
         path: of the knowledge file.
-        lesson: command id of the lesson; None: the last that stands.
+        lesson: command id of the lesson, or id of a hold; None: the last lesson that stands.
         taught_by: the teacher of all lessons to undo; None: one lesson.
         teacher: who undoes.
 
@@ -53,6 +55,9 @@ def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = Non
     system = reading.system
     if taught_by is not None:
         command_ids = _lessons_to_undo(system, taught_by, path)
+    elif lesson is not None and system.lessons_of_hold(lesson):
+        _require_possible(system.why_not_undo_hold(lesson), path)
+        command_ids = [each for each in system.lessons_of_hold(lesson)[::-1] if not _record(system, each).undone]
     else:
         state = "stands; there is nothing to undo"
         command_ids = [_select(path, lesson, system.last_standing_lesson, system.why_not_undo, state)]

@@ -19,6 +19,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
@@ -293,3 +294,15 @@ def test_undo_all_without_lessons_is_refused(path: Path) -> None:
     Journal.open(path, BINDING).close()
     with refused(KnowledgeCode.NO_LESSON_BY, teacher="Ann"):
         undo_all_of(path, "Ann")
+
+
+def test_undo_of_a_hold_undoes_its_standing_lessons(path: Path) -> None:
+    begun(path, lessons=1)
+    append(path, created(2, "Ann-hold-7/10"), created(3, "Ann-hold-7/20"), created(4, "Ann-hold-7/30"))
+    undo(path, "Ann-hold-7/20")
+    planned = plan_undo(path, "Ann-hold-7", teacher="command line")
+    apply_plan(planned, STAMP)
+    assert [each.event.origin.command_id for each in planned.lessons] == ["Ann-hold-7/30", "Ann-hold-7/10"]
+    assert [rla.rla_id for rla in rlas(path)] == [1]
+    with pytest.raises(KnowledgeError, match="Ann-hold-7"):
+        plan_undo(path, "Ann-hold-7", teacher="command line")

@@ -20,6 +20,7 @@ from kurt2rt.channel.protocol.requests import (
     CorrectRequest,
     HealthRequest,
     HelloRequest,
+    HoldRequest,
     LessonsRequest,
     NameRequest,
     PhaseRequest,
@@ -232,6 +233,25 @@ async def test_rewind_corrects_a_moment_before_the_standstill(pairing: Pairing, 
         console.type("rewind 0.05 spin_left")
         (correction,) = await robot.hears(CorrectRequest)
         assert (correction.action, correction.decision_tick) == ("spin_left", drove - 5)
+
+
+async def test_hold_sends_the_action_for_its_time(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        console.type("hold spin_left 0.2")
+        stop = (await robot.hears(StopRequest))[-1]
+        holds = robot.all_of(HoldRequest)
+        assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
+        assert len(holds) > 1
+
+
+async def test_action_of_a_driving_robot_is_a_late_correction(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        tick = await looked_at(console, robot, cause="rla", action="forward", rla=3, nearest=3, distance=12.0)
+        console.type("spin_left")
+        (correction,) = await robot.hears(CorrectRequest)
+        assert (correction.action, correction.decision_tick, correction.late) == ("spin_left", tick, True)
 
 
 async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
