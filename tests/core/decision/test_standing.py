@@ -30,6 +30,7 @@ from kurt2rt.core.decision.standing_text import (
     stop_text,
 )
 from kurt2rt.core.teaching.commands import Stop, Teach, Watch
+from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
 from kurt2rt.service.post_tick import ProgramStatus
@@ -246,3 +247,13 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert picture.question == ()  # the situation is known: nothing differs
     assert not expects_answer(picture)  # an action that is typed corrects the RLA
     assert view_of_state(picture).asking  # and so a scripted teacher answers
+
+
+def test_a_doubting_robot_asks_for_an_answer() -> None:
+    doubts = Standing(StandReason.DOUBTS, asks=True)
+    told = {"nearest": 1, "nearest_action": "forward", "distance": 90.0, "radius": 900.0, "doubt": 3.4}
+    picture = state(cause="doubt", standing=doubts, question=(FeatureDifference("s9", 440.0, 108.0),), **told)
+    assert decode_state(encode_state(picture)) == picture
+    assert str(build_question(picture)) == "I doubt RLA 1, which says forward here, teach me; s9: 440, was 108"
+    assert expects_answer(picture)
+    assert view_of_state(picture).asking
