@@ -60,7 +60,7 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> 
     assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals from you"
     fits(lesson)
     shown = phone.texts("#rewards button")
-    assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
+    assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last", "rewind"]
     phone.touch("[data-appraisal=bad]")
     lesson.reads("#said", "appraise done")
     phone.key("keyDown", "0")
