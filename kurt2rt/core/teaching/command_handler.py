@@ -324,11 +324,7 @@ class CommandHandler:
                 return LessonResult(released if to is None else Outcome.of(ResultCode.HANDED_OVER, teacher=to))
             case Resume():
                 refuse(self.refusal_if_stopped_since(command.seen_tick))
-                self.active_stop = None
-                self._stopped_by.clear()
-                self._stops_since_resume.clear()
-                authority.end_manual()
-                return LessonResult(Outcome(ResultCode.RESUMED))
+                return LessonResult(self._resume())
             case SetPhase():
                 if command.phase is Phase.AUTONOMOUS:
                     refuse(self.refusal_if_stopped_since(command.seen_tick))
@@ -358,6 +354,13 @@ class CommandHandler:
                 if isinstance(command, Undo):
                     self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
+
+    def _resume(self) -> Outcome:
+        self.active_stop = None
+        self._stopped_by.clear()
+        self._stops_since_resume.clear()
+        self.authority.end_manual()
+        return Outcome(ResultCode.RESUMED)
 
     def _stop(self, command: Stop, tick: int) -> Outcome:
         if command.press_id is not None and self.authority.drives_by_later_press(

@@ -42,14 +42,14 @@ def view_of_tick(record: TickRecord) -> TeacherView:
     if match is not None:
         nearest = radius_fraction(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
     return TeacherView(
-        decision.asking and decision.asks_at == BASIC,
-        decision.driving,
-        decision.action,
-        record.readings.infrared_counts,
-        record.behaviour,
-        decision.rla_id,
-        nearest,
-        record.tick,
+        asking=decision.asking and decision.asks_at == BASIC,
+        driving=decision.driving,
+        action=decision.action,
+        infrared_counts=record.readings.infrared_counts,
+        behaviour=record.behaviour,
+        rla_id=decision.rla_id,
+        radius_fraction=nearest,
+        tick=record.tick,
     )
 
 

@@ -198,14 +198,14 @@ async def _state_at(robot: TeacherClient, tick: int) -> State:
 def view_of_state(state: State) -> TeacherView:
     """Return the teacher's view of a state from the channel."""
     return TeacherView(
-        state.cause in ASKING,
-        state.action is not None,
-        state.action,
-        state.infrared_counts,
-        state.behaviour,
-        state.rla,
-        radius_fraction(state.rla, state.nearest, state.distance, state.radius),
-        state.tick,
+        asking=state.cause in ASKING,
+        driving=state.action is not None,
+        action=state.action,
+        infrared_counts=state.infrared_counts,
+        behaviour=state.behaviour,
+        rla_id=state.rla,
+        radius_fraction=radius_fraction(state.rla, state.nearest, state.distance, state.radius),
+        tick=state.tick,
     )
 
 

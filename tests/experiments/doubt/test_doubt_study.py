@@ -48,7 +48,7 @@ def test_area_under_curve_of_known_scores() -> None:
     assert math.isnan(area_under_curve(np.zeros(4), np.zeros(4, dtype=np.bool_)))
 
 
-def test_wrong_ticks_are_lasting_misses_and_two_seconds_before_a_crash() -> None:
+def test_wrong_ticks_are_lasting_misses_and_times_before_a_crash() -> None:
     wrong = wrong_ticks(log(pulses(), missed=(slice(100, 129), slice(500, 530)), collisions=(2000,)))
     assert np.flatnonzero(wrong).tolist() == [*range(500, 530), *range(1800, 2000)]
 
@@ -60,7 +60,7 @@ def test_crossings_three_seconds_apart_are_two_questions() -> None:
     assert question_ticks(pulses(100, 300, 1000), driving, 5.0) == [1020]
 
 
-def test_judge_score_counts_caught_collisions_and_false_questions() -> None:
+def test_judge_score_counts_collisions_and_false_questions() -> None:
     scores = pulses(1000, 2500)
     result = judge_score([log(scores, collisions=(1100, 2100, 2505))], [scores], 5.0)
     assert (result.caught, result.questions, result.false_questions) == (1, 2, 0)
