@@ -50,6 +50,7 @@ Shorten = Callable[[Sequence[str]], list[str]]
 # Seconds to minutes, or without end, as they stand in the text: run with less of the same, in the deep suite.
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
+    "doubt": lambda words: [*words[:2], "--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: shortened_lesson(words),
     "paper": lambda _: ["paper", "--quick", "--task", "circle", "--no-plain"],
@@ -67,7 +68,7 @@ LONG: dict[str, Shorten] = {
 def shortened_lesson(words: Sequence[str]) -> list[str]:
     if {"route", "errands"} & set(words):  # short ones are in tests/cli and tests/experiments
         return ["lesson", "--help"]
-    return [*("100,101" if word == "100-119" else word for word in words), "--task", "short.yaml"]
+    return [*({"100-119": "100,101", "915-919": "915"}.get(word, word) for word in words), "--task", "short.yaml"]
 
 
 SOONER = 5

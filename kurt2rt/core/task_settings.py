@@ -64,6 +64,13 @@ class LearningSettings(Settings):
     doubt: DoubtSettings | None = None
     """Doubt, by which the robot asks also inside the radius; None: it asks only outside."""
 
+    @field_validator("doubt", mode="before")
+    @classmethod
+    def _has_a_value(cls, doubt: object) -> object:
+        if doubt is None:
+            raise ValueError("give settings, or leave the key out for a robot without doubt")
+        return doubt
+
 
 class PlainSettings(LearningSettings):
     """Plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held.

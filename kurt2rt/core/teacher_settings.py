@@ -3,7 +3,7 @@
 import random
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from hal.settings import Settings, find_config, load_settings
 
@@ -123,6 +123,13 @@ class TeacherProfile(Settings):
     """Time for which an action is held."""
     person: PersonSettings | None = None
     """Limits of a person; None: reaction, patience and errors are those of the task."""
+
+    @field_validator("person", mode="before")
+    @classmethod
+    def _has_a_value(cls, person: object) -> object:
+        if person is None:
+            raise ValueError("give a person's limits, or leave the key out for the times of the task")
+        return person
 
 
 QUICK_TEACHER = TeacherProfile(name=SUPERHUMAN, what="Reacts and corrects by the times of the task, without a break")

@@ -16,7 +16,7 @@ SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1"
 REPORTS: dict[tuple[str, ...], set[str]] = {
     ("demo", *SHORT, "--set", "exam.worlds=[a]"): {"lesson", "task", "exams", "picture", "knowledge"},
     ("lesson", *SHORT): {"lesson", "task", "exams", "knowledge"},
-    ("lesson", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots"},
+    ("lesson", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher"},
     ("exam", "mine.knowledge", "--world", "a", *SHORT[-2:]): {"knowledge", "seed", "task", "exams"},
     ("faults", "--target", "tick", "--kind", "stuck"): {"stop_times", "trials"},
     ("why", WALLS, "--at", "1"): {"run", "at_s", "facts", "tips", "difference", "trouble", "picture"},
