@@ -6,7 +6,8 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS, Drive, Stop, TeachShown, Undo
-from kurt2rt.core.teaching.demonstration import CAPACITY, EVERY_TICKS, Segment, nearest_action
+from kurt2rt.core.teaching.demonstration import CAPACITY, Segment, nearest_action
+from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
 from tests.core.test_tick import Corridor
 from tests.teacher.helpers import teach
 

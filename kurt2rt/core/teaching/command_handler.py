@@ -119,7 +119,7 @@ class CommandHandler:
         self._lessons = _lesson_builder(level, self.recent, self._rewind, insert_beyond_share, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
-        self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, share=insert_beyond_share)
+        self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire)
         self._late = LatePresses(self.recent, self.delay)
         self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED

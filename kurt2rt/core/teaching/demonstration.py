@@ -1,7 +1,8 @@
 """Demonstration: what a teacher drove by hand, as actions of the repertoire that can be taught."""
 
 import math
-from collections.abc import Iterable
+from collections import deque
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -17,14 +18,12 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, Origin
+from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS
+from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
-from kurt2rt.core.teaching.lesson_context import LessonContext
 
-EVERY_TICKS = 10
-"""Ticks of the robot between two samples of a demonstration: 0.1 s."""
 CAPACITY = 600
 """Largest number of samples, the last minute; older ones are dropped."""
 _LEAST_SAMPLES = 3
@@ -58,25 +57,23 @@ class _Sample(NamedTuple):
 class Demonstration:
     """Record of the newest press of manual drive, in constant memory, and the lessons of its confirmed segments."""
 
-    def __init__(self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire, *, share: float) -> None:
+    def __init__(self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire) -> None:
         """Start without a demonstration.
 
         Args:
             lessons: builder of the lessons.
             system: RLAs that are taught.
             repertoire: actions that are compared with the driven speeds; used by nothing else meanwhile.
-            share: `insert_beyond_share` of the lessons.
         """
         self._lessons = lessons
         self._system = system
         self._repertoire = {name: each for name, each in repertoire.items() if isinstance(each, _SHOWABLE)}
-        self._share = share
         self._situations = np.full((CAPACITY, system.dimensions), np.nan)
-        self._samples: list[_Sample] = []
+        self._samples: deque[_Sample] = deque(maxlen=CAPACITY)
         self._count = 0
         self._due = 0
         self._last_tick = -1
-        self._pending: list[_Sample] = []
+        self._pending: deque[_Sample] = deque()
         self._lesson = ""
         self._origin = Origin("", "", Phase.SUPERVISED, 0)
         self.press_id: int | None = None
@@ -105,7 +102,9 @@ class Demonstration:
         """
         if press != (self.teacher, self.press_id):
             self.teacher, self.press_id = press
-            self._samples, self._count, self._due, self._pending = [], 0, tick, []
+            self._samples.clear()
+            self._pending.clear()
+            self._count, self._due = 0, tick
         self._last_tick = tick
         if tick < self._due:
             return
@@ -113,8 +112,6 @@ class Demonstration:
         row = self._count % CAPACITY
         self._count += 1
         self._situations[row] = situation.vector
-        if len(self._samples) == CAPACITY:
-            del self._samples[0]
         self._samples.append(_Sample(tick, row, nearest_action(self._repertoire, readings, speeds), behaviour))
         self._segments = None
 
@@ -123,7 +120,7 @@ class Demonstration:
         if self.press_id is None or tick <= self._last_tick + 1 or self._pending:
             return ()
         if self._segments is None:
-            self._samples = _steady(self._samples)
+            self._samples = deque(_steady(self._samples), maxlen=CAPACITY)
             self._segments = tuple(_segments(self._samples))[-MOST_SEGMENTS:]
         return self._segments
 
@@ -145,11 +142,11 @@ class Demonstration:
         if not indexes or not 0 <= indexes[0] <= indexes[-1] < len(segments):
             raise CommandRefusedError(RefusalCode.NO_SEGMENT, segments=len(segments))
         spans = [segments[index] for index in indexes]
-        self._pending = [
+        self._pending.extend(
             each
             for each in self._samples
             if any(span.from_tick <= each.tick < span.from_tick + span.ticks for span in spans)
-        ]
+        )
         self._lesson = self._system.unused_hold_id(hold_id(self.teacher, press_id))
         self._origin = origin
         self.press_id = None
@@ -159,7 +156,7 @@ class Demonstration:
 
     def cancel(self) -> None:
         """Drop the lessons that have not been given yet; call it when the teacher undoes a lesson."""
-        self._pending = []
+        self._pending.clear()
 
     def next_lesson(self, tick: int) -> TeachingEvent | None:
         """Return the next lesson of a confirmed demonstration; None if none is due.
@@ -169,11 +166,9 @@ class Demonstration:
         for _ in range(_MATCHES_PER_TICK):
             if not self._pending:
                 return None
-            sample = self._pending.pop(0)
+            sample = self._pending.popleft()
             origin = replace(self._origin, command_id=f"{self._lesson}{DERIVED}{sample.tick}", tick=tick)
-            vector = self._situations[sample.row]
-            context = LessonContext(vector, sample.behaviour, BASIC, None, self._share)
-            event = self._lessons.in_context(sample.action, context, origin)
+            event = self._lessons.shown(sample.action, self._situations[sample.row], sample.behaviour, origin)
             if event is not None:
                 return event
         return None
@@ -203,7 +198,7 @@ def _direction(speeds: WheelSpeeds) -> tuple[float, float]:
     return (0.0, 0.0) if length < _STANDS_M_S else (left / length, right / length)
 
 
-def _steady(samples: list[_Sample]) -> list[_Sample]:
+def _steady(samples: Iterable[_Sample]) -> list[_Sample]:
     """Return the samples with short runs of an action joined to the run before them, or after the first."""
     runs: list[list[_Sample]] = []
     for sample in samples:
@@ -221,7 +216,7 @@ def _steady(samples: list[_Sample]) -> list[_Sample]:
     return steady
 
 
-def _segments(samples: list[_Sample]) -> Iterable[Segment]:
+def _segments(samples: Sequence[_Sample]) -> Iterable[Segment]:
     """Yield the runs of one action; each lasts until the next begins."""
     begin = 0
     for index in range(1, len(samples) + 1):

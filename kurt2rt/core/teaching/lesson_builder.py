@@ -4,6 +4,9 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
@@ -92,13 +95,17 @@ class LessonBuilder:
             origin: of the lesson.
             counts: whether a lesson counts as a correction.
         """
-        event = self.in_context(action, self._basic_context(meant, None), origin)
+        event = self._in_context(action, self._basic_context(meant, None), origin)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
 
-    def in_context(self, action: str, context: LessonContext, origin: Origin) -> TeachingEvent | None:
-        """Return the lesson that gives a situation of the basic level an action; None if it has this action already."""
+    def shown(self, action: str, vector: NDArray[np.float64], behaviour: str, origin: Origin) -> TeachingEvent | None:
+        """Return the lesson that a shown action gives a situation (d,); None if it would be done there already."""
+        context = LessonContext(vector, behaviour, BASIC, None, self._insert_beyond_share)
+        return self._in_context(action, context, origin)
+
+    def _in_context(self, action: str, context: LessonContext, origin: Origin) -> TeachingEvent | None:
         nearest = self._system.match(context.vector, context.behaviour, BASIC)
         if self._agreeing(nearest, context, action) is not None:
             return None

@@ -213,7 +213,7 @@ def unseen_table(summary: PaperSummary) -> Table:
             )
         )
     columns = ("world", "robot", "success", "collisions", "progress (teacher's own)", "ended early")
-    return Table(f"{_sentence(summary.label)}: worlds that nobody has seen", columns, tuple(rows))
+    return Table(f"{_sentence(summary.label)}: unseen worlds", columns, tuple(rows))
 
 
 def _of_teacher(drive: DriveOutcome) -> str:
