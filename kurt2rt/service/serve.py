@@ -13,7 +13,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import Robot
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
-from kurt2rt.channel.protocol.requests import BOOT_BYTES, FASTEST
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, FASTEST
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import RunControl
 from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED

@@ -10,17 +10,9 @@ from hal.robot_settings import load_robot
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import NO_EXAM
 from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.requests import (
-    FASTEST,
-    AnswerRequest,
-    CommandRequest,
-    DriveRequest,
-    HoldRequest,
-    Request,
-    StopRequest,
-    StreamRequest,
-    WatchRequest,
-)
+from kurt2rt.channel.protocol.limits import FASTEST
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest
+from kurt2rt.channel.protocol.requests import AnswerRequest, DriveRequest, HoldRequest, StopRequest, WatchRequest
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus, TeacherNow

@@ -11,7 +11,8 @@ import cbor2
 from aiocoap.optiontypes import OpaqueOption
 
 from kurt2rt.channel.protocol.codec import PATHS, WireError, decode_request, encode_request
-from kurt2rt.channel.protocol.requests import REQUESTS, Request
+from kurt2rt.channel.protocol.request_types import Request
+from kurt2rt.channel.protocol.requests import REQUESTS
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.core.rla.phase import Phase
 

@@ -20,14 +20,9 @@ import can
 
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.requests import (
-    COMMAND_ID_BYTES,
-    AnswerRequest,
-    CorrectRequest,
-    Request,
-    RewardRequest,
-    UndoRequest,
-)
+from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
+from kurt2rt.channel.protocol.request_types import Request
+from kurt2rt.channel.protocol.requests import AnswerRequest, CorrectRequest, RewardRequest, UndoRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.phase import Phase

@@ -6,7 +6,9 @@ from dataclasses import fields
 from typing import Any
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT
+from kurt2rt.channel.protocol.request_types import Request, checks_of
+from kurt2rt.channel.protocol.requests import REQUESTS
 from kurt2rt.channel.protocol.schema import (
     Bytes,
     Check,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.requests import BOOT_BYTES, LARGEST_NUMBER, VERSION
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, VERSION
 from kurt2rt.channel.protocol.schema import Bytes, Flag, Float, Int, ManyOf, OrNone, Row, Text, WireError
 from kurt2rt.core.perception.sensor_words import InfraredLaw, SensorWords
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.requests import LARGEST_NUMBER, LONGEST_TEXT, MOST_LESSONS, MOST_SITUATIONS
+from kurt2rt.channel.protocol.limits import LARGEST_NUMBER, LONGEST_TEXT, MOST_LESSONS, MOST_SITUATIONS
 from kurt2rt.channel.protocol.schema import Flag, Int, ManyOf, Row, Text, WireError
 
 _LINES = ManyOf(

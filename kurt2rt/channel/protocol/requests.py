@@ -1,106 +1,43 @@
 """Requests of a teacher's device: one class for each path of the robot, with a check for each field."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
-from typing import Annotated, Any, ClassVar, TypeVar, dataclass_transform, get_args, get_type_hints
+from dataclasses import dataclass
+from typing import Annotated, TypeVar, dataclass_transform
 
-from kurt2rt.channel.protocol.schema import (
-    Bytes,
-    BytesUpTo,
-    Check,
-    Flag,
-    Float,
-    Int,
-    ManyOf,
-    OneOf,
-    OneWord,
-    OrNone,
-    Row,
-    Text,
+from kurt2rt.channel.protocol.limits import (
+    FASTEST,
+    LARGEST_NUMBER,
+    LONGEST_BEHAVIOUR_TICKS,
+    LONGEST_FILE_NAME,
+    LONGEST_TEXT,
+    MOST_LESSONS,
+    SHA256_BYTES,
+    UPLOAD_PART_BYTES,
 )
+from kurt2rt.channel.protocol.request_types import (
+    Angle,
+    Boot,
+    CommandId,
+    CommandRequest,
+    Features,
+    Level,
+    Name,
+    NameOrNone,
+    Number,
+    NumberOrNone,
+    Request,
+    Speed,
+    StreamRequest,
+    UploadId,
+    Way,
+)
+from kurt2rt.channel.protocol.schema import Bytes, BytesUpTo, Flag, Float, Int, ManyOf, OneOf, OneWord, Text
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 
-VERSION = 4
-"""Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""
-BOOT_BYTES = 4
-COMMAND_ID_BYTES = 8
-UPLOAD_ID_BYTES = 8
-SHA256_BYTES = 32
-HIGHEST_SPEED_M_S = 2.0
-LONGEST_WAY_M = 100.0
-LONGEST_TEXT = 64
-LONGEST_FILE_NAME = 128
-LONGEST_BEHAVIOUR_TICKS = 60_000
-"""Ten minutes at 100 Hz."""
-LARGEST_NUMBER = 2**53
-"""Largest tick, sequence number or RLA: the largest integer that every language holds exactly."""
-MOST_LESSONS = 20
-MOST_GOAL_FEATURES = 16
-MOST_SITUATIONS = 250
-"""Most names in an answer: 250 of the longest fit."""
-PART_BYTES = 8192
-"""Most bytes of a file in one answer, which the network carries in a few datagrams."""
-UPLOAD_PART_BYTES = 896
-"""Most bytes of a file in one request, whose body is at most 1024 bytes."""
-MOST_UPLOAD_BYTES = 8_000_000
-"""Largest file to upload: twice the size of 24 hours of teaching."""
-FASTEST = 10
-"""Most robot seconds in one second."""
 TABLE, PACKAGE = "table", "package"
 """Forms of an export: CSV, and the archive of `kurt2rt knowledge export`."""
-
-Boot = Annotated[bytes, Bytes(BOOT_BYTES)]
-CommandId = Annotated[bytes, Bytes(COMMAND_ID_BYTES)]
-UploadId = Annotated[bytes, Bytes(UPLOAD_ID_BYTES)]
-Number = Annotated[int, Int(0, LARGEST_NUMBER)]
-NumberOrNone = Annotated[int | None, OrNone(Int(0, LARGEST_NUMBER))]
-Speed = Annotated[float, Float(HIGHEST_SPEED_M_S, "m/s")]
-Way = Annotated[float, Float(LONGEST_WAY_M, "m")]
-Angle = Annotated[float, Float(100.0, "rad")]
-Name = Annotated[str, Text(LONGEST_TEXT, least=1)]
-NameOrNone = Annotated[str | None, OrNone(Text(LONGEST_TEXT, least=1))]
-Level = Annotated[str, OneWord((BASIC, MID))]
-Features = Annotated[
-    tuple[tuple[str, float], ...],
-    ManyOf(Row((Text(LONGEST_TEXT, least=1), Float(1e6))), most=MOST_GOAL_FEATURES),
-]
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """Message to one path; its fields are the places of the body, in order."""
-
-    path: ClassVar[str]
-    may_lack: ClassVar[int] = 0
-    """Number of last fields that an older device leaves out; their defaults count then."""
-    left_out: ClassVar[int] = 0
-    """Number of last fields that are not sent while they have their defaults, for robots of before."""
-    depth: ClassVar[int] = 1
-    """Deepest nesting of lists in the body."""
-
-
-@dataclass(frozen=True, slots=True)
-class StreamRequest(Request):
-    """Message of a stream in which only the newest counts; OSCORE's sequence numbers give the order."""
-
-    boot: Boot
-    """Start of the robot program that it is meant for."""
-    seen: Number
-    """Tick of the newest state or answer that the device had."""
-
-
-@dataclass(frozen=True, slots=True)
-class CommandRequest(Request):
-    """Command that is sent again until it is answered and counts once."""
-
-    boot: Boot
-    command_id: CommandId
-    """Random id, equal in all copies of the command."""
-    seen: Number
-    """Tick of the newest state that the teacher had."""
-
 
 REQUESTS: list[type[Request]] = []
 """All requests, in the order in which the robot lists its paths."""
@@ -121,12 +58,6 @@ def _at(
         return request
 
     return register
-
-
-def checks_of(kind: type[Request]) -> tuple[tuple[str, Check], ...]:
-    """Return the name and the check of each field of a request, in the order of its body."""
-    hints: dict[str, Any] = get_type_hints(kind, include_extras=True)
-    return tuple((each.name, get_args(hints[each.name])[1]) for each in fields(kind))
 
 
 @_at("/hello")

@@ -8,7 +8,7 @@ from typing import Any
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.requests import VERSION
+from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.endpoint import Endpoint, open_endpoint

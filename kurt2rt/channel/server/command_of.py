@@ -1,10 +1,10 @@
 """Conversion of requests to the commands of the tick."""
 
+from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
     BehaviourRequest,
-    CommandRequest,
     CorrectRequest,
     DeleteRequest,
     HandOverRequest,

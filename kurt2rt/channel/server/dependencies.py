@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.requests import BOOT_BYTES
+from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.protocol.simulation import SimulationView
 from kurt2rt.core.outcome import Outcome
 from kurt2rt.knowledge.files.atomic_write import SavedCopy

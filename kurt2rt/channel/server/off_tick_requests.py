@@ -8,9 +8,10 @@ from typing import Any
 
 from hal.world_refusal import WorldRefusedError
 from kurt2rt.channel.protocol.exam_status import EXAM
+from kurt2rt.channel.protocol.limits import PART_BYTES
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
-    PART_BYTES,
     BackToStartRequest,
     ExamRequest,
     ExamStatusRequest,
@@ -20,7 +21,6 @@ from kurt2rt.channel.protocol.requests import (
     MoveWallRequest,
     NextRunRequest,
     PlaceRequest,
-    Request,
     SaveRequest,
     SimulationRequest,
     SpeedRequest,

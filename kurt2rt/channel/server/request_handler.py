@@ -6,24 +6,22 @@ from typing import Any, NamedTuple
 
 from kurt2rt.channel.protocol.facts_codec import plain_of_facts
 from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.limits import MOST_SITUATIONS
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest
 from kurt2rt.channel.protocol.requests import (
-    MOST_SITUATIONS,
     BehaviourRequest,
-    CommandRequest,
     DriveRequest,
     HealthRequest,
     HelloRequest,
     HoldRequest,
     LessonsRequest,
     PursueRequest,
-    Request,
     ResumeRequest,
     SeekLikeRequest,
     SeekRequest,
     SeekRlaRequest,
     SituationsRequest,
     StopRequest,
-    StreamRequest,
     TakeRequest,
     WhyRequest,
 )

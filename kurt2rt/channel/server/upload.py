@@ -2,7 +2,7 @@
 
 import hashlib
 
-from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES
+from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 

@@ -5,7 +5,8 @@ from collections.abc import Awaitable, Coroutine
 from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
-from kurt2rt.channel.protocol.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, HIGHEST_SPEED_M_S
+from kurt2rt.channel.protocol.requests import DriveRequest
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender

@@ -25,7 +25,8 @@ from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import report_of
 from kurt2rt.channel.protocol.hello import Hello, hello_of
 from kurt2rt.channel.protocol.lesson_list import LessonLine, lesson_lines_of, situations_of
-from kurt2rt.channel.protocol.requests import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES, Request
+from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView, world_of

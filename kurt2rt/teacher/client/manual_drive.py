@@ -8,7 +8,8 @@ from functools import partial
 import anyio
 
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
-from kurt2rt.channel.protocol.requests import DriveRequest, HoldRequest, StreamRequest, WatchRequest
+from kurt2rt.channel.protocol.request_types import StreamRequest
+from kurt2rt.channel.protocol.requests import DriveRequest, HoldRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal

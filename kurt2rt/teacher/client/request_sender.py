@@ -9,14 +9,9 @@ import anyio
 import anyio.lowlevel
 
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
-from kurt2rt.channel.protocol.requests import (
-    COMMAND_ID_BYTES,
-    LARGEST_NUMBER,
-    PART_BYTES,
-    CommandRequest,
-    Request,
-    StopRequest,
-)
+from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, LARGEST_NUMBER, PART_BYTES
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request
+from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.protocol.schema import Int
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import RefusalCode

@@ -8,7 +8,8 @@ from contextlib import suppress
 import anyio
 import anyio.abc
 
-from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, StopRequest
+from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
+from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from kurt2rt.teacher.client.request_sender import RequestSender

@@ -4,7 +4,8 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.protocol.requests import FASTEST, PACKAGE, SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.requests import PACKAGE
 from kurt2rt.channel.protocol.schema import (
     Bytes,
     Check,

@@ -7,7 +7,7 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
-from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.teacher.client.answer import NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient

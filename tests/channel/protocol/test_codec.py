@@ -20,6 +20,7 @@ from kurt2rt.channel.protocol.codec import (
     encode_request,
     encode_state,
 )
+from kurt2rt.channel.protocol.request_types import Request, checks_of
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
@@ -29,11 +30,9 @@ from kurt2rt.channel.protocol.requests import (
     LessonsRequest,
     MoveWallRequest,
     PhaseRequest,
-    Request,
     RewardRequest,
     SeekLikeRequest,
     SessionRequest,
-    checks_of,
 )
 from kurt2rt.channel.protocol.schema import (
     Bytes,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.requests import VERSION
+from kurt2rt.channel.protocol.limits import VERSION
 from tests.channel import device_by_the_book
 from tests.channel.device_by_the_book import Device
 from tests.channel.jumping_loop import run_jumping

@@ -4,7 +4,7 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.lesson_list import situations_of
-from kurt2rt.channel.protocol.requests import LONGEST_TEXT, MOST_SITUATIONS
+from kurt2rt.channel.protocol.limits import LONGEST_TEXT, MOST_SITUATIONS
 from kurt2rt.channel.protocol.schema import WireError
 
 

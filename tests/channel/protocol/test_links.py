@@ -18,7 +18,8 @@ import anyio
 import pytest
 from anyio.abc import Process
 
-from kurt2rt.channel.protocol.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request
+from kurt2rt.channel.protocol.requests import AnswerRequest, ReplaceRequest, RewardRequest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import TeachingEvent

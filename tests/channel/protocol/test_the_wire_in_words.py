@@ -10,7 +10,8 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import PATHS, encode_state
 from kurt2rt.channel.protocol.health_codec import plain_of
-from kurt2rt.channel.protocol.requests import VERSION, checks_of
+from kurt2rt.channel.protocol.limits import VERSION
+from kurt2rt.channel.protocol.request_types import checks_of
 from kurt2rt.channel.protocol.schema import (
     Bytes,
     BytesUpTo,

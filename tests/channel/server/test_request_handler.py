@@ -9,14 +9,14 @@ from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain
 from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.limits import PART_BYTES
+from kurt2rt.channel.protocol.request_types import CommandRequest, StreamRequest
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
-    PART_BYTES,
     AnswerRequest,
     AppraiseRequest,
     BackToStartRequest,
     BehaviourRequest,
-    CommandRequest,
     CorrectRequest,
     DeleteRequest,
     ExamRequest,
@@ -48,7 +48,6 @@ from kurt2rt.channel.protocol.requests import (
     SituationsRequest,
     SpeedRequest,
     StopRequest,
-    StreamRequest,
     TakeRequest,
     UndoRequest,
     UploadRequest,

@@ -22,12 +22,12 @@ from kurt2rt.channel.protocol.codec import (
     encode_request,
     encode_state,
 )
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     HelloRequest,
     LessonsRequest,
     PhaseRequest,
-    Request,
     StopRequest,
     WorldRequest,
 )

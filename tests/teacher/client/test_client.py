@@ -17,13 +17,13 @@ import pytest
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.limits import VERSION
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
-    VERSION,
     AnswerRequest,
     AppraiseRequest,
     BehaviourRequest,
-    CommandRequest,
     CorrectRequest,
     DeleteRequest,
     DriveRequest,
@@ -37,7 +37,6 @@ from kurt2rt.channel.protocol.requests import (
     PlaceRequest,
     PursueRequest,
     ReplaceRequest,
-    Request,
     ResumeRequest,
     RewardRequest,
     SaveRequest,

@@ -12,7 +12,8 @@ import pytest
 
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.codec import WireError
-from kurt2rt.channel.protocol.requests import AppraiseRequest, Request, StopRequest, WatchRequest
+from kurt2rt.channel.protocol.request_types import Request
+from kurt2rt.channel.protocol.requests import AppraiseRequest, StopRequest, WatchRequest
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair

@@ -14,7 +14,8 @@ from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello, SensorPlace
 from kurt2rt.channel.protocol.lesson_list import LessonLine
-from kurt2rt.channel.protocol.requests import TABLE, VERSION
+from kurt2rt.channel.protocol.limits import VERSION
+from kurt2rt.channel.protocol.requests import TABLE
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView

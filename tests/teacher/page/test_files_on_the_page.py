@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES
+from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import PORTRAIT, SMALL

@@ -8,13 +8,13 @@ import pytest
 
 from hal.robot_settings import load_robot
 from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     HelloRequest,
     HoldRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
-    Request,
     ResumeRequest,
     SessionRequest,
     StopRequest,

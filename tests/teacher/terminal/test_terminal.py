@@ -14,6 +14,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
@@ -25,7 +26,6 @@ from kurt2rt.channel.protocol.requests import (
     NameRequest,
     PhaseRequest,
     PursueRequest,
-    Request,
     ResumeRequest,
     RewardRequest,
     SeekLikeRequest,
