@@ -265,7 +265,7 @@ class OffTickRequests:
                 world.move_wall(request.name, request.dx_m, request.dy_m)
                 return done(self._tick(), Outcome.of(ResultCode.WALL_MOVED, name=request.name))
             # The teacher who stopped the robot looks at the place where it stands.
-            stopped = self._runtime.handler.refusal_if_stopped_since(request.seen)
+            stopped = self._runtime.handler.stops.refusal_since(request.seen)
             if stopped is not None:
                 return self._refused(stopped)
             if isinstance(request, BackToStartRequest):

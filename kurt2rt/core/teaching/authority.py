@@ -5,6 +5,7 @@ from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.commands import Drive, HoldAction
 
 _BY_HAND = "by hand"
@@ -190,3 +191,8 @@ class ControlAuthority:
 
     def _lease_end(self, tick: int, seen_tick: int) -> int:
         return min(tick + self._lease_ticks * self.speed, seen_tick + self._max_picture_age_ticks * self.speed)
+
+
+def name_refusal(name: str) -> Outcome | None:
+    """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
+    return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None

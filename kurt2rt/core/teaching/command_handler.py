@@ -1,8 +1,8 @@
 """Command handler: carries out the teacher's commands in the tick that takes them."""
 
-from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TypeGuard
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
@@ -19,9 +19,9 @@ from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Origin, Rla
+from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
-from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
 from kurt2rt.core.teaching.behaviour_selection import BehaviourSelection
 from kurt2rt.core.teaching.commands import (
     BeAt,
@@ -58,10 +58,9 @@ from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
+from kurt2rt.core.teaching.stop_record import StopRecord
+from kurt2rt.core.teaching.stream_handler import StreamHandler
 from kurt2rt.core.teaching.teacher_delay import TeacherDelay
-
-_KNOWN_STOPS = 32
-"""Number of stops whose copies are recognised; a copy of an older one counts as another stop, which is safe."""
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 
@@ -120,17 +119,31 @@ class CommandHandler:
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire)
+        self.stops = StopRecord()
+        self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
         self._late = LatePresses(self.recent, self.delay)
         self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
-        self.active_stop: ActiveStop | None = None
-        """Stop that lasts until `Resume`; None without one."""
-        self._stopped_by: set[str] = set()
-        self.stopped_at_tick = -1
-        """Tick of the last stop by a teacher or the guard; a command given on an older state must not lift it."""
-        self._stops_since_resume: deque[str] = deque(maxlen=_KNOWN_STOPS)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
         self._clock = SessionClock()
+
+    @property
+    def active_stop(self) -> ActiveStop | None:
+        """Return the stop that lasts until `Resume`; None without one."""
+        return self.stops.active
+
+    @active_stop.setter
+    def active_stop(self, stop: ActiveStop | None) -> None:
+        self.stops.active = stop
+
+    @property
+    def stopped_at_tick(self) -> int:
+        """Return the tick of the last stop by a teacher or the guard."""
+        return self.stops.newest_tick
+
+    @stopped_at_tick.setter
+    def stopped_at_tick(self, tick: int) -> None:
+        self.stops.newest_tick = tick
 
     def was_handled(self, command_id: str) -> bool:
         """Return whether a command of this id was carried out already."""
@@ -154,9 +167,7 @@ class CommandHandler:
                 two teachers neither may, because a late copy of one's stop must not lift the other's.
         """
         self.authority.end_manual()
-        self.active_stop = stop
-        if by is not None:
-            self._stopped_by.add(by)
+        self.stops.begin(stop, by)
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
@@ -181,7 +192,7 @@ class CommandHandler:
         self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is Phase.AUTONOMOUS
         authority = self.authority
-        if was_driving and self.active_stop is None and self.requires_teacher and not authority.is_present(tick):
+        if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
 
     @property
@@ -191,30 +202,7 @@ class CommandHandler:
 
     def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
         """Apply a message of a stream, in which only the newest counts; return a refusal, or None."""
-        authority = self.authority
-        refusal = _no_person(command.teacher) or authority.refusal_for(command.teacher) or self.manual_refusal(command)
-        if refusal is not None:
-            return refusal
-        if isinstance(command, Watch):
-            authority.renew_presence(command.teacher, tick, command.seen_tick)
-            return None
-        authority.claim(command.teacher)
-        if isinstance(command, HoldAction):
-            self._hold(command, tick)
-            return None
-        authority.drive(command, tick)
-        # After manual drive the robot stands until a resume, also when messages cease.
-        self.active_stop = ActiveStop(StopReason.LET_GO, command.teacher)
-        self._stopped_by = {command.teacher}
-        return None
-
-    def _hold(self, command: HoldAction, tick: int) -> None:
-        if self.authority.held_press == command.press_id:
-            self.holds.on_message(command, tick)
-        else:
-            self.holds.begin(command, tick, self.authority.speed)
-            self.delay.on_answer(command.teacher, command.seen_tick, self.authority.speed)
-        self.authority.hold(command, tick)
+        return self.streams.handle(command, tick)
 
     def teach_driven(self, tick: int) -> list[TeachingEvent]:
         """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.
@@ -225,33 +213,14 @@ class CommandHandler:
         shown = self.demonstration.next_lesson(tick)
         if shown is not None:
             self.updater.apply_own(shown, events)
-        if self.authority.held_press is not None and self.authority.is_manual(tick):
-            event = self.holds.build(tick, self.phase, self.authority.speed)
-            if event is not None:
-                self.updater.apply_own(event, events)
+        held = self.streams.hold_lesson(tick, self.phase)
+        if held is not None:
+            self.updater.apply_own(held, events)
         return events
 
     def on_decision(self, tick: int, *, asks: bool) -> None:
         """Note whether the basic level asked its teacher in a tick."""
         self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
-
-    def manual_refusal(self, command: Stream) -> Outcome | None:
-        """Return why this press does not drive the robot; None if it does, and for a sign of presence."""
-        if isinstance(command, Watch):
-            return None
-        if self.authority.is_press_over(command):
-            return Outcome(RefusalCode.PRESS_OVER)
-        if isinstance(command, HoldAction):
-            if command.action not in self._level.repertoire:
-                return Outcome.of(RefusalCode.NO_ACTION, action=command.action, known=tuple(self._level.repertoire))
-            return None if self.active_stop is None else Outcome(RefusalCode.ROBOT_STOPPED)
-        return self._refusal_if_stopped_by_another(command.teacher)
-
-    def refusal_if_stopped_since(self, seen_tick: int | None) -> Outcome | None:
-        """Return the refusal of a command given on the state of `seen_tick` if a stop came since; None otherwise."""
-        if seen_tick is None or seen_tick >= self.stopped_at_tick:
-            return None
-        return Outcome(RefusalCode.STOPPED_SINCE)
 
     def handle(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""
@@ -304,40 +273,25 @@ class CommandHandler:
         return self.updater.learn_from_tick(self.phase, tick, decision, opinion)
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:
-        authority = self.authority
         if isinstance(command, Stop):
             return LessonResult(self._stop(command, tick))
-        refuse(_no_person(command.teacher))
+        refuse(name_refusal(command.teacher))
         if isinstance(command, Take):
-            before = authority.teacher
-            refuse(authority.take_over(command.teacher, tick))
-            self._clear_stop_of(before)
-            return LessonResult(Outcome.of(ResultCode.TAKEN, teacher=command.teacher))
-        refuse(authority.refusal_for(command.teacher))
-        authority.claim(command.teacher)
+            return LessonResult(self._take(command, tick))
+        refuse(self.authority.refusal_for(command.teacher))
+        self.authority.claim(command.teacher)
+        if _lifts_stop(command):
+            refuse(self.stops.refusal_since(command.seen_tick))
         match command:
-            case HandOver(to=to):
-                refuse(None if to is None else _no_person(to))
-                authority.hand_over(to)
-                self._clear_stop_of(command.teacher)
-                released = Outcome(ResultCode.RELEASED)
-                return LessonResult(released if to is None else Outcome.of(ResultCode.HANDED_OVER, teacher=to))
+            case HandOver():
+                return LessonResult(self._hand_over(command))
             case Resume():
-                refuse(self.refusal_if_stopped_since(command.seen_tick))
                 return LessonResult(self._resume())
             case SetPhase():
-                if command.phase is Phase.AUTONOMOUS:
-                    refuse(self.refusal_if_stopped_since(command.seen_tick))
-                self.phase = command.phase
-                phase = command.phase
-                return LessonResult(Outcome.of(ResultCode.PHASE_SET, phase=phase.value, name=phase.name.lower()))
+                return LessonResult(self._set_phase(command))
             case Pursue():
-                refuse(self.refusal_if_stopped_since(command.seen_tick))
                 return LessonResult(self._selection.select(command, tick))
-            case Seek() | StopSeeking():
-                refuse(self.refusal_if_stopped_since(command.seen_tick))
-                return LessonResult(self._require_goals().carry_out(command, tick))
-            case BeAt():
+            case Seek() | StopSeeking() | BeAt():
                 return LessonResult(self._require_goals().carry_out(command, tick))
             case NameSituation():
                 return LessonResult(*self._require_goals().name_situation(command, self._origin(command, tick)))
@@ -355,12 +309,27 @@ class CommandHandler:
                     self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
 
+    def _take(self, command: Take, tick: int) -> Outcome:
+        before = self.authority.teacher
+        refuse(self.authority.take_over(command.teacher, tick))
+        self.stops.withdraw_teacher(before)
+        return Outcome.of(ResultCode.TAKEN, teacher=command.teacher)
+
+    def _hand_over(self, command: HandOver) -> Outcome:
+        to = command.to
+        refuse(None if to is None else name_refusal(to))
+        self.authority.hand_over(to)
+        self.stops.withdraw_teacher(command.teacher)
+        return Outcome(ResultCode.RELEASED) if to is None else Outcome.of(ResultCode.HANDED_OVER, teacher=to)
+
     def _resume(self) -> Outcome:
-        self.active_stop = None
-        self._stopped_by.clear()
-        self._stops_since_resume.clear()
+        self.stops.resume()
         self.authority.end_manual()
         return Outcome(ResultCode.RESUMED)
+
+    def _set_phase(self, command: SetPhase) -> Outcome:
+        self.phase = command.phase
+        return Outcome.of(ResultCode.PHASE_SET, phase=command.phase.value, name=command.phase.name.lower())
 
     def _stop(self, command: Stop, tick: int) -> Outcome:
         if command.press_id is not None and self.authority.drives_by_later_press(
@@ -368,37 +337,20 @@ class CommandHandler:
         ):
             return Outcome(ResultCode.RELEASE_SUPERSEDED)
         if command.press_id is not None and self.authority.is_hold(command.teacher, command.press_id):
-            return self._release_hold(command.press_id)
-        # A copy brakes again but is not a newer stop: the teacher who resumes has seen the original.
-        if command.command_id not in self._stops_since_resume:
-            self._stops_since_resume.append(command.command_id)
-            self.stopped_at_tick = tick
+            return self.streams.release(command.press_id)
+        self.stops.count(command.command_id, tick)
         reason = StopReason.SAID_STOP if command.press_id is None else StopReason.LET_GO
         self.stop(ActiveStop(reason, command.teacher), command.teacher)
         return Outcome(ResultCode.STOPPED)
-
-    def _release_hold(self, press_id: int) -> Outcome:
-        """End a hold, so that the RLAs drive on; a late release of an ended hold changes nothing."""
-        if self.authority.held_press == press_id:
-            self.authority.end_manual()
-        hold = self.holds.newest
-        if hold is None or hold.press_id != press_id or hold.lessons == 0:
-            return Outcome.of(ResultCode.HOLD_RELEASED, lessons=0, lesson=None)
-        return Outcome.of(ResultCode.HOLD_RELEASED, lessons=hold.lessons, lesson=hold.lesson)
 
     def _require_goals(self) -> GoalCommands:
         if self._goals is None:
             raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
         return self._goals
 
-    def _clear_stop_of(self, before: str | None) -> None:
-        """Let the next teacher drive by hand although the one before stopped the robot, which stays stopped."""
-        if before is not None:
-            self._stopped_by.discard(before)
-
     def _run(self, command: RunBehaviour, tick: int) -> Outcome:
         require_action(command.action, self._level.repertoire)
-        refuse(self.refusal_if_stopped_since(command.seen_tick) or self._refusal_if_stopped_by_another(command.teacher))
+        refuse(self.stops.refusal_since(command.seen_tick) or self.stops.refusal_by_another(command.teacher))
         if not self.authority.is_present(tick):
             raise CommandRefusedError(RefusalCode.TEACHER_ABSENT)
         self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
@@ -410,21 +362,19 @@ class CommandHandler:
         taken = self._clock.apply(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
             # An earlier reason stays: the end of a session must not hide a teacher's stop.
-            self.stop(self.active_stop or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
+            self.stop(self.stops.active or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
         return taken
-
-    def _refusal_if_stopped_by_another(self, teacher: str) -> Outcome | None:
-        others = tuple(sorted(self._stopped_by - {teacher}))
-        return Outcome.of(RefusalCode.STOPPED_BY, teachers=others) if others else None
 
     def _origin(self, command: Command, tick: int) -> Origin:
         assert not isinstance(command, Stream)
         return Origin(command.command_id, command.teacher, self.phase, tick)
 
 
-def _no_person(name: str) -> Outcome | None:
-    """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
-    return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None
+def _lifts_stop(command: Command) -> TypeGuard[Resume | SetPhase | Pursue | Seek | StopSeeking]:
+    """Return whether a command may set a robot in motion, or change its way, so that a later stop refuses it."""
+    if isinstance(command, SetPhase):
+        return command.phase is Phase.AUTONOMOUS
+    return isinstance(command, Resume | Pursue | Seek | StopSeeking)
 
 
 def _knowledge_updater(level: BasicLevel, handled_ids: Iterable[str], parts: HandlerParts) -> KnowledgeUpdater:
