@@ -1,6 +1,5 @@
 """Robot program: robot, CAN log and child processes around the service."""
 
-import asyncio
 import gc
 import math
 import signal
@@ -14,15 +13,12 @@ from typing import TYPE_CHECKING
 
 import anyio
 
-from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, local_pairing, pairing_names
-from kurt2rt.channel.server.channel import EVERYWHERE, LOOPBACK, Channel
-from kurt2rt.channel.server.udp_port import require_port
+from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.malloc import pin_mmap_threshold
@@ -36,19 +32,16 @@ from kurt2rt.service.child_processes import ChildProcesses
 from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.console_thread import ConsoleThread
 from kurt2rt.service.health.probes import Probes
-from kurt2rt.service.health.status_socket import serve_waiting, status_socket_path
 from kurt2rt.service.live_exam import LiveExam
-from kurt2rt.service.missing_dependency import DependencyName
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.program_screen import ProgramScreen
+from kurt2rt.service.program_startup import ProgramStartup
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, with_unit_priority
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
-from kurt2rt.service.startup import Dependency, StartupGate, require_folder
-from kurt2rt.service.startup_text import missing_text
 from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
 
@@ -98,8 +91,8 @@ class RobotProgram:
         self._simulated: SimulatedRuns | None = None
         self._ends_at_s = math.inf
         self._can_log: CanLog | None = None
-        self._opened: OpenedRobot | None = None
-        self._knowledge: OpenedKnowledge | None = None
+        self._startup: ProgramStartup | None = None
+        """Startup of the present run; None before the first one, and from a run's end to the next one."""
 
     def _read(self) -> ServiceSettings:
         """Return the settings as they are now. Raises SettingsError."""
@@ -156,39 +149,42 @@ class RobotProgram:
         run = runs.present
         update = {"world": run.world, "task": run.task_name, "knowledge": str(run.knowledge)}
         self._service = self._service.model_copy(update=update)
-        self._task, self._knowledge, self._opened = run.task, None, None
+        self._task, self._startup = run.task, None
         self._log(f"world {run.world}, task {run.task.name}, knowledge {run.knowledge}")
 
     async def _serve_run(self) -> ProgramStatus | None:
         """Open the robot and serve one run; return None if the program is told to end while it waits for the robot."""
         context = self._context
         context.notifier.ready()
-        opened = await self._open()
+        settings = RunSettings(self._robot, self._task, self._service)
+        self._startup = ProgramStartup(
+            self._options, settings, self._environment, context, self._run_stack, self._open_can_log
+        )
+        opened = await self._startup.open()
         if opened is None:
             return None
         context.shutdown.stage = ShutdownStage.RUNTIME
         if self._service.priority:  # not before the watchdog runs
             self._log(set_sched_fifo(self._service.priority, self._guard_threads()))
         context.notifier.ping()  # the first tick sends the next ping
-        settings = RunSettings(self._robot, self._task, self._service)
         console = ProgramConsole(
             status=self._show, question=self._question, acknowledged=self._on_acknowledged, taught=self._taught
         )
-        return await serve(opened.robot, settings, console, self._serve_options(opened))
+        return await serve(opened.robot, settings, console, self._serve_options(opened, self._startup.knowledge))
 
-    async def _open(self) -> OpenedRobot | None:
-        if self._options.as_service:
-            with anyio.CancelScope() as waiting:
-                await self._wait_for_start(waiting)
-            if waiting.cancelled_caught:
-                return None
-        else:
-            self._claim_robot()
-            if self._options.attended:
-                self._pair()
-        return self._opened
+    @property
+    def _opened(self) -> OpenedRobot | None:
+        """Return the robot of the present run; None while it is not open."""
+        return None if self._startup is None else self._startup.opened
 
-    def _serve_options(self, opened: OpenedRobot) -> ServeOptions:
+    def _open_can_log(self) -> CanLog | None:
+        """Return the CAN log, which is opened once for all runs; None without one."""
+        options = self._options
+        if self._can_log is None and options.can_log is not None:
+            self._can_log = self._program_stack.enter_context(open_can_log(options.can_log, options.bus))
+        return self._can_log
+
+    def _serve_options(self, opened: OpenedRobot, knowledge: OpenedKnowledge | None) -> ServeOptions:
         options, run = self._options, None
         if opened.simulated_world is not None:
             self._simulated = self._simulated or self._simulated_runs(opened)
@@ -212,81 +208,10 @@ class RobotProgram:
             behaviour="" if goes_on else options.behaviour,
             probes=self._probes(opened),
             context=self._context,
-            knowledge=self._knowledge,
+            knowledge=knowledge,
             recording=self._recording(opened),
             tolerates_stalls=opened.simulated_world is not None,
         )
-
-    async def _wait_for_start(self, waiting: anyio.CancelScope) -> None:
-        """Wait for all dependencies; cancel `waiting` if the program is told to end meanwhile."""
-        loop = asyncio.get_running_loop()
-        dependencies = (
-            Dependency(DependencyName.BUS, self._claim_robot),
-            Dependency(DependencyName.KNOWLEDGE, self._claim_knowledge),
-            Dependency(DependencyName.KEYS, self._pair),
-            Dependency(DependencyName.NETWORK, self._check_port),
-            *((Dependency(DependencyName.RECORDINGS, self._check_recordings),) if self._options.record else ()),
-        )
-        retry_s = self._environment.retry_s
-        gate = StartupGate(dependencies, self._context.notifier, self._log, self._hold, retry_s)
-        with self._context.shutdown.on_shutdown(self._brake, lambda: loop.call_soon_threadsafe(waiting.cancel)):
-            try:
-                async with anyio.create_task_group() as tasks:
-                    tasks.start_soon(self._serve_waiting, gate)
-                    await gate.wait_for_all()
-                    tasks.cancel_scope.cancel()
-            except BaseException:
-                if self._knowledge is not None:
-                    self._knowledge.journal.close()
-                raise
-        if self._opened is not None:
-            self._opened.robot.release()
-
-    async def _serve_waiting(self, gate: StartupGate) -> None:
-        """Serve the list of missing dependencies; not before the knowledge is ours, for its status may be another's."""
-        await gate.wait_for(DependencyName.KNOWLEDGE)
-        path = status_socket_path(Path(self._service.knowledge))
-        await serve_waiting(path, lambda: missing_text(gate.missing))
-
-    def _hold(self) -> None:
-        """Brake a robot that is open before the rest, and check that its bus is still up."""
-        if self._opened is not None:
-            self._opened.robot.sense(time.monotonic())
-        self._brake()
-
-    def _brake(self) -> None:
-        if self._opened is not None:
-            self._opened.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
-
-    def _claim_robot(self) -> None:
-        options = self._options
-        if self._can_log is None and options.can_log is not None:
-            self._can_log = self._program_stack.enter_context(open_can_log(options.can_log, options.bus))
-        opening = self._environment.open_robot(
-            self._robot, options.bus, self._service.world, options.seed, self._can_log, options.wire
-        )
-        self._opened = self._run_stack.enter_context(opening)
-
-    def _claim_knowledge(self) -> None:
-        path = Path(self._service.knowledge)
-        require_folder(path.parent)
-        self._knowledge = open_for_teaching(path, self._robot, self._task)
-
-    def _pair(self) -> None:
-        """Pair the programs of this machine."""
-        service = self._service
-        if self._options.as_service:
-            for folder in (Path(service.teachers), Path(service.devices)):
-                require_folder(folder)
-        for name in sorted(OF_THIS_MACHINE):
-            local_pairing(Path(service.teachers), Path(service.devices), name, port=service.port)
-
-    def _check_recordings(self) -> None:
-        require_folder(Path(self._service.recordings))
-
-    def _check_port(self) -> None:
-        nobody_paired = OF_THIS_MACHINE.issuperset(pairing_names(Path(self._service.teachers)))
-        require_port(LOOPBACK if nobody_paired else EVERYWHERE, self._service.port)
 
     def _on_channel_open(self, channel: Channel) -> None:
         options, port = self._options, str(channel.endpoint.port)
