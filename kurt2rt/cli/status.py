@@ -26,7 +26,7 @@ from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.client.answer import NoAnswerError
-from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.client.observer_client import ObserverClient
 
 _PATIENCE_S = 5.0
 _STYLES = {WARNS: "yellow", URGENT: "bold red"}
@@ -169,13 +169,13 @@ def _over_the_channel(device: Device, host: str | None, port: int | None) -> Ite
 @contextmanager
 def _asking(
     portal: anyio.from_thread.BlockingPortal, device: Device, host: str | None, port: int | None
-) -> Iterator[TeacherClient]:
-    with portal.wrap_async_context_manager(TeacherClient(device.folder, host, port)) as client:
+) -> Iterator[ObserverClient]:
+    with portal.wrap_async_context_manager(ObserverClient(device.folder, host, port)) as client:
         portal.call(_look_away, client)
         yield client
 
 
-async def _look_away(client: TeacherClient) -> None:
+async def _look_away(client: ObserverClient) -> None:
     """Stop reporting presence: a program that asks for the status does not watch the robot."""
     client.watching = False
 

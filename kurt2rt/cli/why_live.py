@@ -13,7 +13,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import NoAnswerError
-from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
+from kurt2rt.teacher.client.observer_client import ANSWER_WITHIN_S, ObserverClient
 
 _FIRST_TICK_S = 0.1
 
@@ -32,7 +32,7 @@ def ask_why(
     """Ask over the teacher's channel as a client that does not teach. Raises NoAnswerError, CredentialsError."""
 
     async def ask() -> DecisionFacts:
-        async with TeacherClient(device.folder, host, port, patience_s=patience_s) as client:
+        async with ObserverClient(device.folder, host, port, patience_s=patience_s) as client:
             client.watching = False  # a question alone does not report the teacher as present
             while (facts := await client.why()) is None:  # noqa: ASYNC110 - no event announces the first tick
                 await anyio.sleep(_FIRST_TICK_S)

@@ -9,45 +9,28 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
 
 import hashlib
 import secrets
-import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
-from contextlib import AsyncExitStack, asynccontextmanager
-from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from contextlib import asynccontextmanager
+from typing import Any
 
 import anyio
 
 from kurt2rt.channel.protocol import requests
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
-from kurt2rt.channel.protocol.facts_codec import facts_of_plain
-from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.channel.protocol.health_codec import report_of
-from kurt2rt.channel.protocol.hello import Hello, hello_of
-from kurt2rt.channel.protocol.lesson_list import LessonLine, lesson_lines_of, situations_of
 from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
 from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
-from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import WorldView, world_of
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.platform.file_part import FilePart
-from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, RefusedError
-from kurt2rt.teacher.client.connection import Connection, open_connection
-from kurt2rt.teacher.client.link_quality import LinkQuality
-from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDrive, ManualDriveHandle
-from kurt2rt.teacher.client.state_stream import StateStream
+from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
+from kurt2rt.teacher.client.observer_client import ObserverClient
 
-ANSWER_WITHIN_S = 3.5
 REWIND_S = 10.0
 """Driving that a robot keeps for late lessons, in s (1000 ticks)."""
 _PART_EACH_S = 0.008
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 
 
-class TeacherClient:
+class TeacherClient(ObserverClient):
     """Async context manager that connects a teacher's device to one robot.
 
     Inside it states come in. While this device is in charge, the robot is told that its teacher is there.
@@ -58,109 +41,7 @@ class TeacherClient:
     program at a time can use a pairing.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        host: str | None = None,
-        port: int | None = None,
-        *,
-        patience_s: float = ANSWER_WITHIN_S,
-        now: Callable[[], float] = time.monotonic,
-    ) -> None:
-        """Name the robot; nothing is sent before the context is entered.
-
-        Args:
-            folder: Device's side of a pairing.
-            host: Address of the robot. None: as noted in the pairing.
-            port: UDP port of the robot. None: as noted in the pairing.
-            patience_s: Seconds to wait for the answer to a request.
-            now: Monotonic clock in seconds.
-        """
-        self.name = folder.name
-        """Name of this device, and so of the teacher."""
-        self._folder = folder
-        self._host = host
-        self._port = port
-        self._patience_s = patience_s
-        self._now = now
-        self._stream = StateStream(now)
-        self._period_s: float | None = None
-        self._connection: Connection | None = None
-        self._stack = AsyncExitStack()
-
-    async def __aenter__(self) -> Self:
-        """Open the pairing and subscribe to the states. The robot need not be there yet. Raises CredentialsError."""
-        connection = await self._stack.enter_async_context(
-            open_connection(self._folder, self._host, self._port, self._stream, self._patience_s, self._now)
-        )
-        self._connection, self.name = connection, connection.name
-        return self
-
-    async def __aexit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """End a press with a stop, then close."""
-        # The error of the block is not passed on to the task group, which would wrap it in an ExceptionGroup.
-        await self._stack.__aexit__(None, None, None)
-
-    # State
-
-    @property
-    def state(self) -> State | None:
-        """Newest state of the robot; None before the first."""
-        return self._stream.newest
-
-    @property
-    def state_age_s(self) -> float:
-        """Seconds since the newest state came; infinite before the first."""
-        return self._stream.age_s
-
-    @property
-    def restarts(self) -> int:
-        """Number of restarts of the robot program that were seen since this client was made."""
-        return self._stream.restarts
-
-    @property
-    def link(self) -> LinkQuality:
-        """Round trip, answered fraction and states per second."""
-        return self._drive.meter.link(self._stream.per_s)
-
-    @property
-    def trouble(self) -> str:
-        """Reason why the robot is not reached, as far as the network tells; empty while it is."""
-        return self._open.sender.trouble
-
-    def states(self) -> AsyncIterator[State]:
-        """Yield the newest state and each later one until the client closes; a slow reader misses some."""
-        return self._stream.states()
-
-    async def hello(self) -> Hello:
-        """Return the robot's description: its task, actions, sensors and size."""
-        hello = await self._open.sender.query(requests.HelloRequest(), hello_of)
-        self._stream.on_answer(hello.boot, hello.tick)
-        return hello
-
-    async def health(self) -> HealthReport | None:
-        """Return the health of the robot's program; None in its first second."""
-        return await self._open.sender.query(
-            requests.HealthRequest(), lambda body: None if body.get("health") is None else report_of(body["health"])
-        )
-
-    async def why(self) -> DecisionFacts | None:
-        """Return the facts behind the robot's newest decision; None before its first tick."""
-        return await self._open.sender.query(
-            requests.WhyRequest(), lambda body: None if body.get("why") is None else facts_of_plain(body["why"])
-        )
-
-    async def world(self) -> WorldView | None:
-        """Return the simulated world; None for a real robot."""
-        return await self._open.sender.query_simulated(requests.WorldRequest(), world_of)
-
     # Lessons
-
-    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
-        """Return the newest lessons, newest first; `count` is at most 20."""
-        return await self._open.sender.query(requests.LessonsRequest(count), lesson_lines_of)
 
     async def answer(
         self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
@@ -279,15 +160,6 @@ class TeacherClient:
         return await self._open.stops.move(action, begin)
 
     @property
-    def watching(self) -> bool:
-        """True while the teacher looks at the robot; only then is the robot told that its teacher is there."""
-        return self._drive.watching
-
-    @watching.setter
-    def watching(self, watching: bool) -> None:
-        self._drive.watching = watching
-
-    @property
     def pressing(self) -> bool:
         """True while a press is on."""
         return self._drive.press_id is not None
@@ -325,13 +197,8 @@ class TeacherClient:
     async def driving(self) -> AsyncIterator[ManualDriveHandle]:
         """Drive by hand inside the block; the press begins with the first speeds and ends with a stop."""
         handle = ManualDriveHandle(self._drive)
-        try:
+        async with self._open.ending(handle):
             yield handle
-        except BaseException:
-            with anyio.CancelScope(shield=True):
-                await self._open.try_end_press(handle.press_id)
-            raise
-        await self._open.end_press(handle.press_id)
 
     @asynccontextmanager
     async def hold(self, action: str) -> AsyncIterator[HoldHandle]:
@@ -342,13 +209,8 @@ class TeacherClient:
         """
         handle = HoldHandle(self._drive)
         handle.set(action)
-        try:
+        async with self._open.ending(handle):
             yield handle
-        except BaseException:
-            with anyio.CancelScope(shield=True):
-                await self._open.try_end_press(handle.press_id)
-            raise
-        handle.released = await self._open.end_press(handle.press_id)
 
     async def hold_for(self, action: str, seconds: float) -> Answer:
         """Hold an action for a time; see `hold`.
@@ -367,10 +229,6 @@ class TeacherClient:
     async def pursue(self, behaviour: str) -> Answer:
         """Select which of the task's behaviours the robot follows and is taught."""
         return await self._move(behaviour, requests.PursueRequest, behaviour=behaviour)
-
-    async def situations(self) -> tuple[str, ...]:
-        """Return the names of the situations that have one."""
-        return await self._open.sender.query(requests.SituationsRequest(), situations_of)
 
     async def seek(self, name: str) -> Answer:
         """Go to a named situation; the robot plans the way, and reports if there is none."""
@@ -442,25 +300,6 @@ class TeacherClient:
         """Begin an exam of a copy of the present knowledge, of a simulated robot only; see `exam`."""
         return await self._command(requests.ExamRequest)
 
-    async def exam(self) -> ExamStatus | None:
-        """Return the status of the newest exam; None for a robot that is not simulated in its own program."""
-        return await self._open.sender.query_simulated(
-            requests.ExamStatusRequest(), lambda body: EXAM.read(body.get("exam"))
-        )
-
-    async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
-        """Yield the parts of a file that `save` or `export` made on the robot, in order, at least one.
-
-        Raises RefusedError if the robot does not have the file, NoAnswerError.
-        """
-        offset = 0
-        while True:
-            part = await self._open.sender.file_part(requests.FileRequest(name, offset))
-            yield part
-            offset += len(part.content)
-            if offset >= part.size_bytes or not part.content:
-                return
-
     # Simulation
 
     async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
@@ -474,12 +313,6 @@ class TeacherClient:
     async def put_back(self) -> Answer:
         """Put the robot down at the start of its run."""
         return await self._command(requests.BackToStartRequest)
-
-    async def simulation(self) -> SimulationView | None:
-        """Return the simulated world and task; None for a robot that is not simulated in its own program."""
-        return await self._open.sender.query_simulated(
-            requests.SimulationRequest(), lambda body: SIMULATION.read(body.get("simulation"))
-        )
 
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
         """End the present run and begin the next one, in which the robot stands until `resume`.
@@ -524,23 +357,7 @@ class TeacherClient:
         """Begin the next run with an uploaded file."""
         return await self._command(requests.LoadRequest, upload=upload, sha256=sha256)
 
-    # Connection
-
-    @property
-    def _open(self) -> Connection:
-        if self._connection is None:
-            raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
-        return self._connection
-
-    @property
-    def _drive(self) -> ManualDrive:
-        return self._open.drive
-
-    async def _ticks(self, seconds: float) -> int:
-        """Return a time in ticks of this robot."""
-        if self._period_s is None:
-            self._period_s = (await self.hello()).period_s
-        return round(seconds / self._period_s)
+    # Sending
 
     async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
         return await self._open.sender.command(kind, moves=moves, **fields)

@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
 from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.security.pairing import PORT, Device, read_device
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
-from kurt2rt.teacher.client.manual_drive import BEAT_S, ManualDrive
+from kurt2rt.teacher.client.manual_drive import BEAT_S, ManualDrive, PressHandle
 from kurt2rt.teacher.client.request_sender import RequestSender
 from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.stop_sender import StopSender
@@ -49,6 +49,20 @@ class Connection:
         # Without messages the robot stops by itself, so a missing answer is no error here.
         with anyio.move_on_after(_STOP_WITHIN_S), suppress(NoAnswerError):
             await self.end_press(press_id)
+
+    @asynccontextmanager
+    async def ending(self, handle: PressHandle) -> AsyncIterator[None]:
+        """End the press of a handle at the end of the block; after an error wait at most 0.5 s for the answer.
+
+        Raises NoAnswerError.
+        """
+        try:
+            yield
+        except BaseException:
+            with anyio.CancelScope(shield=True):
+                await self.try_end_press(handle.press_id)
+            raise
+        handle.released = await self.end_press(handle.press_id)
 
 
 @asynccontextmanager

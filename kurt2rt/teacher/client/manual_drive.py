@@ -197,6 +197,8 @@ class PressHandle:
     def __init__(self, drive: ManualDrive) -> None:
         self._drive = drive
         self._press_id: int | None = None
+        self.released: Answer | None = None
+        """Answer to the end of the press, after a hold with the number of its lessons; None before, and without one."""
 
     @property
     def press_id(self) -> int | None:
@@ -240,9 +242,6 @@ class ManualDriveHandle(PressHandle):
 
 class HoldHandle(PressHandle):
     """Press of a held action, from `TeacherClient.hold`."""
-
-    released: Answer | None = None
-    """Answer to the end of the press, with the number of its lessons; None before, and without an answer."""
 
     def set(self, action: str) -> bool:
         """Hold an action, at first or in place of another one; return whether the press is on. Raises WireError."""

@@ -19,8 +19,9 @@ from anyio.from_thread import BlockingPortal, start_blocking_portal
 
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
-from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
+from kurt2rt.teacher.client.observer_client import ANSWER_WITHIN_S
 
 LOCAL_DEVICE = Path("var/devices/local")
 """Pairing that `kurt2rt run` makes for programs of its own machine."""
