@@ -24,7 +24,7 @@ from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
 from kurt2rt.teacher.client.observer_client import ObserverClient
 
-REWIND_S = 10.0
+_REWIND_S = 10.0
 """Driving that a robot keeps for late lessons, in s (1000 ticks)."""
 _PART_EACH_S = 0.008
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
@@ -79,8 +79,8 @@ class TeacherClient(ObserverClient):
             ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
             NoAnswerError: the robot does not answer.
         """
-        if not 0.0 <= seconds <= REWIND_S:
-            raise ValueError(f"seconds: a robot keeps the last {REWIND_S:g} s of driving (got {seconds:g})")
+        if not 0.0 <= seconds <= _REWIND_S:
+            raise ValueError(f"seconds: a robot keeps the last {_REWIND_S:g} s of driving (got {seconds:g})")
         drove = self._stream.drove_tick
         if drove is None:
             raise ValueError("this device has not seen the robot drive; correct what it does from now on")

@@ -19,7 +19,7 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
-from kurt2rt.teacher.client.client import REWIND_S, TeacherClient
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.mid_commands import mid_command
 from kurt2rt.teacher.terminal.terminal_text import (
     build_question,
@@ -295,7 +295,7 @@ class TerminalTeacher:
                 return robot.correct(action, of=tick, late=True)
             case ["hold", action, seconds] if action in hello.actions and _is_number(seconds):
                 return robot.hold_for(action, float(seconds))
-            case ["rewind", seconds, action] if action in hello.actions and _is_rewind(seconds):
+            case ["rewind", seconds, action] if action in hello.actions and _is_number(seconds):
                 return robot.correct_earlier(action, float(seconds))
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
                 return robot.appraise(appraisal, of=tick)
@@ -330,10 +330,6 @@ def _moves(text: str) -> bool:
         case ["go" | "resume" | "step" | "hold" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
             return True
     return False
-
-
-def _is_rewind(text: str) -> bool:
-    return _is_number(text) and float(text) <= REWIND_S
 
 
 def _is_count(text: str) -> bool:
