@@ -164,7 +164,7 @@ class BusConformance:
     )
     def test_frame_that_is_not_classic_can_is_refused(self, ends: Ends, sent: can.Message) -> None:
         robot_end, far_end = ends
-        with pytest.raises(ValueError, match="frame 0x9 is not of classic CAN"):
+        with pytest.raises(ValueError, match=r"0x9 .*classic"):
             send(far_end, [sent])
         assert self.heard(robot_end) == []
 
@@ -197,12 +197,12 @@ class BusConformance:
 
     def test_only_the_control_port_carries_control_and_nothing_else(self, ends: Ends) -> None:
         robot_end, far_end = ends
-        with pytest.raises(ValueError, match="frame 0x1 refused, this port carries all but CONTROL"):
+        with pytest.raises(ValueError, match="0x1 refused"):
             robot_end.telemetry_port().send(encode_brake())
         control = robot_end.control_port()
-        with pytest.raises(ValueError, match="frame 0x9 refused, this port carries only CONTROL"):
+        with pytest.raises(ValueError, match="0x9 refused"):
             control.send(CODEC.message("ENCODER").pack(0, 0))
-        with pytest.raises(BusError, match="the CONTROL port is taken; one guard drives one robot"):
+        with pytest.raises(BusError, match="taken"):
             robot_end.control_port()
         assert self.heard(far_end) == []
         control.send(encode_brake())
@@ -214,7 +214,7 @@ class BusConformance:
     ) -> None:
         robot_end, far_end = ends
         smuggled = can.Message(arbitration_id=frame_id, is_extended_id=is_extended, data=encode_brake().data)
-        with pytest.raises(ValueError, match="does not fit its frame"):
+        with pytest.raises(ValueError, match=f"0x{frame_id:X} "):
             robot_end.telemetry_port().send(smuggled)
         assert self.heard(far_end) == []
 
@@ -262,11 +262,11 @@ class BusConformance:
         port = robot_end.telemetry_port()
         robot_end.shutdown()
         robot_end.shutdown()
-        with pytest.raises(BusError, match=f"bus {robot_end.name}: is shut down; open it again"):
+        with pytest.raises(BusError, match=f"{robot_end.name}: .*shut down"):
             robot_end.drain()
-        with pytest.raises(BusError, match="is shut down"):
+        with pytest.raises(BusError, match="shut down"):
             port.send(numbered(0))
-        with pytest.raises(BusError, match="is shut down"):
+        with pytest.raises(BusError, match="shut down"):
             robot_end.set_id_filter({0x09})
         send(far_end, [numbered(1)])
         assert numbers(self.heard(other)) == [1]
@@ -289,9 +289,9 @@ class BusConformance:
         robot_end, far_end = ends
         pull_the_plug(robot_end)
         for _ in range(2):
-            with pytest.raises(BusError, match=f"bus {robot_end.name}: receiving failed .*; check adapter, cable"):
+            with pytest.raises(BusError, match=f"{robot_end.name}: receiving"):
                 robot_end.drain()
-            with pytest.raises(BusError, match=f"bus {robot_end.name}: sending failed"):
+            with pytest.raises(BusError, match=f"{robot_end.name}: sending"):
                 send(robot_end, [numbered(0)])
         robot_end.reopen()
         send(far_end, [numbered(1)])

@@ -51,7 +51,7 @@ def test_in_process_bus_holds_4096_frames_per_end(ends: Ends) -> None:
     frame = CODEC.message("ENCODER").pack(1, 1)
     for _ in range(4096):
         port.send(frame)
-    with pytest.raises(BusError, match=r"sending failed \(a listener has too many frames waiting\)"):
+    with pytest.raises(BusError, match="sending failed"):
         port.send(frame)
     assert len(robot_end.drain()) == 4096
 
@@ -69,25 +69,26 @@ def test_any_other_listener_of_python_can_hears_the_same_frames(ends: Ends) -> N
         assert [bytes(message.data) for message in robot_end.drain()][3:] == [b"12345678"]
 
         send(far_end, cycle()[:3])
-        with pytest.raises(BusError, match="a listener has too many frames waiting"):
+        with pytest.raises(BusError, match="sending failed"):
             send(far_end, cycle()[:1])
     assert len(robot_end.drain()) == 4
 
 
 @pytest.mark.parametrize(
-    ("spec", "complaint"),
+    ("spec", "remedy"),
     [
-        ("nocan7", r"bus 'nocan7': no such network interface; plug in the adapter, or set it up: ip link set nocan7"),
-        ("nocan7", r"other kinds: virtual:NAME, shared:NAME or a SocketCAN interface such as can0"),
-        ("", r"bus '': no such network interface.*ip link set can0 up"),
-        ("lo", "bus 'lo': is a network interface, but not of CAN; give virtual:NAME, shared:NAME or a SocketCAN"),
-        ("virtual:", r"bus 'virtual:': no such kind; give virtual:NAME, shared:NAME or a SocketCAN interface"),
-        ("shared:", r"bus 'shared:': no such kind; give virtual:NAME, shared:NAME or a SocketCAN interface"),
-        ("serial:/dev/ttyS0", "no such kind"),
-        ("can0\0", "no such network interface"),
+        ("nocan7", "ip link set nocan7 up"),
+        ("", "ip link set can0 up"),
+        ("lo", "virtual:NAME"),
+        ("virtual:", "virtual:NAME"),
+        ("shared:", "shared:NAME"),
+        ("serial:/dev/ttyS0", "shared:NAME"),
+        ("can0\0", "ip link set"),
     ],
 )
-def test_a_bus_that_cannot_be_opened_is_explained_in_one_line(spec: str, complaint: str) -> None:
-    with pytest.raises(BusError, match=complaint) as caught:
+def test_a_bus_that_cannot_be_opened_is_explained_in_one_line(spec: str, remedy: str) -> None:
+    with pytest.raises(BusError) as caught:
         open_bus(spec)
+    assert caught.value.where == f"bus {spec!r}"
+    assert remedy in caught.value.do
     assert "\n" not in str(caught.value)

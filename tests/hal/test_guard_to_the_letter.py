@@ -70,7 +70,7 @@ def test_refused_frame_is_reported_though_its_brake_was_sent() -> None:
     guard = Guard(ROBOT, CanBus("slow", lambda _: end))
     assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (GuardReason.BUS_LOST,)
     assert guard.send_failures == 1
-    assert "transmit queue is full" in guard.bus_trouble
+    assert "sending failed" in guard.bus_trouble
 
 
 def test_a_frame_is_made_only_when_it_says_something_new() -> None:
@@ -94,6 +94,6 @@ def test_watchdog_thread_has_a_name_and_is_a_daemon(ends: Ends) -> None:
     with Watchdog(Guard(ROBOT, ends[0]), 0.1) as watchdog:
         (thread,) = [thread for thread in threading.enumerate() if thread.name == "watchdog"]
         assert thread.daemon
-        with pytest.raises(RuntimeError, match=r"^the watchdog runs already; start it once$"):
+        with pytest.raises(RuntimeError, match="already"):
             watchdog.start()
     assert not thread.is_alive()

@@ -26,14 +26,11 @@ def test_a_board_may_be_still_for_as_long_as_the_settings_say(watch: InfraredWat
     assert watch.check_frozen(10.0 + FROZEN_S, driving=True) != ""
 
 
-@pytest.mark.parametrize(
-    ("alive", "frozen"), [("ADC00", "second controller (BDC*)"), ("BDC00", "first controller (ADC*)")]
-)
+@pytest.mark.parametrize(("alive", "frozen"), [("ADC00", "BDC*"), ("BDC00", "ADC*")])
 def test_the_one_that_is_frozen_is_named(watch: InfraredWatch, alive: str, frozen: str) -> None:
     assert watch.check_frozen(11.0, driving=True) == ""
     watch.board_of(alive).still_s = 0.0
-    said = watch.check_frozen(12.0, driving=True)
-    assert said == f"the distance sensors of the {frozen} repeated themselves for 1.5 s; switch the robot off and on"
+    assert frozen in watch.check_frozen(12.0, driving=True)
 
 
 def test_boards_that_change_are_alive(watch: InfraredWatch) -> None:

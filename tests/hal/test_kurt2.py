@@ -265,7 +265,7 @@ def test_an_adapter_that_stays_away_is_looked_for_once_a_second(robot: Kurt2, en
     assert "receiving failed" in robot.health.bus_trouble
     robot.sense(2.0)
     robot.sense(2.5)
-    assert "bus 'gone0': no such network interface" in robot.health.bus_trouble
+    assert "'gone0'" in robot.health.bus_trouble
     ends[0].name = name
     robot.sense(3.0)
     send(ends[1], cycle(counts=300))
@@ -289,7 +289,7 @@ def test_closing_brakes_and_gives_the_bus_back_for_good() -> None:
 
 def test_one_bus_has_one_robot(robot: Kurt2, ends: Ends) -> None:
     assert robot.health.latched is None
-    with pytest.raises(BusError, match="the CONTROL port is taken"):
+    with pytest.raises(BusError, match="taken"):
         Kurt2(ROBOT, ends[0])
 
 

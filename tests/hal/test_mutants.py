@@ -31,9 +31,9 @@ def test_a_mutant_is_known_by_its_place_and_its_change() -> None:
 def test_a_new_survivor_and_a_forgotten_entry_are_told() -> None:
     assert verdict([MUTANT], [MUTANT]) == []
     (new,) = verdict([MUTANT], [])
-    assert new.startswith("no test notices: hal.guard.Guard._slewed")
+    assert "hal.guard.Guard._slewed" in new
     (gone,) = verdict([], [MUTANT])
-    assert gone.startswith("is killed now")
+    assert "killed" in gone
 
 
 def test_known_mutants_have_a_reason_and_existing_code() -> None:

@@ -52,8 +52,8 @@ def test_band_of_the_slowest_side_is_exact_to_0_1_mm_s(
     first, within, off = (round(speed / FINE) for speed in (from_m_s, within_m_s, off_m_s))
     robot = measured_finely()
     assert Watched(robot, first).turn(told_m_s, within, within) == ""
-    assert Watched(robot, first).turn(told_m_s, off, within).startswith("left wheels were told")
-    assert Watched(robot, first).turn(told_m_s, within, off).startswith("right wheels were told")
+    assert Watched(robot, first).turn(told_m_s, off, within).startswith("left")
+    assert Watched(robot, first).turn(told_m_s, within, off).startswith("right")
 
 
 def test_a_side_as_slow_as_may_be_is_turned_back_at_once() -> None:
@@ -95,9 +95,9 @@ def test_board_is_frozen_exactly_at_the_limit() -> None:
     assert watch.check_frozen(50.5, driving=True) == ""
     watch.board_of("BDC00").still_s = 0.0
     assert watch.check_frozen(51.0 - 2**-20, driving=True) == ""
-    assert watch.check_frozen(51.0, driving=True).startswith("the distance sensors of the first controller (ADC*)")
+    assert "ADC*" in watch.check_frozen(51.0, driving=True)
     watch.board_of("ADC00").still_s = 0.0
-    assert watch.check_frozen(51.5, driving=True).startswith("the distance sensors of the second controller (BDC*)")
+    assert "BDC*" in watch.check_frozen(51.5, driving=True)
 
 
 def test_the_time_before_the_first_look_is_no_time_of_repeating() -> None:
