@@ -61,15 +61,9 @@ def lesson(options: LessonOptions) -> None:
 
         kurt2rt lesson --task errands --seeds 0-9 --controls
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     name = _task_name(options)
-    robot = load_robot(options.robot_settings)
-    task = taught_by(
-        load_task(name, plain=options.plain, changes=changes_of(options.changes)), load_teacher(options.teacher)
-    )
-    setup = LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, task)
+    setup = _setup(name, options)
+    task = setup.task
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     if runs_errands(task):
@@ -92,6 +86,16 @@ def _task_name(options: LessonOptions) -> str:
     if options.knowledge is not None and options.knowledge.exists():
         name = task_of_file(options.knowledge, name)
     return name or DEFAULT_TASK
+
+
+def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
+    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    robot = load_robot(options.robot_settings)
+    task = load_task(task_name, plain=options.plain, changes=changes_of(options.changes))
+    taught = taught_by(task, load_teacher(options.teacher))
+    return LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, taught)
 
 
 def _lesson(setup: LessonSetup, options: LessonOptions) -> None:

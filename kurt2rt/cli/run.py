@@ -15,6 +15,7 @@ from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 if TYPE_CHECKING:
     from kurt2rt.core.task_settings import TaskSettings
     from kurt2rt.service.program import RobotProgram
+    from kurt2rt.service.run_options import RunOptions
     from kurt2rt.service.settings import ServiceSettings
 
 _CHANNEL, _NO_TEACHER = "channel", "none"
@@ -235,7 +236,6 @@ def _program(options: _Options) -> "RobotProgram":
     from kurt2rt.cli.terminal_screen import TerminalScreen
     from kurt2rt.core.task_settings import load_task
     from kurt2rt.service.program import RobotProgram
-    from kurt2rt.service.run_options import RunOptions
     from kurt2rt.service.settings import load_service
     from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
 
@@ -251,8 +251,22 @@ def _program(options: _Options) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
+    run_options = _run_options(options, live_view)
+    screen = TerminalScreen(
+        Console(),
+        Path(settings.devices),
+        as_service=options.service,
+        phones=options.phone,
+        browser=not options.no_open,
+    )
+    return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
+
+
+def _run_options(options: _Options, live_view: tuple[str, int] | None) -> "RunOptions":
+    from kurt2rt.service.run_options import RunOptions
+
     simulated, attended = options.bus == SIMULATED, options.teacher != _NO_TEACHER
-    run_options = RunOptions(
+    return RunOptions(
         bus=options.bus,
         settings=options.settings,
         as_service=options.service,
@@ -270,14 +284,6 @@ def _program(options: _Options) -> "RobotProgram":
         seed=options.seed,
         wire=options.wire,
     )
-    screen = TerminalScreen(
-        Console(),
-        Path(settings.devices),
-        as_service=options.service,
-        phones=options.phone,
-        browser=not options.no_open,
-    )
-    return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
 
 
 def _scripted_teacher(options: _Options) -> str | None:

@@ -1,5 +1,7 @@
 """Basic level: RLAs over the 72-D situation, of the active behaviour; their actions are the repertoire's."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,6 +33,22 @@ def _named(behaviour: str) -> str:
     return f"the behaviour {behaviour}" if behaviour else "a behaviour without a name, the only one of its task"
 
 
+def _require_known(rlas: Iterable[Rla], repertoire: Repertoire, behaviours: Sequence[str]) -> None:
+    """Require RLAs whose behaviour and action are known. Raises UnknownBehaviourError, UnknownActionError."""
+    for rla in rlas:
+        if rla.behaviour not in behaviours:
+            raise UnknownBehaviourError(
+                f"RLA {rla.rla_id} belongs to {_named(rla.behaviour)}, and this task teaches "
+                f"{', '.join(behaviours) or 'one without a name'}; "
+                "give the task that this knowledge was taught with"
+            )
+        if rla.action not in repertoire and not rla.is_withdrawn:
+            raise UnknownActionError(
+                f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
+                f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"
+            )
+
+
 class BasicLevel:
     """Winner-takes-all level with a minimum time per action against dithering between neighbours."""
 
@@ -57,18 +75,7 @@ class BasicLevel:
             UnknownActionError: for an RLA whose action the repertoire lacks.
             UnknownBehaviourError: for an RLA of a behaviour that the task lacks.
         """
-        for rla in system.rlas:
-            if rla.behaviour not in active_behaviour.behaviours:
-                raise UnknownBehaviourError(
-                    f"RLA {rla.rla_id} belongs to {_named(rla.behaviour)}, and this task teaches "
-                    f"{', '.join(active_behaviour.behaviours) or 'one without a name'}; "
-                    "give the task that this knowledge was taught with"
-                )
-            if rla.action not in repertoire and not rla.is_withdrawn:
-                raise UnknownActionError(
-                    f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
-                    f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"
-                )
+        _require_known(system.rlas, repertoire, active_behaviour.behaviours)
         self.system = system
         self.repertoire = repertoire
         self.active_behaviour = active_behaviour
