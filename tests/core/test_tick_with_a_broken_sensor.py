@@ -14,7 +14,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
+from kurt2rt.experiments.surprise.drive import StuckSensor
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.explain.reasons import format_reasons

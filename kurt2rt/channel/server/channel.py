@@ -24,7 +24,7 @@ from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.teaching.system_events import PairingRenewed
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.runs.explain.live import LiveExplainer
+from kurt2rt.runs.explain.collect import LiveExplainer
 from kurt2rt.runtime import Runtime
 
 STATES_PER_S = 20

@@ -1,4 +1,4 @@
-"""Observer of every tick of a soak at both ends of the bus: envelope, standstill, tick accounting."""
+"""Observer of every tick of a soak at both ends of the bus: envelope, standstill, tick accounting, odometry."""
 
 import math
 
@@ -30,6 +30,37 @@ class Complaints:
         self.count += 1
         if len(self.stored) < _MOST_TOLD:
             self.stored.append(found)
+
+
+class OdometryCheck:
+    """Comparison of encoder ticks and true wheel rotation each minute; skipped after a fault or a repositioning."""
+
+    def __init__(self, rig: SoakRig, metres_per_tick: float) -> None:
+        self.worst_m = 0.0
+        """Largest difference of a side in one interval."""
+        self._rig = rig
+        self._metres_per_tick = metres_per_tick
+        self._ticks = [0, 0]
+        self._turned_m = [0.0, 0.0]
+        self._valid = False
+
+    def on_tick(self, readings: SensorReadings) -> None:
+        """Add a tick's encoder counts."""
+        self._ticks[0] += readings.encoder_left_ticks
+        self._ticks[1] += readings.encoder_right_ticks
+
+    def invalidate(self) -> None:
+        """Skip the next comparison."""
+        self._valid = False
+
+    def compare(self) -> None:
+        """Compare the interval and begin the next one."""
+        if self._valid:
+            for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):
+                self.worst_m = max(self.worst_m, abs(ticks * self._metres_per_tick - (turned_m - before_m)))
+        self._ticks = [0, 0]
+        self._turned_m = list(self._rig.turned_m)
+        self._valid = True
 
 
 class SoakObserver(BusObserver):

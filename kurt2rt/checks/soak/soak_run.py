@@ -14,8 +14,7 @@ from kurt2rt.checks.soak.disk_list import Spool
 from kurt2rt.checks.soak.faults import FaultResult, SoakFaults
 from kurt2rt.checks.soak.log import MinuteLog
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.checks.soak.observer import SoakObserver
-from kurt2rt.checks.soak.odometry import OdometryCheck
+from kurt2rt.checks.soak.observer import OdometryCheck, SoakObserver
 from kurt2rt.checks.soak.operator import SoakOperator
 from kurt2rt.checks.soak.program_run import ProgramRun, ProgramStart
 from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb

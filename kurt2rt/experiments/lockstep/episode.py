@@ -3,6 +3,7 @@
 import math
 import random
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Callable
 from typing import ClassVar
 
@@ -11,8 +12,34 @@ from hal.simulation import Pose, Position, Simulation
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
 from kurt2rt.runtime import Runtime
+
+
+class StuckDetector:
+    """Detector of a robot that stays about where it is, also if it goes round in circles."""
+
+    def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:
+        self._stride = round(0.5 / period_s)
+        self._positions: deque[Position] = deque(maxlen=max(2, round(window_s / 0.5) + 1))
+        self._least_m = least_m
+        self._ticks = 0
+
+    def none_since_window(self, position: Position) -> bool:
+        """Return whether the robot stayed within `least_m` for a whole window; call it in every tick."""
+        due = self._ticks % self._stride == 0
+        self._ticks += 1
+        if not due:
+            return False
+        self._positions.append(position)
+        full = len(self._positions) == self._positions.maxlen
+        return full and all(
+            math.hypot(position.x_m - old.x_m, position.y_m - old.y_m) < self._least_m for old in self._positions
+        )
+
+    def restart(self) -> None:
+        """Begin a new window."""
+        self._positions.clear()
+        self._ticks = 0
 
 
 class Episode(ABC):

@@ -6,6 +6,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import Literal
 
+from hal.robot import Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation, SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
@@ -15,7 +17,6 @@ from kurt2rt.core.teaching.commands import Pursue, Resume
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
-from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
 from kurt2rt.runtime import Runtime
 
 Difference = Literal["nothing", "stuck sensor", "set down elsewhere", "another world"]
@@ -24,6 +25,28 @@ Difference = Literal["nothing", "stuck sensor", "set down elsewhere", "another w
 _EXPERIMENTER = "experimenter"
 _STUCK_FROM_S = 5.0
 _REPOSITION_EVERY_S = 10.0
+
+
+class StuckSensor(RobotProxy):
+    """Proxy of a robot that freezes one of its infrared sensors."""
+
+    def __init__(self, robot: Robot, sensor: int, from_s: float) -> None:
+        """`sensor`: index in the robot's sensor table; stuck from `from_s` of the runtime's clock on."""
+        super().__init__(robot)
+        self._sensor = sensor
+        self._from_s = from_s
+        self._counts: int | None = None
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """Return the robot's readings, with the stuck sensor at its count of `from_s`."""
+        readings = self._robot.sense(now_s)
+        if now_s < self._from_s:
+            return readings
+        counts = readings.infrared_counts
+        if self._counts is None:
+            self._counts = counts[self._sensor]
+        stuck = (*counts[: self._sensor], self._counts, *counts[self._sensor + 1 :])
+        return readings._replace(infrared_counts=stuck)
 
 
 @dataclass(frozen=True, slots=True)

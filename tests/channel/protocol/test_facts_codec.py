@@ -11,8 +11,8 @@ from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.core.rla.rla import MID
+from kurt2rt.runs.explain.collect import LiveExplainer
 from kurt2rt.runs.explain.facts import MOST_OTHERS
-from kurt2rt.runs.explain.live import LiveExplainer
 from tests.runs.explain.helpers import Lesson, facts, level, story, with_mid
 from tests.teacher.helpers import teach
 

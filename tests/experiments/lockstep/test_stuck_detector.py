@@ -3,7 +3,7 @@ import math
 import pytest
 
 from hal.simulation import Position
-from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
+from kurt2rt.experiments.lockstep.episode import StuckDetector
 
 PERIOD_S = 0.01
 

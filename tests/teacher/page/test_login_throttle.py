@@ -1,4 +1,4 @@
-from kurt2rt.teacher.page.login_throttle import LoginThrottle
+from kurt2rt.teacher.page.auth_middleware import LoginThrottle
 
 
 def test_is_allowed_after_the_limit_waits_for_a_refill() -> None:
