@@ -87,6 +87,7 @@ class ConditionIndex:
         self._half_squares = np.zeros(64, dtype=np.float32)
         self._norms = np.zeros(64)
         self._pair, self._squares = np.empty((2, dimensions)), np.empty(2)
+        self._first, self._second = self._pair
         self._largest_norm = _SMALLEST_NORM
         self._update_views()
 
@@ -139,8 +140,8 @@ class ConditionIndex:
         if not reach < _FLOAT32_REACH:  # true for NaN as well
             return self._nearest_exact(situation, np.arange(self._count))
         scores = self._scores
-        np.dot(self._rough_rows, situation.astype(np.float32), out=scores)
-        np.subtract(self._half_squares_rows, scores, out=scores)
+        self._rough_rows.dot(situation.astype(np.float32), scores)
+        np.subtract(self._half_squares_rows, scores, scores)
         best = int(scores.argmin())
         best_score = scores.item(best)
         scores[best] = math.inf
@@ -169,8 +170,8 @@ class ConditionIndex:
     def _nearest_two(self, best: int, second: int, situation: NDArray[np.float64]) -> NearestCondition:
         """Return `exact_distances` of two rows, in half the time of two calls of `_distance`."""
         rows, squares = self._pair, self._squares
-        np.subtract(self._exact[best], situation, rows[0])
-        np.subtract(self._exact[second], situation, rows[1])
+        np.subtract(self._exact[best], situation, self._first)
+        np.subtract(self._exact[second], situation, self._second)
         np.multiply(rows, rows, rows)
         _sum(rows, 1, out=squares)
         return NearestCondition(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
