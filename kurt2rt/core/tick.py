@@ -11,7 +11,7 @@ from hal.sensor_watch import BrokenSensor, SensorWatch
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision, stopped
+from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause, MidDecision, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
@@ -20,7 +20,7 @@ from kurt2rt.core.mid.mid_level import MidUsageCounter
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.perception import Perception, Situation
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.phase import AUTONOMOUS
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
@@ -33,7 +33,11 @@ _KNOWLEDGE_PERIOD_TICKS = 100
 """A record holds all active RLAs at least this often."""
 
 _SENSE, _PERCEIVE, _DECIDE, _GUARD, _LEARN, _PUBLISH = Stage
-"""Names for the stages, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
+_TEACHER, _UNATTENDED = DecisionCause.TEACHER, DecisionCause.UNATTENDED
+"""Names for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
+
+_TEACHABLE = BY_RLA | ASKING
+"""Causes of decisions that a held action may correct."""
 
 
 class EventStore(Protocol):
@@ -305,7 +309,7 @@ class Tick:
         self._driving = decision.driving and not result.latched
         asks = self._options.asks_at_bumper and self._bumpers.update(decision, result) and handler.teacher_available
         # In phase 5 the robot does not wait: the critic can still punish the RLA that pushes, and replace its action.
-        self._waits = asks and handler.phase is not Phase.AUTONOMOUS
+        self._waits = asks and handler.phase is not AUTONOMOUS
         return _Motion(result, drove_at_s, asks, self._driving and not self._waits)
 
     def _learn(self, tick: int, view: _View, choice: _Choice, motion: _Motion) -> Surprise | None:
@@ -345,9 +349,9 @@ class Tick:
         """Return whether a held action may become a lesson about this tick; not while the active behaviour is open."""
         if motion.result.latched or (decision.mid is not None and decision.mid.asks):
             return False
-        if decision.cause is DecisionCause.TEACHER:
+        if decision.cause is _TEACHER:
             return self._handler.authority.held_press is not None
-        return decision.cause in (DecisionCause.RLA, DecisionCause.HELD) or decision.asking
+        return decision.cause in _TEACHABLE
 
     def _publish(
         self,
@@ -439,9 +443,9 @@ class Tick:
         cause = self._stand_cause(tick, blind=blind)
         authority.expire(tick)
         if authority.is_manual(tick):
-            because = self._blocking_cause(blind=blind) or DecisionCause.TEACHER
+            because = self._blocking_cause(blind=blind) or _TEACHER
             idle_decision = stopped(self._level.decide(situation, readings, because), because)
-            if because is not DecisionCause.TEACHER:
+            if because is not _TEACHER:
                 return idle_decision
             name, wheel_speeds = authority.step(readings)
             press = authority.driving_press
@@ -450,7 +454,7 @@ class Tick:
                 handler.demonstration.update(tick, press, readings, wheel_speeds, situation, behaviour)
             return idle_decision._replace(wheel_speeds=wheel_speeds, action=name)
         decision = stopped(self._level.decide(situation, readings, cause), cause)
-        if cause is DecisionCause.UNATTENDED and not (decision.match is not None and decision.match.known):
+        if cause is _UNATTENDED and not (decision.match is not None and decision.match.known):
             # An unknown situation is asked about even without a teacher.
             return decision._replace(cause=DecisionCause.UNKNOWN)
         return decision
@@ -462,7 +466,7 @@ class Tick:
             return DecisionCause.STOPPED
         cause = self._blocking_cause(blind=blind)
         if cause is None and handler.requires_teacher and not handler.authority.is_present(tick):
-            return DecisionCause.UNATTENDED
+            return _UNATTENDED
         return cause
 
     def _blocking_cause(self, *, blind: bool) -> DecisionCause | None:

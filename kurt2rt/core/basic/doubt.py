@@ -117,15 +117,16 @@ class DoubtMeter:
 
     def on_lesson(self) -> None:
         """Read the lessons again at the next score, because an RLA was created, changed or removed."""
-        self._taught = None
+        self._taught = self._nearest = None
 
     def score(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> float:
         """Return the doubt about `action` in a situation (d,): 0 none, 1 as at 1 % of the ticks of a usual drive."""
-        radius = match.radius
-        off = match.distance / radius - self._usual if radius > 0.0 else 0.0
+        rla, distance, radius, _, _ = match
+        off = distance / radius - self._usual if radius > 0.0 else 0.0
         score = off * self._per_distance if off > 0.0 else 0.0
         if action in self.actions:
-            limits = self._limits(match.rla.rla_id, behaviour)
+            # In most ticks the nearest RLA is that of the tick before.
+            limits = self._nearest_limits if rla.rla_id == self._nearest else self._limits(rla.rla_id, behaviour)
             if limits:
                 most = max(map(sub, map(situation.item, self._features), limits))
                 if most > 0.0:

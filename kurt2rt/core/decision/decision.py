@@ -42,6 +42,9 @@ class DecisionCause(StrEnum):
 ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})
 """Causes by which the robot waits for an answer."""
 
+BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD})
+"""Causes by which an RLA drives."""
+
 
 class MidDecision(NamedTuple):
     """Command of the mid level in one tick."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.decision import ASKING, Decision, DecisionCause
+from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause
 from kurt2rt.core.rla.rla import MID
 
 
@@ -172,7 +172,7 @@ class BumperWatch:
 
     def update(self, decision: Decision, guard_result: GuardResult) -> bool:
         """Count one tick; return whether a bumper blocks the robot now and has for ASKS_AFTER_TICKS."""
-        pushes = decision.cause in (DecisionCause.RLA, DecisionCause.HELD) and not guard_result.latched
+        pushes = decision.cause in BY_RLA and not guard_result.latched
         held = pushes and touched_bumper(guard_result.wheel_speeds, guard_result.reasons) is not None
         if held:
             self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
@@ -230,7 +230,7 @@ class StandingWatch:
         driving, latched = decision.driving, guard_result.latched
         if not driving and not latched and decision.cause is DecisionCause.TOUCHES:
             return touched_bumper(guard_result.wheel_speeds, guard_result.reasons)
-        if latched or not driving:
+        if latched or not driving or not guard_result.reasons:
             self._held, self._held_ticks = None, 0
             return None
         bumpers = touched_bumper(guard_result.wheel_speeds, guard_result.reasons)

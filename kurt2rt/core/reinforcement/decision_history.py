@@ -17,9 +17,10 @@ class DecisionHistory:
         self._ticks = np.full(capacity, -1, dtype=np.int64)
         # Filled here: the first write to a page of untouched memory would cost a tick half a millisecond.
         self._situations = np.full((capacity, dimensions), np.nan)
-        self._has_situation = np.zeros(capacity, dtype=np.bool_)
-        self._touches = np.zeros(capacity, dtype=np.bool_)
-        self._teachable = np.zeros(capacity, dtype=np.bool_)
+        # Lists, because an item of an array takes a tick five to ten times as long to set.
+        self._has_situation = [False] * capacity
+        self._touches = [False] * capacity
+        self._teachable = [False] * capacity
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
@@ -55,14 +56,14 @@ class DecisionHistory:
         row = tick % self._capacity
         self.newest = tick
         self._ticks[row] = tick
-        self._has_situation[row] = situation is not None
-        self._touches[row] = touches
-        self._teachable[row] = teachable and situation is not None
+        has_situation = self._has_situation[row] = situation is not None
         if situation is not None:
             self._situations[row] = situation.vector
-        self._rlas[row] = decision.rla_id
+        self._touches[row] = touches
+        self._teachable[row] = teachable and has_situation
+        rla_id = self._rlas[row] = decision.rla_id
         self._behaviours[row] = behaviour
-        self._answering[row] = (decision.rla_id or 0) if decision.answers else 0
+        self._answering[row] = rla_id if rla_id is not None and decision.answers else 0
         self._circumstances[row] = circumstances
         self._opinions[row] = opinion
 
@@ -72,15 +73,12 @@ class DecisionHistory:
 
     def copy_from(self, other: "DecisionHistory") -> None:
         """Store the ticks of a history of the same size in place of all own ones; allocates no arrays."""
-        for own, its in (
-            (self._ticks, other._ticks),
-            (self._situations, other._situations),
-            (self._has_situation, other._has_situation),
-            (self._touches, other._touches),
-            (self._teachable, other._teachable),
-            (self._answering, other._answering),
-        ):
-            np.copyto(own, its)
+        self._ticks[:] = other._ticks
+        self._situations[:] = other._situations
+        self._answering[:] = other._answering
+        self._has_situation[:] = other._has_situation
+        self._touches[:] = other._touches
+        self._teachable[:] = other._teachable
         self._rlas[:] = other._rlas
         self._behaviours[:] = other._behaviours
         self._circumstances[:] = other._circumstances
@@ -93,15 +91,15 @@ class DecisionHistory:
 
     def has_situation(self, tick: int) -> bool:
         """Return whether a stored tick had sensor data."""
-        return bool(self._has_situation[tick % self._capacity])
+        return self._has_situation[tick % self._capacity]
 
     def teachable(self, tick: int) -> bool:
         """Return whether a held action may become a lesson about a stored tick."""
-        return bool(self._teachable[tick % self._capacity])
+        return self._teachable[tick % self._capacity]
 
     def touched(self, tick: int) -> bool:
         """Return whether the robot asked at a bumper in a stored tick."""
-        return bool(self._touches[tick % self._capacity])
+        return self._touches[tick % self._capacity]
 
     def situation(self, tick: int) -> NDArray[np.float64]:
         """Return the situation (d,) of a stored tick that had one: a view that later ticks overwrite."""

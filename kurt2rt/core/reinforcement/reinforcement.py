@@ -28,7 +28,7 @@ from kurt2rt.core.rla.events import (
     RlaRewarded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import EDGE_WEIGHTS_INCLUDE, FIRST_VALUE, VALUES_INCLUDE, Statistics
@@ -113,7 +113,7 @@ class Reinforcement:
 
     def set_phase(self, phase: Phase) -> None:
         """Use the thresholds of a phase; entering phase 5 starts new autonomous values."""
-        values = self._settings.alone if phase is Phase.AUTONOMOUS else self._settings.with_teacher
+        values = self._settings.alone if phase is AUTONOMOUS else self._settings.with_teacher
         if values is not self._value_settings:
             self._value_settings = values
             self._autonomous = self._make_rule(values) if phase is Phase.AUTONOMOUS else None

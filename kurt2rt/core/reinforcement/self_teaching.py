@@ -13,7 +13,7 @@ from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.events import LessonUndone, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
 from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
@@ -64,7 +64,7 @@ class SelfTeaching:
 
     def set_phase(self, phase: Phase) -> bool:
         """Replace the teacher in phase 5 while the critic is trusted; return whether that is so."""
-        active = phase is Phase.AUTONOMOUS and self.trusted
+        active = phase is AUTONOMOUS and self.trusted
         if active and not self._is_active:
             self.rollback.restart()
             self._autonomy.restart()

@@ -44,7 +44,8 @@ class ControlAuthority:
         self._behaviour: Behaviour | None = None
         self._behaviour_name = ""
         self._behaviour_until = -1
-        self._held_press: int | None = None
+        self.held_press: int | None = None
+        """Press id of the action that the teacher holds; None if none is held."""
         self._holds: dict[str, int] = {}
         """Newest press id of each teacher that was a hold."""
 
@@ -114,7 +115,7 @@ class ControlAuthority:
         if self._holds.get(command.teacher) == command.press_id:
             del self._holds[command.teacher]
         self._press_ids[command.teacher] = command.press_id
-        self._behaviour = self._held_press = None
+        self._behaviour = self.held_press = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
         self._driven_until = self._lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
@@ -122,9 +123,9 @@ class ControlAuthority:
     def hold(self, command: HoldAction, tick: int) -> None:
         """Let the held action drive; only for the teacher, with a press that is not over."""
         self._press_ids[command.teacher] = self._holds[command.teacher] = command.press_id
-        if self._held_press != command.press_id or self._behaviour_name != command.action:
+        if self.held_press != command.press_id or self._behaviour_name != command.action:
             self._start(command.action)
-        self._held_press = command.press_id
+        self.held_press = command.press_id
         self._behaviour_until = self._lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
@@ -140,11 +141,6 @@ class ControlAuthority:
         """Return the actions that the teacher can run; free while speeds are driven by hand."""
         return self._repertoire
 
-    @property
-    def held_press(self) -> int | None:
-        """Return the press id of the action that the teacher holds; None if none is held."""
-        return self._held_press
-
     def is_hold(self, teacher: str, press_id: int) -> bool:
         """Return whether a press is this teacher's newest hold, over or not, or came before it and so is over."""
         return press_id <= self._holds.get(teacher, -1)
@@ -158,7 +154,7 @@ class ControlAuthority:
         """End manual drive and every press so far, so that late messages of them have no effect."""
         self._ended_press_ids.update(self._press_ids)
         self._speeds = None
-        self._behaviour = self._held_press = None
+        self._behaviour = self.held_press = None
 
     def is_manual(self, tick: int) -> bool:
         """Return whether the teacher drives by hand or runs an action in this tick."""
@@ -168,7 +164,7 @@ class ControlAuthority:
 
     def expire(self, tick: int) -> None:
         """End a press or a run whose lease is over in this tick; call it on every tick before the decision."""
-        if not self.is_manual(tick) and (self._speeds is not None or self._behaviour is not None):
+        if (self._speeds is not None or self._behaviour is not None) and not self.is_manual(tick):
             self.end_manual()
 
     def step(self, readings: SensorReadings) -> tuple[str, WheelSpeeds]:
@@ -179,7 +175,7 @@ class ControlAuthority:
         return self._behaviour_name, self._behaviour.step(readings)
 
     def _start(self, action: str) -> None:
-        self._speeds = self._held_press = None
+        self._speeds = self.held_press = None
         self._behaviour = self._repertoire[action]
         self._behaviour.start()
         self._behaviour_name = action

@@ -1,6 +1,6 @@
 """Command handler: carries out the teacher's commands in the tick that takes them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeGuard
 
@@ -18,7 +18,7 @@ from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
@@ -189,8 +189,9 @@ class CommandHandler:
         Without a teacher to ask, the level skips RLAs whose action was withdrawn. The decisions before a standstill are
         kept for a teacher who rewinds.
         """
-        self._rewind.update(driving=was_driving)
-        self._level.skip_withdrawn = not self.teacher_available or self.phase is Phase.AUTONOMOUS
+        if was_driving is not self._rewind.was_driving:
+            self._rewind.update(driving=was_driving)
+        self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
@@ -198,17 +199,19 @@ class CommandHandler:
     @property
     def requires_teacher(self) -> bool:
         """Return whether the robot drives by its RLAs only while a teacher is present."""
-        return self.authority.attended and self.phase is not Phase.AUTONOMOUS
+        return self.authority.attended and self.phase is not AUTONOMOUS
 
     def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
         """Apply a message of a stream, in which only the newest counts; return a refusal, or None."""
         return self.streams.handle(command, tick)
 
-    def teach_driven(self, tick: int) -> list[TeachingEvent]:
+    def teach_driven(self, tick: int) -> Sequence[TeachingEvent]:
         """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.
 
         Call it only if lessons can be saved.
         """
+        if self.authority.held_press is None and not self.demonstration.pending:
+            return ()
         events: list[TeachingEvent] = []
         shown = self.demonstration.next_lesson(tick)
         if shown is not None:
@@ -220,7 +223,8 @@ class CommandHandler:
 
     def on_decision(self, tick: int, *, asks: bool) -> None:
         """Note whether the basic level asked its teacher in a tick."""
-        self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
+        if asks or self.delay.asked_tick is not None:
+            self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
 
     def handle(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""

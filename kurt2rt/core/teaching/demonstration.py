@@ -158,6 +158,11 @@ class Demonstration:
         """Drop the lessons that have not been given yet; call it when the teacher undoes a lesson."""
         self._pending.clear()
 
+    @property
+    def pending(self) -> bool:
+        """Return whether lessons of a confirmed demonstration have not been given yet."""
+        return bool(self._pending)
+
     def next_lesson(self, tick: int) -> TeachingEvent | None:
         """Return the next lesson of a confirmed demonstration; None if none is due.
 

@@ -14,13 +14,14 @@ class RewindHistory:
         """Copy from `recent`, which the tick continues to write."""
         self._recent = recent
         self._before_standstill = recent.empty_copy()
-        self._was_driving = False
+        self.was_driving = False
+        """Whether the robot drove at the last update."""
 
     def update(self, *, driving: bool) -> None:
-        """Copy the recent decisions if the robot drove before and does not now; call it once a tick."""
-        if self._was_driving and not driving:
+        """Copy the recent decisions if the robot drove before and does not now; call it when `driving` changes."""
+        if self.was_driving and not driving:
             self._before_standstill.copy_from(self._recent)
-        self._was_driving = driving
+        self.was_driving = driving
 
     def find(self, tick: int) -> DecisionHistory | None:
         """Return the history that stores a tick; None if neither does."""

@@ -29,20 +29,16 @@ class TeacherDelay:
         """`default_ticks`: delay of a teacher who has given fewer than four answers."""
         self._default_ticks = default_ticks
         self._answers: dict[str, deque[int]] = {}
-        self._asked_tick: int | None = None
+        self.asked_tick: int | None = None
+        """First tick of the present question; None if the robot does not ask."""
         self._answered = False
 
     def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
         """Note whether the robot asked in a tick; an answer tells no delay if its teacher came after the question."""
         if not asks:
-            self._asked_tick = None
-        elif self._asked_tick is None:
-            self._asked_tick, self._answered = tick, not present
-
-    @property
-    def asked_tick(self) -> int | None:
-        """Return the first tick of the present question; None if the robot does not ask."""
-        return self._asked_tick
+            self.asked_tick = None
+        elif self.asked_tick is None:
+            self.asked_tick, self._answered = tick, not present
 
     def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
         """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.
@@ -52,10 +48,10 @@ class TeacherDelay:
             given_tick: newest state that the teacher had.
             speed: robot seconds in one second.
         """
-        if self._asked_tick is None or self._answered or given_tick < self._asked_tick:
+        if self.asked_tick is None or self._answered or given_tick < self.asked_tick:
             return
         self._answered = True
-        took = (given_tick - self._asked_tick) // speed
+        took = (given_tick - self.asked_tick) // speed
         if took <= _LONGEST_TICKS:
             self._answers.setdefault(teacher, deque(maxlen=_WINDOW)).append(took)
 
