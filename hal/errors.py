@@ -1,7 +1,7 @@
 """Base of the errors that a user sees, in one line each, and the exit codes of the programs."""
 
-from enum import IntEnum
-from typing import ClassVar
+from enum import IntEnum, StrEnum
+from typing import ClassVar, Self
 
 
 class ExitCode(IntEnum):
@@ -14,6 +14,22 @@ class ExitCode(IntEnum):
     """An error that the user can mend, or a shutdown that took too long."""
     INTERRUPTED = 130
     """Ctrl-C: 128 and SIGINT, as shells count."""
+
+
+class ErrorCode(StrEnum):
+    """Base of the conditions of an error: each member is a code with the text of its line."""
+
+    what: str
+    """Fault, with the error's fields in braces."""
+    do: str
+    """Remedy, with the error's fields in braces; empty if `what` says it."""
+
+    def __new__(cls, value: str, what: str, do: str) -> Self:
+        """Make a member of a code and its text."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.what, member.do = what, do
+        return member
 
 
 class UserError(Exception):

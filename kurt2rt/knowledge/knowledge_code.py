@@ -1,7 +1,6 @@
 """Conditions that keep knowledge from being read or written, as codes, and the text of each."""
 
-from enum import StrEnum
-from typing import Self
+from hal.errors import ErrorCode
 
 _SQLITE = " (SQLite: {error})"
 _BACKUP = "keep the file, and go on with a backup copy"
@@ -16,20 +15,8 @@ _NEW_FILE = "give the path of a new file"
 _KEY = "kurt2rt knowledge key makes one"
 
 
-class KnowledgeCode(StrEnum):
+class KnowledgeCode(ErrorCode):
     """Condition that keeps knowledge from being read or written."""
-
-    what: str
-    """Fault, with the error's fields in braces."""
-    do: str
-    """Remedy, with the error's fields in braces; empty if `what` says it."""
-
-    def __new__(cls, value: str, what: str, do: str) -> Self:
-        """Make a member of a code and its text."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.what, member.do = what, do
-        return member
 
     # SQLite
     LOCKS_STUCK = ("locks stuck", "its locks are stuck", f"{_HEALTH}, and restart the robot program" + _SQLITE)

@@ -1,28 +1,13 @@
 """Error of a unit that cannot be made, installed or checked, as a code with its text."""
 
-from enum import StrEnum
-from typing import Self
-
-from hal.errors import UserError
+from hal.errors import ErrorCode, UserError
 
 _SUDO = "say it with sudo"
 _OTHER_NAME = "give another --name"
 
 
-class UnitCode(StrEnum):
+class UnitCode(ErrorCode):
     """Condition that keeps a unit from being made, installed or checked."""
-
-    what: str
-    """Fault, with the error's fields in braces."""
-    do: str
-    """Remedy; empty if `what` says it."""
-
-    def __new__(cls, value: str, what: str, do: str) -> Self:
-        """Make a member of a code and its text."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.what, member.do = what, do
-        return member
 
     BAD_NAME = ("bad name", "is no name for a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
     UNPRINTABLE = ("unprintable", "cannot stand in a unit", "give a path without control characters")
@@ -52,5 +37,5 @@ class UnitError(UserError):
 
     def __init__(self, code: UnitCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's text with `fields`; `where` names the file, user or setting."""
-        super().__init__(code.what.format_map(fields), where=where, do=code.do)
+        super().__init__(code.what.format_map(fields), where=where, do=code.do.format_map(fields))
         self.code = code
