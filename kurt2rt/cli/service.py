@@ -1,5 +1,6 @@
 """`kurt2rt service ...`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,7 @@ from rich.console import Console
 
 from hal.errors import ExitCode
 from hal.settings import find_config
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import EarlierBus, bus_of
 from kurt2rt.service.settings import load_service
@@ -26,42 +28,44 @@ service = typer.Typer(
     no_args_is_help=True,
 )
 
-RobotBus = Annotated[str, typer.Option("--bus", help="Bus that the robot is on, as for kurt2rt run.")]
 _BUS = "can0"
-RuntimeSettings = Annotated[
-    str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-]
 UnitName = Annotated[str, typer.Option(help="Name of the unit and of its user; one for each robot of a machine.")]
-WithPage = Annotated[bool, typer.Option("--page", help="Let the unit serve the teacher's page as well.")]
+
+
+@dataclass(frozen=True, slots=True)
+class _UnitOptions:
+    """Options of a unit."""
+
+    bus: Annotated[str, typer.Option("--bus", help="Bus that the robot is on, as for kurt2rt run.")] = _BUS
+    settings: Annotated[
+        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+    ] = "default"
+    name: UnitName = "kurt2rt"
+    page: Annotated[bool, typer.Option("--page", help="Let the unit serve the teacher's page as well.")] = False
+    robot: EarlierBus = None
+
+
+@dataclass(frozen=True, slots=True)
+class _CheckOptions(_UnitOptions):
+    as_json: AsJson = False
 
 
 @service.command()
-def show(
-    bus: RobotBus = _BUS,
-    settings: RuntimeSettings = "default",
-    name: UnitName = "kurt2rt",
-    page: WithPage = False,
-    robot: EarlierBus = None,
-) -> None:
+@takes_options(_UnitOptions)
+def show(options: _UnitOptions) -> None:
     """Print the unit as `install` would write it.
 
     For example:
 
         kurt2rt service show --bus can0
     """
-    unit, _ = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
+    unit, _ = _unit(options)
     typer.echo(unit.service, nl=False)
 
 
 @service.command()
-def check(
-    bus: RobotBus = _BUS,
-    settings: RuntimeSettings = "default",
-    name: UnitName = "kurt2rt",
-    page: WithPage = False,
-    robot: EarlierBus = None,
-    as_json: AsJson = False,
-) -> None:
+@takes_options(_CheckOptions)
+def check(options: _CheckOptions) -> None:
     """Check the unit by systemd's own tools: whether it loads, and what it may do.
 
     Changes nothing. Ends with code 1 if it does not load, its user could not
@@ -73,13 +77,14 @@ def check(
 
         kurt2rt service check --bus can0 --settings my-runtime.yaml
     """
+    name = options.name
     require_free(name)
-    unit, wanted = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
+    unit, wanted = _unit(options)
     found = verify(unit)
     obstacles = (*private_paths(wanted), *paths_to_chown(name, wanted))
     wrong = (*found.complaints, *map(access_text, obstacles))
     passed = found.passed and not wrong
-    if as_json:
+    if options.as_json:
         told = {
             "unit": f"{name}.service",
             "passed": passed,
@@ -103,13 +108,8 @@ def check(
 
 
 @service.command()
-def install(
-    bus: RobotBus = _BUS,
-    settings: RuntimeSettings = "default",
-    name: UnitName = "kurt2rt",
-    page: WithPage = False,
-    robot: EarlierBus = None,
-) -> None:
+@takes_options(_UnitOptions)
+def install(options: _UnitOptions) -> None:
     """Write the unit and make its user; start nothing yet.
 
     Needs root. The unit keeps what it is taught in /var/lib/NAME. After any
@@ -120,7 +120,8 @@ def install(
         sudo .venv/bin/kurt2rt service install --bus can0
         sudo systemctl enable --now kurt2rt
     """
-    unit, wanted = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
+    unit, wanted = _unit(options)
+    name = options.name
     for obstacle in private_paths(wanted):
         raise UnitError(UnitCode.NO_ACCESS, says=access_text(obstacle))
     for path in install_unit(unit):
@@ -143,8 +144,9 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
     typer.echo(f"what was taught stays in {STATE / name}")
 
 
-def _unit(bus: str, settings: str, name: str, *, page: bool) -> tuple[Unit, RequiredAccess]:
+def _unit(options: _UnitOptions) -> tuple[Unit, RequiredAccess]:
     """Return the unit, and the files and folders that it needs. Raises SettingsError, UnitError."""
+    bus, settings, name = bus_of(options.bus, options.robot, default=_BUS), options.settings, options.name
     require_name(name)
     found = find_config("runtime", settings)
     loaded = load_service(settings)
@@ -157,7 +159,7 @@ def _unit(bus: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Requ
         bus,
         "--settings",
         named,
-        *(("--page",) if page else ()),
+        *(("--page",) if options.page else ()),
     )
     state = STATE / name
     files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
