@@ -63,6 +63,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "conflicts of a merge": merging.conflicts,
         "errors of knowledge": merging.knowledge_errors,
         "findings of the doctor": doctor.findings,
+        "summary of the doctor": doctor.summaries,
     },
     "studies": {
         "targets": verdicts.targets,

@@ -1,9 +1,10 @@
-"""Listing of the texts of the doctor's findings."""
+"""Listings of the texts of the doctor's findings, and of its summary."""
 
 from collections.abc import Iterator
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.finding_text import text_of
+from kurt2rt.checks.doctor.report import summary
 
 _VALUES: dict[str, float | str] = {
     "version": "3.11.7",
@@ -44,3 +45,11 @@ def findings() -> Iterator[tuple[str, str]]:
     """Yield subject, found and what to do of each finding."""
     for code in FindingCode:
         yield code, " | ".join(text_of(CheckResult(code, CheckStatus.OK, _VALUES)))
+
+
+def summaries() -> Iterator[tuple[str, str]]:
+    """Yield the last line of the report, of a machine that can run the robot program and of one that cannot."""
+    fine = CheckResult(FindingCode.PYTHON, CheckStatus.OK, needed=True)
+    no_folder = CheckResult(FindingCode.FOLDER_UNWRITABLE, CheckStatus.MISSING, _VALUES, needed=True)
+    yield "can start", summary([fine])
+    yield "cannot start", summary([fine, no_folder])

@@ -14,10 +14,9 @@ def test_one_benchmark_prints_its_table_and_writes_json(kurt2rt: CommandLine, tm
     file = tmp_path / "results.json"
     said = kurt2rt("bench", "--only", "match", "--quick", "--json", file, "--folder", tmp_path)
     assert said.exit_code == 0, said.err
-    assert "nearest of 100000 RLAs" in said.out
-    assert "load average" in said.out
+    assert "100000 RLAs" in said.out
     report = json.loads(file.read_text(encoding="utf-8"))
-    assert [row["what"] for row in report["results"]] == [f"nearest of {n} RLAs" for n in (135, 1000, 100000)]
+    assert [row["what"].split()[-2] for row in report["results"]] == ["135", "1000", "100000"]
     assert all(row["reference"]["ratio"] > 0 for row in report["results"])
     assert list(tmp_path.iterdir()) == [file]
 

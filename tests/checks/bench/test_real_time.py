@@ -74,7 +74,8 @@ def test_a_fifth_of_the_bare_loops_lateness_will_do() -> None:
     assert result.reference is not None
     assert result.reference.ratio == pytest.approx(TIMES_BETTER)
     assert [goal.met for goal in result.goals] == [True, True]
-    assert "91 RLAs, driving in 97% of the ticks" in result.note
+    assert "91 RLAs" in result.note
+    assert "97%" in result.note
 
 
 def test_more_than_a_fifth_or_a_missed_tick_will_not() -> None:

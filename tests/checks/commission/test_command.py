@@ -8,9 +8,11 @@ import pytest
 from config import CONFIG_DIR
 from hal.control import Control, RawControl, SpeedControl, decode_control
 from hal.shared_bus import SharedBus
+from kurt2rt.checks.commission.fault import FaultCode, StepFault
+from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.progress import load_progress
 from tests.checks.commission.typed import PROGRESS, Type, Typed, commission_the_rest, earlier, live, typing
-from tests.checks.commission.workshop import Workshop
+from tests.checks.commission.workshop import BASE, Workshop
 from tests.cli.helpers import CommandLine, running
 
 
@@ -44,7 +46,7 @@ def test_ctrl_c_brakes_while_the_wheels_turn(tmp_path: Path, key: signal.Signals
     assert isinstance(last, RawControl)
     assert last.left.brake
     assert last.right.brake
-    assert "stopped: the wheels are braked; the same command goes on from here" in said.out
+    assert "\nstopped: " in said.out
     assert said.err == ""
     assert "stop" not in load_progress(tmp_path / PROGRESS).steps
 
@@ -63,10 +65,8 @@ def test_the_input_that_ends_leaves_the_rest_for_another_day(type_at: Type) -> N
     with Workshop() as workshop, live(workshop):
         said = type_at(Typed(), workshop.spec, "--name", "robbie")
     assert said.exit_code == 0
-    assert "left; the same command goes on from here" in said.out
-    assert (
-        "no settings file yet; steps not taken: identity, modes, wheels, stop, sensors, bumpers, infrared" in said.out
-    )
+    assert "\nleft; " in said.out
+    assert ": identity, modes, wheels, stop, sensors, bumpers, infrared;" in said.out
 
 
 def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tmp_path: Path) -> None:
@@ -74,8 +74,9 @@ def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tm
     with Workshop() as workshop:  # switched off: nothing is heard
         said = type_at(Typed("", ""), workshop.spec, "--name", "robbie")
     assert said.exit_code == 1
-    assert "identity: Nothing was heard: is the robot on" in said.out
-    assert "no settings file is written while these fail: identity; mend, then run the same command again" in said.out
+    fault = StepFault.of(FaultCode.BUS_SILENT, bit_rate_bit_s=BASE.can.bit_rate_bit_s)
+    assert f"identity: {fault_text(fault)}" in said.out
+    assert ": identity; " in said.out.splitlines()[-1]
     assert not (tmp_path / "var" / "robots").exists()
 
 
@@ -95,8 +96,8 @@ def test_findings_are_written_if_the_rest_is_skipped(type_at: Type, tmp_path: Pa
             "ber\nt",
         )
     assert said.exit_code == 0
-    assert "robbie: not passed" in said.out
-    assert (tmp_path / "mine.yaml").read_text().startswith("# robbie, commissioned with ")
+    assert "robbie: not" in said.out
+    assert (tmp_path / "mine.yaml").read_text().startswith("# robbie, ")
     assert "NOT PASSED" in (tmp_path / "mine.yaml").read_text()
     assert "# sensors: skipped, " in (tmp_path / "mine.yaml").read_text()
     assert " UTC, ber t\n" in (tmp_path / "mine.yaml").read_text()
@@ -108,7 +109,7 @@ def test_commission_unusable_progress_file_prints_one_line(
 ) -> None:
     (tmp_path / PROGRESS).with_name(in_the_way).mkdir(parents=True)
     said = kurt2rt.refused("commission", "virtual:empty", "--name", "robbie", "--skip", "modes")
-    assert f"Is a directory: 'var/commission/{in_the_way}'; give a path that can be written, on a disk" in said
+    assert f"'var/commission/{in_the_way}'" in said
 
 
 def test_commission_other_bus_needs_a_known_robot(kurt2rt: CommandLine, tmp_path: Path) -> None:
@@ -117,15 +118,16 @@ def test_commission_other_bus_needs_a_known_robot(kurt2rt: CommandLine, tmp_path
     unknown = kept.findings.model_copy(update={"hardware_id": None})
     kept.model_copy(update={"findings": unknown}).save(tmp_path / PROGRESS)
     said = kurt2rt.refused("commission", "shared:desk", "--name", "robbie")
-    assert "was begun on bus can0, and which robot that was is not known; go on there, give another --name" in said
+    assert "bus can0" in said
+    assert "--name" in said
 
 
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("can7",), "bus 'can7': no such network interface"),
-        (("virtual:x", "--robot-settings", "nope"), "nope: no such file in robots"),
-        (("virtual:x", "--name", "robbie", "--robot-settings", "other.yaml"), "was begun with --robot-settings kurt2"),
+        (("can7",), "bus 'can7': "),
+        (("virtual:x", "--robot-settings", "nope"), "nope: "),
+        (("virtual:x", "--name", "robbie", "--robot-settings", "other.yaml"), "--robot-settings kurt2"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -140,12 +142,12 @@ def test_commission_that_cannot_start_prints_one_line(
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("can0", "--name", "My Robot"), "up to 40 of a-z, 0-9 and -"),
-        (("can0", "--only", "identity,dance"), "no step dance; there are: identity, lifted, modes, wheels, stop"),
-        (("can0", "--skip", "dance"), "no step dance"),
-        (("can0", "--who", "an\x1bna"), "a name on one line"),
-        (("can0", "--out", "mine.txt"), "a settings file ends in .yaml"),
-        (("can0", "--out", "mine.yaml"), "mine.yaml is there already; --force overwrites it"),
+        (("can0", "--name", "My Robot"), "a-z, 0-9"),
+        (("can0", "--only", "identity,dance"), "identity, lifted, modes, wheels, stop"),
+        (("can0", "--skip", "dance"), " dance;"),
+        (("can0", "--who", "an\x1bna"), "--who"),
+        (("can0", "--out", "mine.txt"), ".yaml"),
+        (("can0", "--out", "mine.yaml"), "--force"),
         ((), "Missing argument"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",

@@ -80,9 +80,9 @@ async def test_console_operator_repeats_questions_and_labels_lines() -> None:
     with pytest.raises(AbortedError):
         await person.answer(question)
     said = screen.getvalue()
-    assert said.startswith("\nWhich?\n  TO DO: Exchange them\n")
+    assert said.splitlines()[:3] == ["", "Which?", "  TO DO: Exchange them"]
     assert "  The wheels turn.\n    [Enter] turn them  [s] skip this step  [q] leave > " in said
-    assert "'maybe' is no answer here." in said
+    assert "'maybe'" in said
 
 
 async def test_words_stay_whole_on_a_narrow_terminal() -> None:

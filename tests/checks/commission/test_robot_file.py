@@ -71,7 +71,7 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
     )
     failed = StepRecord(outcome=StepOutcome.FAILED, at=TODAY, who="anna", to_do=("s9 answers on no channel",))
     text = robot_file(BASE, progress(findings, sensors=failed), STEPS)
-    assert text.startswith("# robbie, commissioned with kurt2rt commission can0: NOT PASSED\n")
+    assert text.splitlines()[0].endswith(" can0: NOT PASSED")
     for line in (
         "# identity: passed, 2026-11-21 15:00 UTC, anna",
         "# sensors: failed, 2026-11-21 15:00 UTC, anna",
@@ -85,8 +85,8 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
         "  - {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
     ):
         assert line in text.splitlines()
-    assert re.search(r"name: s9,.*# DEAD, no channel answered, 2026-11-21, anna", text)
-    assert re.search(r"name: s3,.*# not tried", text)
+    assert re.search(r" s9,.*# DEAD.*, 2026-11-21, anna", text)
+    assert re.search(r" s3,.*not tried", text)
     assert RobotSettings.model_fields.keys() == yaml.safe_load(text).keys()
 
 
@@ -144,4 +144,4 @@ def test_the_runtime_settings_take_the_file_by_its_path(tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     mine.write_text(default.replace("robot: kurt2 ", f"robot: {out} "))
     assert load_robot(load_service(str(mine)).robot).can.speed_mode is SpeedMode.RAW
-    assert out.read_text().startswith("# robbie, commissioned with kurt2rt commission can0: PASSED\n")
+    assert out.read_text().splitlines()[0].endswith(" can0: PASSED")

@@ -1,5 +1,6 @@
 """The steps that turn wheels, on robots with the mistakes that real ones have."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -48,7 +49,8 @@ async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, 
     session = await turned(tmp_path, "modes", wiring=Wiring(modes=modes))
     assert session.outcome("modes") is StepOutcome.PASSED
     assert session.progress.findings.speed_mode is modes[0]
-    assert session.measured("modes")[0] == "SPEED_CM: no answer"
+    assert session.measured("modes")[0].startswith("SPEED_CM: ")
+    assert "m/s" not in session.measured("modes")[0]
 
 
 async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Path) -> None:
@@ -95,7 +97,7 @@ async def test_modes_step_other_encoders_name_the_settings_to_change(tmp_path: P
 async def test_fault_of_an_unneeded_speed_mode_is_ignored(tmp_path: Path) -> None:
     session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
     assert session.outcome("modes") is StepOutcome.PASSED
-    assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
+    assert any(line.startswith("SPEED: ") and RAN_AWAY in line for line in session.measured("modes"))
 
 
 async def test_modes_step_skipped_mode_is_left_out(tmp_path: Path) -> None:
@@ -105,7 +107,7 @@ async def test_modes_step_skipped_mode_is_left_out(tmp_path: Path) -> None:
         return SKIP if question.about is QuestionKind.MOVE and "SPEED_CM" in question.text else None
 
     session = await turned(tmp_path, "modes", instead=leave_out)
-    assert session.measured("modes")[0] == "SPEED_CM: left out"
+    assert session.measured("modes")[0].startswith("SPEED_CM: ")
     assert session.progress.findings.speed_mode is SpeedMode.SPEED
 
 
@@ -206,7 +208,7 @@ async def test_wheels_step_both_exchanged_is_seen_by_the_operator(tmp_path: Path
     wiring = Wiring(motors_exchanged=True, encoders_exchanged=True)
     session = await turned(tmp_path, "wheels", wiring=wiring)
     first = session.measured("wheels")[0]
-    assert first.startswith("ordered left forward, seen right forward, encoders left forward")
+    assert re.findall("(?:left|right) forward", first) == ["left forward", "right forward", "left forward"]
 
 
 async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None:
@@ -216,7 +218,8 @@ async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None
         return next(hurried, None) if question.about is QuestionKind.SEEN else None
 
     session = await turned(tmp_path, "wheels", instead=hurry)
-    assert session.person.lines(Tone.BAD) == ["Two words, please, such as: left forward. Or: none, or y."]
+    (again,) = session.person.lines(Tone.BAD)
+    assert again.endswith(" y.")
     assert session.outcome("wheels") is StepOutcome.PASSED
 
 
@@ -227,7 +230,7 @@ async def test_wheels_step_refuses_yes_if_encoders_disagree(tmp_path: Path) -> N
         return next(hurried, None) if question.about is QuestionKind.SEEN else None
 
     session = await turned(tmp_path, "wheels", wiring=Wiring(reversed_encoders=[0]), instead=hurry)
-    assert session.person.lines(Tone.BAD).count("Two words, please, such as: left forward. Or: none.") == 3
+    assert len([line for line in session.person.lines(Tone.BAD) if line.endswith(" none.")]) == 3
     assert session.faults("wheels") == (LEFT_ENCODER_REVERSED,)
 
 
@@ -256,8 +259,9 @@ def test_wiring_faults_order_turning_both_names_both_motors() -> None:
         for sign in (1, -1)
         for ordered in (Motion(sign, 0), Motion(0, sign))
     ]
-    assert wiring_faults(both) == [
-        StepFault.of(FaultCode.MOTOR_ODD, side=side, motion="both forward and both back") for side in ("left", "right")
+    assert [(each.code, each.fields["side"]) for each in wiring_faults(both)] == [
+        (FaultCode.MOTOR_ODD, "left"),
+        (FaultCode.MOTOR_ODD, "right"),
     ]
 
 
@@ -281,8 +285,8 @@ async def test_brake_and_watchdog_are_timed(tmp_path: Path) -> None:
     assert session.outcome("stop") is StepOutcome.PASSED
     assert session.progress.findings.controller_watchdog_s == pytest.approx(0.45, abs=0.03)
     braked, silent = session.measured("stop")
-    assert braked == "braked: the wheels stood 50 ms after the frame"
-    assert silent.startswith("without CONTROL: the drive dropped out after 4")
+    assert re.findall(r"\d+ ms", braked) == ["50 ms"]
+    assert 420 <= int(re.findall(r"(\d+) ms", silent)[0]) <= 480
 
 
 async def test_stop_step_endless_controller_is_braked_and_fails(tmp_path: Path) -> None:

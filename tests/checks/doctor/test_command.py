@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from kurt2rt.checks.doctor.check_result import CheckStatus
 from tests.cli.helpers import CommandLine
 
 SUBJECTS = {
@@ -31,7 +32,7 @@ def test_doctor_prints_every_subject_and_a_last_line(kurt2rt: CommandLine, tmp_p
     assert said.exit_code == 0, said.err
     for subject in SUBJECTS:
         assert subject in said.out
-    assert said.out.splitlines()[-1].endswith("kurt2rt run can start")
+    assert f" {CheckStatus.OK}, " in said.out.splitlines()[-1]
 
 
 def test_a_program_gets_json_and_code_1_when_there_is_no_disk(kurt2rt: CommandLine) -> None:

@@ -2,6 +2,7 @@
 
 import io
 import json
+import re
 from typing import Literal
 
 from rich.console import Console
@@ -30,9 +31,9 @@ def printed(*findings: CheckResult, width: int = 120, colours: Literal["standard
     return text.getvalue()
 
 
-def test_the_summary_counts_and_says_what_run_cannot_do_without() -> None:
-    assert summary([FINE, SLOW, NO_CAN]) == "3 checks: 1 ok, 1 warning, 1 missing; kurt2rt run can start"
-    assert summary([NO_CAN, NO_DISK]).endswith("; kurt2rt run cannot do without: knowledge folder")
+def test_the_summary_counts_and_names_what_run_cannot_do_without() -> None:
+    assert re.findall(r"\b\d+\b", summary([FINE, SLOW, NO_CAN])) == ["3", "1", "1", "1"]
+    assert summary([NO_CAN, NO_DISK]).endswith(f": {text_of(NO_DISK).subject}")
 
 
 def test_the_summary_is_the_last_line() -> None:

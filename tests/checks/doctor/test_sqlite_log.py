@@ -29,7 +29,7 @@ def test_a_folder_where_sqlite_cannot_open_a_file_forbids_to_run(tmp_path: Path)
 
 def test_a_database_that_keeps_no_log_is_found_out() -> None:
     with closing(sqlite3.connect(":memory:")) as writer, closing(sqlite3.connect(":memory:")) as reader:
-        assert log_fault(writer, reader) == "journal mode stays memory"
+        assert "memory" in log_fault(writer, reader)
 
 
 def test_a_reader_that_does_not_see_the_lesson_is_found_out(tmp_path: Path) -> None:

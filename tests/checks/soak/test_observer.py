@@ -106,7 +106,7 @@ def test_an_error_in_the_loop_ends_the_program_and_says_where(
     program = started(tmp_path, rig, observer, away=AWAY)
     program.level.inner = None
     run(program, rig, 1.0)
-    assert program.ended_by.startswith("AssertionError() in failing_level.py, line ")
+    assert program.ended_by.startswith("AssertionError() in failing_level.py,")
     assert program.close() is None
     rig.time.run_until(1.0)
     assert rig.standing
