@@ -87,7 +87,6 @@ class ConditionIndex:
         self._half_squares = np.zeros(64, dtype=np.float32)
         self._norms = np.zeros(64)
         self._pair, self._squares = np.empty((2, dimensions)), np.empty(2)
-        self._first, self._second = self._pair
         self._largest_norm = _SMALLEST_NORM
         self._update_views()
 
@@ -170,8 +169,8 @@ class ConditionIndex:
     def _nearest_two(self, best: int, second: int, situation: NDArray[np.float64]) -> NearestCondition:
         """Return `exact_distances` of two rows, in half the time of two calls of `_distance`."""
         rows, squares = self._pair, self._squares
-        np.subtract(self._exact[best], situation, self._first)
-        np.subtract(self._exact[second], situation, self._second)
+        np.subtract(self._exact[best], situation, rows[0])
+        np.subtract(self._exact[second], situation, rows[1])
         np.multiply(rows, rows, rows)
         _sum(rows, 1, out=squares)
         return NearestCondition(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
