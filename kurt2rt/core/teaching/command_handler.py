@@ -48,12 +48,13 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
+from kurt2rt.core.teaching.control_commands import ControlCommands
 from kurt2rt.core.teaching.demonstration import Demonstration
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
 from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
 from kurt2rt.core.teaching.late_press import LatePresses
-from kurt2rt.core.teaching.lesson_builder import LessonBuilder, require_action
+from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
@@ -121,6 +122,7 @@ class CommandHandler:
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire)
         self.stops = StopRecord()
         self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
+        self._control = ControlCommands(level.repertoire, authority, self.stops, self.streams)
         self._late = LatePresses(self.recent, self.delay)
         self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
@@ -159,15 +161,8 @@ class CommandHandler:
         return self._lessons.corrections_at[level_name]
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
-        """Stand until `Resume`.
-
-        Args:
-            stop: reason for the active stop.
-            by: teacher who stopped the robot and may still drive it by hand; other teachers may not. After stops by
-                two teachers neither may, because a late copy of one's stop must not lift the other's.
-        """
-        self.authority.end_manual()
-        self.stops.begin(stop, by)
+        """Stand until `Resume`; `by`: teacher who stopped the robot and may still drive it by hand."""
+        self._control.stop(stop, by)
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
@@ -278,19 +273,17 @@ class CommandHandler:
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:
         if isinstance(command, Stop):
-            return LessonResult(self._stop(command, tick))
+            return LessonResult(self._control.carry_out(command, tick))
         refuse(name_refusal(command.teacher))
         if isinstance(command, Take):
-            return LessonResult(self._take(command, tick))
+            return LessonResult(self._control.carry_out(command, tick))
         refuse(self.authority.refusal_for(command.teacher))
         self.authority.claim(command.teacher)
         if _lifts_stop(command):
             refuse(self.stops.refusal_since(command.seen_tick))
         match command:
-            case HandOver():
-                return LessonResult(self._hand_over(command))
-            case Resume():
-                return LessonResult(self._resume())
+            case HandOver() | Resume() | RunBehaviour():
+                return LessonResult(self._control.carry_out(command, tick))
             case SetPhase():
                 return LessonResult(self._set_phase(command))
             case Pursue():
@@ -299,8 +292,6 @@ class CommandHandler:
                 return LessonResult(self._require_goals().carry_out(command, tick))
             case NameSituation():
                 return LessonResult(*self._require_goals().name_situation(command, self._origin(command, tick)))
-            case RunBehaviour():
-                return LessonResult(self._run(command, tick))
             case TeachShown():
                 origin = self._origin(command, tick)
                 return LessonResult(self.demonstration.confirm(command.press_id, command.segments, origin))
@@ -313,53 +304,14 @@ class CommandHandler:
                     self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
 
-    def _take(self, command: Take, tick: int) -> Outcome:
-        before = self.authority.teacher
-        refuse(self.authority.take_over(command.teacher, tick))
-        self.stops.withdraw_teacher(before)
-        return Outcome.of(ResultCode.TAKEN, teacher=command.teacher)
-
-    def _hand_over(self, command: HandOver) -> Outcome:
-        to = command.to
-        refuse(None if to is None else name_refusal(to))
-        self.authority.hand_over(to)
-        self.stops.withdraw_teacher(command.teacher)
-        return Outcome(ResultCode.RELEASED) if to is None else Outcome.of(ResultCode.HANDED_OVER, teacher=to)
-
-    def _resume(self) -> Outcome:
-        self.stops.resume()
-        self.authority.end_manual()
-        return Outcome(ResultCode.RESUMED)
-
     def _set_phase(self, command: SetPhase) -> Outcome:
         self.phase = command.phase
         return Outcome.of(ResultCode.PHASE_SET, phase=command.phase.value, name=command.phase.name.lower())
-
-    def _stop(self, command: Stop, tick: int) -> Outcome:
-        if command.press_id is not None and self.authority.drives_by_later_press(
-            command.teacher, command.press_id, tick
-        ):
-            return Outcome(ResultCode.RELEASE_SUPERSEDED)
-        if command.press_id is not None and self.authority.is_hold(command.teacher, command.press_id):
-            return self.streams.release(command.press_id)
-        self.stops.count(command.command_id, tick)
-        reason = StopReason.SAID_STOP if command.press_id is None else StopReason.LET_GO
-        self.stop(ActiveStop(reason, command.teacher), command.teacher)
-        return Outcome(ResultCode.STOPPED)
 
     def _require_goals(self) -> GoalCommands:
         if self._goals is None:
             raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
         return self._goals
-
-    def _run(self, command: RunBehaviour, tick: int) -> Outcome:
-        require_action(command.action, self._level.repertoire)
-        refuse(self.stops.refusal_since(command.seen_tick) or self.stops.refusal_by_another(command.teacher))
-        if not self.authority.is_present(tick):
-            raise CommandRefusedError(RefusalCode.TEACHER_ABSENT)
-        self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
-        self.authority.run(command.action, tick, command.ticks)
-        return Outcome.of(ResultCode.ACTION_RUNS, action=command.action, ticks=command.ticks)
 
     def _session(self, command: BeginSession | EndSession, tick: int) -> tuple[Outcome, TeachingEvent]:
         name = self.session
