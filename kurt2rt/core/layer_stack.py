@@ -30,7 +30,10 @@ class LayerStack:
         self._before = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
-        """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks."""
+        """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks.
+
+        `situation`: of the basic level. `blocking_cause`: reason to stand; None: the levels decide.
+        """
         commanded = self.mid.decide(readings, self._before)
         navigator = self.navigator
         if navigator is not None:

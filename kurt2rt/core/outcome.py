@@ -198,12 +198,15 @@ class Outcome:
 
     @property
     def accepted(self) -> bool:
-        """Return whether the command was applied."""
+        """Return whether the code says that the command was applied."""
         return isinstance(self.code, ResultCode)
 
 
 def outcome_in(code: object, fields: object) -> Outcome | None:
-    """Return the outcome of a code and fields from the wire; None for an unknown code."""
+    """Return the outcome of a code and fields from the wire.
+
+    Returns None for an unknown code, or for fields that are no mapping of texts, whole numbers, lists and None.
+    """
     if not isinstance(code, str) or not isinstance(fields, Mapping) or code not in _CODES:
         return None
     if not all(each is None or isinstance(each, str | int | list) for each in fields.values()):
@@ -223,7 +226,7 @@ class CommandRefusedError(ValueError):
 
 
 def refuse(outcome: Outcome | None) -> None:
-    """Raise CommandRefusedError unless `outcome` is None."""
+    """Raise CommandRefusedError with `outcome`; do nothing if it is None."""
     if outcome is not None:
         assert isinstance(outcome.code, RefusalCode)
         raise CommandRefusedError(outcome.code, **outcome.fields)

@@ -201,7 +201,7 @@ def fields_of(code: Code) -> frozenset[str]:
 
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
-    """Return a sentence for the teacher. Raises KeyError for a missing field."""
+    """Return a sentence for the teacher, in the words of a surface. Raises KeyError for a missing field."""
     text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
     return text + _put_back_text(outcome.fields)
 

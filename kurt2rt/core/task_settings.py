@@ -259,6 +259,6 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
-    """Return the task with another scripted teacher."""
+    """Return a copy of the task that this scripted teacher teaches."""
     teaching = task.teaching.model_copy(update={"profile": profile})
     return task.model_copy(update={"teaching": teaching})

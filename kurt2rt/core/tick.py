@@ -49,7 +49,7 @@ class EventStore(Protocol):
         ...
 
     def submit(self, event: TeachingEvent) -> None:
-        """Queue an event for saving."""
+        """Queue an event for saving; return at once. A failure appears in `saving_error`."""
         ...
 
 
@@ -61,7 +61,7 @@ class InMemoryEventStore:
     saving_error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
-        """Append an event."""
+        """Append an event to the list."""
         self.events.append(event)
 
 
@@ -200,13 +200,13 @@ class Tick:
         self._sensor_watch = parts.sensor_watch
         self._substitute = parts.substitute
         self._turned = False
-        """Whether the last CONTROL frame let a wheel turn."""
+        """Return whether the last CONTROL frame let a wheel turn."""
         self._timer = parts.timer
         self._options = options
         self._now = now
         self._driving = self._latched = False
         self._waits = False
-        """Whether the robot stood at a bumper in the last tick and waited for its teacher's answer."""
+        """Return whether the robot stood at a bumper in the last tick and waited for its teacher's answer."""
         self._bumpers = BumperWatch()
         self._standing = StandingWatch()
         self._saving_error: str | None = None

@@ -97,14 +97,17 @@ class BasicLevel:
         """Condition of the RLA that drives, shape (d,), once it was needed."""
 
     def restart(self) -> None:
-        """Forget the driving action and the choices; the RLAs stay."""
+        """Stop the driving action and forget the choices among RLAs of one condition; the RLAs stay."""
         self._held.stop()
         self._driver = None
         if self._choice is not None:
             self._choice.reset()
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge; the next decision follows it at once, even if an action is held."""
+        """Change the knowledge; the next decision follows it at once, even if an action is held.
+
+        Raises InvalidEventError, with nothing changed, if the event does not fit the knowledge.
+        """
         drives = self._is_about_driving(event)
         self.system.apply(event)
         if drives:
@@ -123,7 +126,10 @@ class BasicLevel:
         return isinstance(event, LessonUndone | LessonRedone)
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
-        """Return the winner's action or the held one; standstill with a blocking cause or without a known RLA."""
+        """Return the decision of this tick: drive by the nearest RLA's action or the held one, or stand.
+
+        It stands for `blocking_cause`, and outside R of every RLA. `situation`: vector (d,).
+        """
         if self._behaviour != self.active_behaviour.behaviour:
             self._behaviour = self.active_behaviour.behaviour
             self._held.allow_switch()
@@ -149,7 +155,10 @@ class BasicLevel:
         return self._drive(situation, readings, _HELD, driver, match, answers=answers)
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
-        """Return which RLA of one condition, oldest first, would answer there without random exploration."""
+        """Return the RLA of a group that would answer in the next decision without random exploration.
+
+        `group`: RLAs with an equal condition, oldest first, at least one.
+        """
         return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
     def _drive(

@@ -61,7 +61,7 @@ class NewObstacle(NamedTuple):
 
     @property
     def counts(self) -> float:
-        """Difference of both readings in counts."""
+        """Counts by which the reading here exceeds the taught one."""
         return self.here - self.taught
 
 
@@ -185,7 +185,10 @@ class DoubtWatch:
         self._doubts = False
 
     def update(self, score: float, *, alone: bool) -> bool:
-        """Return whether the robot stands for doubt, after a tick with this score; `alone`: no teacher can be asked."""
+        """Count a tick with this dimensionless score of `DoubtMeter`; return whether the robot stands for doubt.
+
+        `alone`: whether no teacher can be asked.
+        """
         self._doubts = score >= (self._release if self._doubts else self._threshold)
         return self._doubts and (self._stands_alone if alone else self._asks)
 

@@ -21,22 +21,28 @@ class EpsilonGreedy:
         """Explore randomly; only while the results are learnt from."""
 
     def choose(self, group: Sequence[Rla], tick: int) -> Rla:
-        """Return the RLA of a group that answers in a tick; `group` is not empty and oldest first."""
+        """Return the RLA of a group that answers in a tick, at random with probability epsilon.
+
+        `group`: RLAs with an equal condition, oldest first, at least one.
+        """
         candidates = [rla for rla in group if not rla.is_withdrawn] or group
         rla = self._previous(group, candidates, tick) or self._draw(candidates)
         self._chosen[group[0].rla_id] = (rla.rla_id, tick)
         return rla
 
     def preview(self, group: Sequence[Rla], tick: int) -> Rla:
-        """Return what `choose` would without random exploration; the choice stays as it is."""
+        """Return the RLA of a group that would answer in a tick without random exploration; change nothing.
+
+        `group`: RLAs with an equal condition, oldest first, at least one.
+        """
         candidates = [rla for rla in group if not rla.is_withdrawn] or group
         return self._previous(group, candidates, tick) or self.best(candidates)
 
     def best(self, group: Sequence[Rla]) -> Rla:
-        """Return the RLA of highest value that has an action; of equals the newest.
+        """Return the RLA of highest value that has an action; of equal values the newest.
 
-        The newest was tried because the values of the older ones had sunk. So a restarted robot, which may have lost
-        these values, goes on with it.
+        If none has an action, return the best of all. The newest was tried because the values of the older ones had
+        sunk. So a restarted robot, which may have lost these values, goes on with it.
         """
         candidates = [rla for rla in group if not rla.is_withdrawn] or group
         return max(candidates, key=lambda rla: (self._value(rla.rla_id), rla.rla_id))

@@ -19,7 +19,7 @@ class HeldAction:
     def select(self, action: str) -> bool:
         """Let `action` drive; return False if another action is held because its minimum time is not over.
 
-        A finished or lost action is not held.
+        A finished or lost action is not held. Raises KeyError for an action outside the repertoire.
         """
         if self._active is not None:
             if action == self.name:
@@ -42,11 +42,11 @@ class HeldAction:
 
     @property
     def lost(self) -> bool:
-        """Return whether the driving action does not know its situation, after `step`."""
+        """Return whether the driving action does not know its situation; read it after `step`."""
         return self._active is not None and self._active.lost
 
     def step(self, readings: SensorReadings) -> WheelSpeeds:
-        """Return the wheel speeds of the action that drives, after `select`."""
+        """Return the wheel speeds of the driving action in this tick; call it only after `select`."""
         assert self._active is not None
         self._ticks += 1
         return self._active.step(readings)

@@ -27,7 +27,10 @@ class PolicyLevel:
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:  # noqa: ARG002 - the policy sees the readings
-        """Return the policy's action for the active behaviour. Raises UnknownActionError."""
+        """Return the decision to drive by the policy's action for the active behaviour, or to stand.
+
+        It stands for `blocking_cause`. Raises UnknownActionError if the repertoire lacks the policy's action.
+        """
         if self._behaviour != self._active_behaviour.behaviour:
             self._behaviour = self._active_behaviour.behaviour
             self._held.allow_switch()

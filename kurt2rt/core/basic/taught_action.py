@@ -31,13 +31,16 @@ class TaughtSystem:
         """True while its level asks; the answer is a lesson of the level above."""
 
     def start(self) -> None:
-        """Start with an empty history."""
+        """Restart the parts of the action, so that its averages and histories are empty."""
         for part in self._restartable:
             part.restart()
         self._driving = self.lost = False
 
     def step(self, readings: SensorReadings) -> WheelSpeeds:
-        """Return the wheel speeds of its level. While it is lost it stands and its averages stand still."""
+        """Return the wheel speeds that the action's own level decides in this tick.
+
+        While the action is lost, the speeds are 0 and its averages stand still.
+        """
         situation = self._perception.perceive(readings, history_frozen=not self._driving)
         decision = self._level.decide(situation, readings, None)
         self._driving, self.lost = decision.driving, decision.asking

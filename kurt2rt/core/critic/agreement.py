@@ -46,11 +46,11 @@ class Agreement:
 
     @property
     def trusted(self) -> bool:
-        """Return whether the critic may act."""
+        """Return whether the critic may act: it agreed with its teachers often enough."""
         return self.share is not None and self.share >= self._settings.bound
 
     def on_event(self, event: TeachingEvent) -> None:
-        """Count an event of the journal, or a new one."""
+        """Count a signal of an applied event, whether of the journal or new; ignore all other events."""
         match event:
             case LessonUndone(lesson, _):
                 self._remove(lesson)
@@ -73,16 +73,16 @@ class Agreement:
                 self._add(event.value, event, right=event.said == event.value)
 
     def replay(self, events: Iterable[TeachingEvent]) -> None:
-        """Count events in order."""
+        """Count the signals of teaching events of earlier runs, oldest first."""
         for event in events:
             self.on_event(event)
 
     def count_for(self, value: int) -> int:
-        """Return the number of counted signals of a value."""
+        """Return the number of counted signals of a value, -1, 0 or +1."""
         return len(self._signals[value])
 
     def share_for(self, value: int) -> float | None:
-        """Return the share of agreement, 0 to 1, among the signals of a value; None without signals."""
+        """Return the share of agreement, 0 to 1, among the signals of a value, -1, 0 or +1; None without any."""
         heard = self._signals[value]
         return sum(right for _, right in heard) / len(heard) if heard else None
 

@@ -62,7 +62,7 @@ class AppraisalPerception:
         self._next = 0
 
     def notify_surprise(self) -> None:
-        """Record that the previous tick was surprising."""
+        """Record that the previous tick was surprising; the time since then is a feature."""
         self._since_surprise = -1
 
     def perceive(self, readings: SensorReadings, *, driving: bool) -> AppraisalFeatures:

@@ -21,9 +21,9 @@ class ActivationMonitor:
         self.reset()
 
     def reset(self) -> None:
-        """Start phase 5."""
+        """Start phase 5: set the mean to 0, so that the critic is not active yet."""
         self.needed = False
-        """Whether the critic has to act."""
+        """Return whether the critic has to act."""
         self._bad = self._weight = 0.0
         self._ticks = 0
 
@@ -70,7 +70,7 @@ class Autonomy:
         self._last_tick = -1
 
     def restart(self) -> None:
-        """Start phase 5."""
+        """Start phase 5: the critic is needed only after enough bad driving in this phase."""
         self.activation.reset()
 
     def signal(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> Signal | None:

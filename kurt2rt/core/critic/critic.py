@@ -29,7 +29,7 @@ class Opinion(NamedTuple):
 
     @property
     def said(self) -> int | None:
-        """Value of the opinion; None for an unknown situation."""
+        """Value -1, 0 or +1 of the opinion; None for an unknown situation."""
         return self.value if self.known else None
 
 
@@ -59,7 +59,7 @@ class Critic:
         return self.settings.learning.insert_beyond_share * self.settings.learning.radius
 
     def appraise(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
-        """Return the opinion in this tick; None before the first lesson.
+        """Return the critic's opinion of the features in this tick; None before the first lesson.
 
         The search runs every `think_every_ticks` and after each lesson, because it would dominate a tick's time.
         """

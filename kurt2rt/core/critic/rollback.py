@@ -50,7 +50,7 @@ class RollbackMonitor:
         self.windows_won = 0
         """Number of windows with a best score."""
         self.is_measuring = True
-        """Whether this window measures unchanged knowledge: the critic changes nothing."""
+        """Return whether this window measures unchanged knowledge: the critic changes nothing."""
         self._sum = self._counted = 0
         self._events = 0
         """Number of teaching events so far."""
@@ -60,9 +60,12 @@ class RollbackMonitor:
         """Oldest first."""
 
     def restore(self, events: Iterable[TeachingEvent], best: float | None, includes: int) -> None:
-        """Restore the state at the end of another run: its events, its best score (-1 to 1), and `includes`.
+        """Restore the state at the end of an earlier run.
 
-        `best` is dimensionless; None: no window has ended.
+        Args:
+            events: all teaching events so far, oldest first.
+            best: score of the best window, -1 to 1, dimensionless; None: no window has ended.
+            includes: number of events at the beginning of the best window; later lessons of the critic are unproven.
         """
         for event in events:
             self.on_event(event)
@@ -75,7 +78,7 @@ class RollbackMonitor:
         self._sum = self._counted = 0
 
     def on_event(self, event: TeachingEvent) -> None:
-        """Count an applied event of any teacher and phase."""
+        """Count an applied event of any teacher and phase, and note a lesson of the critic as unproven."""
         self._events += 1
         match event:
             case LessonUndone(lesson, _):

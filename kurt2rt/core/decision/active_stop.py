@@ -46,7 +46,7 @@ class ActiveStop(NamedTuple):
 
     @property
     def is_automatic(self) -> bool:
-        """Return whether the robot stopped itself; a script may resume then, unlike after a person's stop."""
+        """Return whether the guard or a lost link caused the stop. A script may resume after these two only."""
         return self.reason in (StopReason.GUARD, StopReason.LINK_LOST)
 
 

@@ -11,7 +11,7 @@ class NamedGoal:
 
     @property
     def text(self) -> str:
-        """Return the goal in words."""
+        """Goal in words: the name of the situation."""
         return self.name
 
 
@@ -23,7 +23,7 @@ class RlaGoal:
 
     @property
     def text(self) -> str:
-        """Return the goal in words."""
+        """Goal in words, such as `the situation of RLA 12`."""
         return f"the situation of RLA {self.rla_id}"
 
 
@@ -38,7 +38,7 @@ class PartialGoal:
 
     @property
     def text(self) -> str:
-        """Return the goal in words."""
+        """Goal in words: its features and values."""
         return " and ".join(f"{name} {value:g}" for name, value in self.features)
 
 

@@ -14,5 +14,8 @@ _TEXTS: Mapping[str, str] = {
 
 
 def goal_text(status: str, goal: str) -> str:
-    """Return a goal without a plan and its status in a line; a status of a newer robot stands as it is."""
+    """Return a line for a teacher: a goal's text with its status; an unknown status stands as it is.
+
+    `status`: value of GoalStatus. `goal`: text of the goal.
+    """
     return _TEXTS.get(status, "{goal}: {status}").format(goal=goal, status=status)

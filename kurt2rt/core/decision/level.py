@@ -11,5 +11,8 @@ class Level(Protocol):
     """Layer that answers each situation with a decision."""
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
-        """Return the decision of this tick; with a blocking cause, one at standstill."""
+        """Return the decision of this tick; with a blocking cause, one at standstill.
+
+        `situation`: vector (d,).
+        """
         ...

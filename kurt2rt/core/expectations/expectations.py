@@ -79,7 +79,10 @@ class Expectations:
         return self._learned.get(rla_id)
 
     def learn(self, end: End) -> Surprise | None:
-        """Learn one end of an RLA; return its surprise, None if there were too few ends before."""
+        """Learn one end of an RLA and return its surprise.
+
+        Returns None if the RLA is not active, or if too few ends were learnt before.
+        """
         rla_id, situation = end.rla_id, end.situation
         rla = self._system.get(rla_id)
         if rla is None:
@@ -98,7 +101,7 @@ class Expectations:
     def on_event(self, event: TeachingEvent) -> int | None:
         """Drop the expectation of the RLA whose action an applied event changed.
 
-        Returns its id; None if the event changes no action.
+        Returns the id of that RLA, which may have had no expectation; None if the event changes no action.
         """
         if isinstance(event, LessonUndone | LessonRedone):
             record = self._system.lesson(event.lesson)
@@ -106,7 +109,7 @@ class Expectations:
         return self._forget(event)
 
     def snapshot(self) -> dict[int, Expectation]:
-        """Return all expectations; unchanged ones are the same objects as in the last call."""
+        """Return all expectations by RLA id; unchanged ones are the same objects as in the last call."""
         return dict(self._learned)
 
     def _surprise(self, learned: Expectation, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
@@ -152,14 +155,17 @@ def affected_rla(event: TeachingEvent) -> int | None:
 def valid_expectations(
     system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]
 ) -> dict[int, Expectation]:
-    """Return the expectations whose RLAs are active at one of these levels with the same action."""
+    """Return the saved expectations whose RLAs are active at one of these levels with the same action.
+
+    `saved` and the result: by RLA id.
+    """
     return {
         rla_id: each for rla_id, each in saved.items() if any(is_valid_for(system, rla_id, each, at) for at in levels)
     }
 
 
 def is_valid_for(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
-    """Return whether an RLA is active at a level with the action of the expectation."""
+    """Return whether an RLA is active at a level with the action that the expectation was learnt for."""
     rla = system.get(rla_id)
     return rla is not None and rla.level == level and rla.origin.command_id == expectation.lesson
 

@@ -36,7 +36,7 @@ class Surprise(NamedTuple):
 
     @property
     def multiple(self) -> float:
-        """Return the distance as a multiple of the usual one."""
+        """Distance as a multiple of the usual one."""
         return self.distance / self.usual
 
     @property

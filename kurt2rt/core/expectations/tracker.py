@@ -47,7 +47,11 @@ class ExpectationTracker:
     def update(
         self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
     ) -> Surprise | None:
-        """Learn from one tick before its transition is counted; return the surprise, the mid level's first."""
+        """Learn from one tick before its transition is counted; return the surprise, the mid level's first.
+
+        Call this on every tick. Returns None if no RLA ended or too few ends were known. `driving`: whether the wheels
+        turned.
+        """
         surprise = self._basic.update(tick, decision.rla_id if driving else None, situation.vector, behaviour)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
@@ -79,7 +83,7 @@ class ExpectationTracker:
         return None if expectations is None else expectations.get(rla_id)
 
     def snapshot(self) -> dict[int, Expectation]:
-        """Return all expectations; unchanged ones are the same objects as in the last call."""
+        """Return all expectations of both levels by RLA id; unchanged ones are the same objects as before."""
         kept = {rla_id: each for rla_id, each in self._others.items() if self._is_elsewhere(rla_id)}
         return dict(chain(kept.items(), *(each.snapshot().items() for each in self._levels.values())))
 

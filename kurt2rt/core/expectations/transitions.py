@@ -45,7 +45,10 @@ class BasicTransitionTracker:
         self._driver = None
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """Apply an event; return as `Expectations.on_event` does."""
+        """Drop the expectation of the basic RLA whose action an applied event changed.
+
+        Returns the id of that RLA; None if the event changes no action.
+        """
         changed = self.expectations.on_event(event)
         if changed is not None and changed == self._driver:
             self.restart()
@@ -102,7 +105,10 @@ class MidTransitionTracker:
         self._driven_ticks = 0
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """Apply an event; return as `Expectations.on_event` does."""
+        """Drop the expectation of the mid-level RLA whose action an applied event changed.
+
+        Returns the id of that RLA; None if the event changes no action.
+        """
         changed = self.expectations.on_event(event)
         if changed is not None and changed in (self._commander, self._before):
             self.restart()

@@ -47,7 +47,7 @@ class HistorySettings(MidSituationSettings):
         robot: RobotSettings,  # noqa: ARG002 - used by the detector
         transitions: Transitions,
     ) -> MidSituation:
-        """Return an empty history."""
+        """Return an empty history of symbols. `transitions`: (RLA id, follow-up id) -> count so far."""
         return SymbolHistory(self, self.symbols.build(transitions), detector)
 
 
@@ -63,7 +63,7 @@ class SymbolHistory:
         self._detector = detector
 
     def perceive(self, readings: SensorReadings, before: Decision) -> bool:
-        """Process one tick; return whether there is a new symbol."""
+        """Process one tick and return whether there is a new symbol. `before`: decision of the last tick."""
         self.passed = self._detector.perceive(readings)
         symbol = self._source.perceive(before, self._detector, self.passed)
         if symbol == NONE:

@@ -81,7 +81,7 @@ class JunctionDetector:
     def restart(self) -> None:
         """Forget the street and the junction."""
         self.walled = self.opened = False
-        """Whether both walls are parallel in this tick, or a side is open; both False in between."""
+        """Return whether both walls are parallel in this tick, or a side is open; both False in between."""
         self.turn_rad = self.rims_m = 0.0
         """Left turn of this tick, and mean absolute motion of both wheels."""
         self._street_rad: float | None = None
@@ -96,7 +96,10 @@ class JunctionDetector:
         self._way_m = self._net_m = 0.0
 
     def perceive(self, readings: SensorReadings) -> JunctionEvent | None:
-        """Process one tick; return the passed junction in the tick that detects the next street."""
+        """Process one tick; return the passed junction in the tick that detects the next street.
+
+        Returns None in all other ticks. Call it once per tick, because it sums up the encoders.
+        """
         left_m, right_m, way_m, self.turn_rad = self._odometry.motion(
             readings.encoder_left_ticks, readings.encoder_right_ticks
         )

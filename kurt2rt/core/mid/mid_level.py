@@ -64,7 +64,7 @@ class MidLevel:
 
     @property
     def commanded(self) -> str:
-        """Active behaviour."""
+        """Name of the behaviour that the basic level drives by."""
         return self._wanted.behaviour
 
     @property
@@ -91,7 +91,10 @@ class MidLevel:
         self._changes = -1
 
     def decide(self, readings: SensorReadings, before: Decision) -> MidDecision:
-        """Return the command of this tick and activate its behaviour; `before`: decision of the last tick."""
+        """Return the command of this tick and activate its behaviour; `before`: decision of the last tick.
+
+        The decision asks if no RLA knows the mid-level situation and no teacher overrides it.
+        """
         changed = self.situation.perceive(readings, before)
         event = self.situation.passed
         if event is not None:

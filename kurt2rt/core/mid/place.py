@@ -59,7 +59,7 @@ class PlaceSettings(MidSituationSettings):
         robot: RobotSettings,
         transitions: Transitions,  # noqa: ARG002 - needs no counts
     ) -> MidSituation:
-        """Return the place at power-on, the origin of the dead reckoning."""
+        """Return the place at power-on, the origin of the dead reckoning. `transitions` are not used."""
         return PlaceSituation(self, detector, robot)
 
 
@@ -88,11 +88,11 @@ class PlaceSituation:
 
     @property
     def since_m(self) -> float:
-        """Driven distance since the last change."""
+        """Distance in m that the robot drove since the situation changed last."""
         return self._way_m
 
     def perceive(self, readings: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - decisions do not matter
-        """Process one tick; return whether the situation changed."""
+        """Process one tick; return whether the situation changed. `before`: decision of the last tick."""
         moved, self._moved = self._moved, False
         self.passed = passed = self._detector.perceive(readings)
         self._reckon(readings)
@@ -111,7 +111,7 @@ class PlaceSituation:
         self._moved = True
 
     def localise(self, place: Condition) -> None:
-        """Continue the dead reckoning from a place that the teacher named."""
+        """Set the position to a place that the teacher named; dead reckoning continues from there."""
         self._begin(place)
         self._detector.restart()
         self.passed = None

@@ -76,7 +76,10 @@ class MidSituationSettings(KindSettings):
 
     @abstractmethod
     def build(self, detector: JunctionDetector, robot: RobotSettings, transitions: Transitions) -> MidSituation:
-        """Return the situation at power-on; `transitions`: counts so far. Raises hal.settings.SettingsError."""
+        """Return the situation at power-on. Raises hal.settings.SettingsError.
+
+        `transitions`: (RLA id, follow-up id) -> count so far, of all levels.
+        """
 
 
 def _checked(given: object) -> MidSituationSettings:

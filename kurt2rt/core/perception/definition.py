@@ -79,12 +79,12 @@ class SituationDefinition(Settings):
 
     @property
     def dimensions(self) -> int:
-        """Length of a situation vector: recent and averaged values."""
+        """Length of a situation vector: number of recent and of averaged values together."""
         return 2 * len(self.features)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Name of each dimension, as shown to the teacher."""
+        """Name of each dimension, as shown to the teacher: recent values first, then their averages."""
         recent = tuple(feature.name for feature in self.features)
         return recent + tuple(name + AVERAGED for name in recent)
 
@@ -111,7 +111,10 @@ class SituationDefinition(Settings):
 
 
 def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefinition:
-    """Return the definition for a robot with these sensors. Raises SettingsError, also for an unknown sensor."""
+    """Return the definition of a built-in name or a path, for a robot with these sensors.
+
+    Raises hal.settings.SettingsError: for a missing or invalid file, and for a feature of an unknown sensor.
+    """
     path = find_config("situations", name_or_path)
     definition = load_settings(path, SituationDefinition)
     missing = sorted(definition.sensors_used - set(sensors))

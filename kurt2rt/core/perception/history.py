@@ -21,7 +21,10 @@ class History:
         return self._filled
 
     def push(self, values: NDArray[np.float64]) -> None:
-        """Append one step, `values` of shape (width,); a full ring drops the oldest."""
+        """Append the features of one step, shape (width,), in the features' units; a full ring drops the oldest.
+
+        Values must be whole numbers, as counts are, so that the sum stays exact.
+        """
         row = self._ring[self._next]
         self._sums += values
         self._sums -= row  # zeros until the ring is full
@@ -33,7 +36,7 @@ class History:
             self._set_filled(self._filled + 1)
 
     def fill(self, values: NDArray[np.float64]) -> None:
-        """Set every step to `values`, shape (width,), as if the robot had always been here."""
+        """Set every step to `values`, shape (width,), in the features' units, as if the robot had always been here."""
         self._ring[:] = values
         self._sums[:] = len(self._ring) * values
         self._set_filled(len(self._ring))
@@ -46,7 +49,10 @@ class History:
         self._set_filled(0)
 
     def average_into(self, out: NDArray[np.float64]) -> None:
-        """Write the mean of all steps to `out`, shape (width,); zeros before the first step."""
+        """Write the mean of all steps to `out`, float64 of shape (width,), in the features' units.
+
+        Writes zeros before the first step.
+        """
         np.divide(self._sums, self._divisor, out)
 
     def _set_filled(self, steps: int) -> None:

@@ -37,12 +37,15 @@ class Perception:
         self._driven = STANDSTILL
 
     def restart(self) -> None:
-        """Reset to the state after power-on."""
+        """Reset to the state after power-on: no averages, and wheel speeds of 0."""
         self._history.clear()
         self._driven = STANDSTILL
 
     def perceive(self, readings: SensorReadings, *, history_frozen: bool) -> Situation:
-        """Return the situation of this tick; a frozen history keeps the steps before the robot stopped to ask."""
+        """Return the situation of this tick. Call it once per tick, because it adds a step to the averages.
+
+        `history_frozen`: whether the averages stay as they are, because the robot stands and waits.
+        """
         vector = np.empty(2 * self._width)
         self._write(vector, 0, *self._extract(readings.infrared_counts, self._driven))
         recent = vector[: self._width]

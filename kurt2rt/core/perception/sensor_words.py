@@ -70,7 +70,10 @@ class SensorWords:
         return place if recent == feature else f"{place}{AVERAGED}"
 
     def reading(self, feature: str, value: float) -> str:
-        """Return the text of a feature's value: cm for a reading, counts for an orientation, otherwise the number."""
+        """Return the text of a feature's value: cm for a reading, counts for an orientation, otherwise the number.
+
+        `value`: in counts for readings and orientations, otherwise in the feature's own unit.
+        """
         if self._labels and _ORIENTATION.fullmatch(feature.removesuffix(AVERAGED)):
             return f"by {value:.0f} counts" if round(value) else "not"
         if self._law is None or not self.is_reading(feature):
@@ -81,11 +84,17 @@ class SensorWords:
         return f"{_centimetres(distance_m)}{' or less' if distance_m <= self._law.near_m else ''}"
 
     def difference(self, feature: str, here: float, there: float) -> str:
-        """Return the text of two values, such as `front left: 13 cm, was 40 cm`."""
+        """Return the text of two values of a feature, such as `front left: 13 cm, was 40 cm`.
+
+        Both values are in counts for readings and orientations, otherwise in the feature's own unit.
+        """
         return f"{self.place(feature)}: {self.reading(feature, here)}, was {self.reading(feature, there)}"
 
     def differs(self, feature: str, here: float, there: float) -> bool:
-        """Return whether two values, in counts, have different texts: those of one whole cm do not."""
+        """Return whether two values of a feature, in counts, have different texts.
+
+        Readings have the same text if they round to the same cm.
+        """
         return self.reading(feature, here) != self.reading(feature, there)
 
     def is_reading(self, feature: str) -> bool:

@@ -38,9 +38,9 @@ class GoalPursuit:
         self._here = 0
         """Start place of the plan."""
         self._begun = False
-        """Whether the first tick has passed, whose events may still remove expectations: it builds nothing."""
+        """Return whether the first tick has passed, whose events may still remove expectations: it builds nothing."""
         self._map_done = False
-        """Whether the map is complete; the search runs alone in the next tick."""
+        """Return whether the map is complete; the search runs alone in the next tick."""
         self._stood_before: GoalStatus | None = None
         """Reason of a standstill at the beginning of planning."""
         self._lost_meaning = ""
@@ -84,7 +84,7 @@ class GoalPursuit:
         return f"on the way to {self.goal.text}: {ways} left, now {edge.action} (RLA {edge.rla_id})"
 
     def seek(self, goal: Goal, target: Target) -> None:
-        """Set the goal; the next `arrive` begins the plan."""
+        """Set the goal and the target that tells when it is reached; the next `arrive` begins the plan."""
         self._stood_before = self.standing_status
         self.goal, self._target = goal, target
         self._lost_meaning = ""
@@ -98,13 +98,16 @@ class GoalPursuit:
         self._target = target
 
     def give_up(self, because: str) -> None:
-        """Stand until another goal is set, because this one cannot be resolved any more."""
+        """Stand until another goal is set, because this one cannot be resolved any more.
+
+        `because`: reason in a few words, for `text`.
+        """
         self._target = None
         self._lost_meaning = because
         self._settle(GoalStatus.NO_WAY)
 
     def stop(self) -> None:
-        """Drop the goal."""
+        """Drop the goal and the plan, so that the robot does not stand because of them."""
         self.goal = self._target = None
         self._settle(GoalStatus.NONE)
 

@@ -56,7 +56,7 @@ class Navigator:
         self._goal_condition: Condition | None = None
         """Condition of the goal at the last refresh; None for a goal with several situations."""
         self._outdated = False
-        """Whether changed knowledge requires a new plan."""
+        """Return whether changed knowledge requires a new plan."""
         self._ticks = 0
         self._planned_at_tick = -_REPLAN_AFTER_TICKS
         self._chosen: int | None = None
@@ -109,7 +109,10 @@ class Navigator:
         self._pursuit.plan = None
 
     def choose(self, group: tuple[Rla, ...], vector: Vector) -> Rla | None:
-        """Return the RLA of the plan in a situation `vector` (d,); the last choice stays valid in its situation."""
+        """Return the RLA of the group that the plan uses at a mid-level situation `vector` (d,); None if none.
+
+        The last choice stays valid as long as `vector` is the same object.
+        """
         self.refresh()
         chosen = self._pursuit.choose(group)
         if chosen is None and vector is self._chosen_at:

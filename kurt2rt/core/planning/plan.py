@@ -17,7 +17,7 @@ class Plan:
 
     @property
     def ticks(self) -> float:
-        """Return the expected duration in ticks."""
+        """Expected duration in ticks."""
         return sum(edge.ticks for edge in self.edges)
 
     @property
@@ -31,7 +31,10 @@ class Plan:
 
 
 def plan_to(topological_map: TopologicalMap, start: int, goals: Collection[int]) -> Plan | None:
-    """Return the cheapest plan from a place to one of the goals (Dijkstra); None if no path exists."""
+    """Return the cheapest plan from a place to one of the goals (Dijkstra).
+
+    Returns None if no path exists, or if the map lacks `start`. `start` and `goals`: ids of places.
+    """
     if start not in topological_map.graph:
         return None
     costs: dict[int, float]

@@ -66,7 +66,7 @@ class FeatureTarget:
         self._tolerance = tolerance
 
     def matches(self, situation: Vector) -> bool:
-        """Return whether all features of a situation (d,) are within the tolerance."""
+        """Return whether the goal's features of a situation (d,) are all within the tolerance."""
         if not np.isfinite(situation).all():
             return False
         return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())

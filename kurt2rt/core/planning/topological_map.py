@@ -63,7 +63,7 @@ class Edge(NamedTuple):
 
     @property
     def cost(self) -> float:
-        """Return the expected ticks, failed attempts included."""
+        """Expected ticks, failed attempts included."""
         return self.ticks / self.share
 
 
@@ -75,22 +75,22 @@ class TopologicalMap:
         self.graph: nx.DiGraph[int] = nx.DiGraph()
 
     def add_place(self, place: Place) -> None:
-        """Add a place."""
+        """Add a place; edges to and from it are added by `add_edge`."""
         self.places[place.place_id] = place
         self.graph.add_node(place.place_id)
 
     def add_edge(self, edge: Edge) -> None:
-        """Add an edge; of parallel edges only the cheapest is kept."""
+        """Add an edge between two places; of parallel edges only the cheapest is kept."""
         known = (edge.start, edge.end) in self.graph.edges
         if not known or edge.cost < self.graph.edges[edge.start, edge.end]["cost"]:
             self.graph.add_edge(edge.start, edge.end, cost=edge.cost, edge=edge)
 
     def members(self, place_id: int) -> frozenset[int]:
-        """Return the ids of the RLAs on a place."""
+        """Return the ids of the RLAs on a place. Raises KeyError for an unknown place."""
         return frozenset(rla.rla_id for rla in self.places[place_id].members)
 
     def edge(self, start: int, end: int) -> Edge:
-        """Return the cheapest edge between two places."""
+        """Return the cheapest edge from one place to another. Raises KeyError if there is none."""
         edge: Edge = self.graph.edges[start, end]["edge"]
         return edge
 
@@ -172,7 +172,7 @@ class MapBuilder:
         """Ids of the places that match the target; complete when the work is done."""
 
     def step(self, pieces: int) -> bool:
-        """Process at most `pieces` RLAs or places; return whether the work is done."""
+        """Process at most `pieces` RLAs or places; return whether map and goals are complete."""
         return any(next(self._work, True) for _ in range(pieces))
 
     def _build(self, build: MapBuild, target: Target) -> Generator[bool, None, None]:

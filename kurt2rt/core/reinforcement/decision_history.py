@@ -68,11 +68,11 @@ class DecisionHistory:
         self._opinions[row] = opinion
 
     def empty_copy(self) -> "DecisionHistory":
-        """Return an empty history of the same size."""
+        """Return an empty history with the same number of ticks and dimensions."""
         return DecisionHistory(self._situations.shape[1], self._capacity)
 
     def copy_from(self, other: "DecisionHistory") -> None:
-        """Store the ticks of a history of the same size in place of all own ones; allocates no arrays."""
+        """Store the ticks of a history of equal size in place of all own ones; allocates no arrays."""
         self._ticks[:] = other._ticks
         self._situations[:] = other._situations
         self._answering[:] = other._answering
@@ -86,7 +86,7 @@ class DecisionHistory:
         self.newest = other.newest
 
     def contains(self, tick: int) -> bool:
-        """Return whether a tick is stored."""
+        """Return whether a tick is stored; ask before reading anything of a tick."""
         return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick
 
     def has_situation(self, tick: int) -> bool:
@@ -107,7 +107,7 @@ class DecisionHistory:
         return row
 
     def driving_rla(self, tick: int) -> int | None:
-        """Return the RLA that drove in a stored tick."""
+        """Return the id of the RLA that drove in a stored tick; None if none did."""
         return self._rlas[tick % self._capacity]
 
     def behaviour(self, tick: int) -> str:
@@ -115,11 +115,17 @@ class DecisionHistory:
         return self._behaviours[tick % self._capacity]
 
     def answering_rla(self, tick: int) -> int | None:
-        """Return the RLA that drove in a stored tick inside its radius: the one that rewards are about."""
+        """Return the id of the RLA that drove in a stored tick inside its radius; None if none did.
+
+        Rewards are about this RLA.
+        """
         return int(self._answering[tick % self._capacity]) or None
 
     def answering_up_to(self, tick: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the stored ticks up to `tick`, oldest first, and their answering RLAs (0: none), both (n,)."""
+        """Return the stored ticks up to `tick`, oldest first, and the ids of their answering RLAs, both (n,).
+
+        The id is 0 if no RLA answered in a tick.
+        """
         ticks = np.arange(max(0, tick - self._capacity + 1), tick + 1)
         rows = ticks % self._capacity
         kept = self._ticks[rows] == ticks

@@ -30,7 +30,10 @@ class EdgeWeights:
         self._before: int | None = None
 
     def update(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - only transitions count
-        """Learn from one tick: a change of the RLA creates an edge."""
+        """Learn from one tick: a change of the RLA creates an edge.
+
+        `rla_id`: answering RLA; None at standstill or outside its radius.
+        """
         if rla_id == self._before:
             return
         if rla_id is not None and self._before is not None:
@@ -38,7 +41,10 @@ class EdgeWeights:
         self._before = rla_id
 
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
-        """Return the change of each weight as a share of the first weight; lower weights give positive credits."""
+        """Return the changes of weights that a reward of -1 or +1 would make; nothing is changed.
+
+        A credit is a share of the first weight. A lower weight gives a positive credit.
+        """
         present = self._history.present
         return tuple(
             Credit(rla_id, (present.get(rla_id, {}).get(before, FIRST_WEIGHT) - edges[before]) / FIRST_WEIGHT, before)
@@ -68,11 +74,11 @@ class EdgeWeights:
             self._history.set(rla_id, depth, edges)
 
     def value(self, rla_id: int) -> float:
-        """Return the value, a score of -1 to 1; 0 without rewards."""
+        """Return the value of an RLA by the weights of the edges into it, a score of -1 to 1; 0 without rewards."""
         return max(-1.0, min(1.0, _value(self._history.present.get(rla_id))))
 
     def depth(self, rla_id: int) -> int:
-        """Return the number of earlier actions of an RLA."""
+        """Return the number of earlier actions of an RLA that an undo can restore."""
         return self._history.depth(rla_id)
 
     def reset(self, rla_id: int) -> None:
@@ -89,7 +95,7 @@ class EdgeWeights:
         self._drop_edges_from(rla_id)
 
     def discard(self, rla_id: int) -> None:
-        """Drop all edges of an RLA."""
+        """Drop all edges of an RLA whose creation was undone."""
         self._history.discard(rla_id)
         self._drop_edges_from(rla_id)
 

@@ -86,7 +86,8 @@ class Reinforcement:
     def restore(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> None:
         """Apply the events of earlier runs to the system, and restore the saved values.
 
-        The saved values include a number of rows; credits of later rows are added.
+        `saved` tells how many of the events its values include; credits of later events are added. Raises
+        InvalidEventError if an event does not fit.
         """
         saved = saved or Statistics()
         included = len(events)
@@ -122,23 +123,23 @@ class Reinforcement:
             self.choice.reset()
 
     def autonomous_values(self) -> Statistics:
-        """Return the autonomous values; empty outside phase 5."""
+        """Return the values that the robot learnt by itself in phase 5; empty outside phase 5."""
         if self._autonomous is None:
             return Statistics()
         return Statistics(values=dict(self._autonomous.values), edge_weights=dict(self._autonomous.edge_weights))
 
     def restore_autonomous(self, values: Statistics, rla_ids: Collection[int]) -> None:
-        """Restore the autonomous values of some RLAs, as `autonomous_values` returned them."""
+        """Restore the values of some RLAs in phase 5, from a result of `autonomous_values`."""
         if self._autonomous is not None:
             self._autonomous.restore(values, [rla_id for rla_id in rla_ids if self._is_active(rla_id)])
             self.choice.reset()
 
     def credits_for(self, value: int, tick: int) -> tuple[Credit, ...]:
-        """Return the changes that a reward (-1 or +1) about a stored tick would make."""
+        """Return the changes of values that a reward (-1 or +1) about a stored tick would make, without making them."""
         return self.rule.credits_for(value, self._trace(tick, None))
 
     def on_event(self, event: TeachingEvent) -> None:
-        """Learn from an event that was just applied to the system."""
+        """Learn from an event that was just applied to the system: rewards, new and removed actions, undos."""
         self.rows += 1
         match event:
             case RlaRewarded(_, value, decided_at_tick, origin):
@@ -160,7 +161,12 @@ class Reinforcement:
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
         """Learn from a critic's signal, which is no event and changes the autonomous values only.
 
-        `trace_s`: time constant of the trace in s. `signal`: prefix of the command ids of its repairs.
+        Args:
+            value: -1 or +1.
+            tick: stored tick that the signal is about.
+            trace_s: time constant of the trace in s.
+            signal: prefix of the command ids of its repairs.
+            teacher: name that its repairs are recorded under.
         """
         trace = self._trace(tick, trace_s)
         self._active_rule.learn(value, trace)
@@ -171,7 +177,10 @@ class Reinforcement:
         self._active_rule.update(rla_id, tick)
 
     def repairs(self, tick: int, phase: Phase) -> Iterator[Lesson]:
-        """Yield the lessons that repair punished RLAs; apply each before requesting the next."""
+        """Yield the lessons that repair RLAs punished since the last call; apply each before requesting the next.
+
+        In phase 5 they try other actions; in earlier phases they withdraw the action or delete the RLA.
+        """
         if not self._punishments:
             return
         punishments, self._punishments = self._punishments, []

@@ -59,7 +59,7 @@ class Repair:
             self._condition_key_of.update((each.rla_id, key) for each in group)
 
     def on_deleted(self, rla_id: int) -> None:
-        """Forget the tried actions of a condition without active RLAs."""
+        """Note the deletion of an RLA; forget the tried actions of its condition if it was the last one there."""
         key = self._condition_key_of.pop(rla_id, None)
         if key is not None and key not in self._condition_key_of.values():
             del self._tried[key]
@@ -75,7 +75,11 @@ class Repair:
         self.on_deleted(created.rla_id)
 
     def withdraw(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
-        """Yield the withdrawal of an RLA's action, so that the robot asks; the deletion if it has competitors."""
+        """Yield the lesson that makes the robot ask instead of driving by an RLA: none, or one.
+
+        The RLA's action is withdrawn; if other RLAs share its condition, the RLA is deleted. `origin_of`: maker of the
+        lesson's origin from a suffix of its command id.
+        """
         rla = self._system.get(rla_id)
         if rla is None or rla.is_withdrawn:
             return
@@ -88,6 +92,7 @@ class Repair:
         """Yield a competitor with a neighbour's action, or the deletion of all competitors after enough tries.
 
         Nothing is deleted if no neighbour covers the condition: the robot would stand there without a teacher.
+        `origin_of`: maker of a lesson's origin from a suffix of its command id.
         """
         rla = self._system.get(rla_id)
         if rla is None or rla.is_withdrawn:

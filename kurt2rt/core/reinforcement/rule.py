@@ -52,7 +52,7 @@ class ReinforcementRule(Protocol):
         ...
 
     def archive(self, rla_id: int) -> None:
-        """Keep the value of a deleted RLA for an undo."""
+        """Keep the value of a deleted RLA, so that `restore_previous` can restore it after an undo."""
         ...
 
     def discard(self, rla_id: int) -> None:

@@ -40,17 +40,20 @@ class SelfTeaching:
         self._best_values = Statistics()
         """Autonomous values at the end of the best window."""
         self.trusted = agreement.trusted
-        """Whether the critic may act; cached, because only events change it."""
+        """Return whether the critic may act; cached, because only events change it."""
         self._is_active = False
-        """Whether the critic replaced the teacher in the last tick."""
+        """Return whether the critic replaced the teacher in the last tick."""
 
     def restore(self, events: Iterable[TeachingEvent], saved: Statistics | None) -> None:
-        """Restore the rollback from events of earlier runs: the critic's lessons after the best window are unproven."""
+        """Restore the rollback from events of earlier runs and saved statistics.
+
+        The critic's lessons after the best window are unproven. `saved`: None if nothing was saved.
+        """
         numbers = {} if saved is None else saved.numbers
         self.rollback.restore(events, numbers.get(BEST_SCORE), int(numbers.get(BEST_INCLUDES, 0)))
 
     def with_best(self, statistics: Statistics) -> Statistics:
-        """Return statistics for the checkpoint, with the score of the best window."""
+        """Return a copy of statistics for the checkpoint, with the score of the best window added."""
         rollback = self.rollback
         numbers = {name: each for name, each in statistics.numbers.items() if name not in (BEST_SCORE, BEST_INCLUDES)}
         if rollback.best is not None:
@@ -63,7 +66,10 @@ class SelfTeaching:
         self.rollback.on_event(event)
 
     def set_phase(self, phase: Phase) -> bool:
-        """Replace the teacher in phase 5 while the critic is trusted; return whether that is so."""
+        """Set the training phase; return whether the critic now replaces the teacher.
+
+        It does in phase 5, while it is trusted.
+        """
         active = phase is AUTONOMOUS and self.trusted
         if active and not self._is_active:
             self.rollback.restart()
@@ -92,7 +98,7 @@ class SelfTeaching:
         return self.rollback.is_measuring
 
     def signal(self, tick: int, decision: Decision, opinion: Opinion | None) -> None:
-        """Learn from the critic's opinion of this tick like from a reward, except while measuring."""
+        """Learn from the critic's opinion of this tick as from a reward, except while measuring."""
         signal = self._autonomy.signal(tick, opinion, driving=decision.answers, listening=self.is_measuring)
         if signal is not None:
             self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)

@@ -41,7 +41,10 @@ class TdLambda:
         """Trace in the tick of the last step."""
 
     def update(self, rla_id: int | None, tick: int) -> None:
-        """Learn from one tick: decay the trace, add the answering RLA, and make a step every `step_s`."""
+        """Learn from one tick: decay the trace, add the answering RLA, and make a step every `step_s`.
+
+        `rla_id`: answering RLA; None at standstill or outside its radius.
+        """
         self._scale *= self._decay if tick == self._tick + 1 else power(self._decay, tick - self._tick)
         self._tick = tick
         if self._scale < 1e-100:
@@ -52,13 +55,13 @@ class TdLambda:
             self._step(rla_id, tick)
 
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
-        """Return each RLA's share of a reward, limited by the highest value."""
+        """Return each RLA's share of a reward of -1 or +1, limited by the highest value; nothing is changed."""
         alpha = self._settings.alpha
         changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
         return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
-        """Add alpha r e_i(t) to each V_i."""
+        """Add alpha r e_i(t) to the value V_i of each RLA of a trace; `value` is the reward r, -1 or +1."""
         for rla_id, change, _ in self.credits_for(value, trace):
             self._add(rla_id, change)
 
@@ -76,7 +79,7 @@ class TdLambda:
         return self._value_settings.first_value + self._history.present.get(rla_id, 0.0)
 
     def depth(self, rla_id: int) -> int:
-        """Return the number of earlier actions of an RLA."""
+        """Return the number of earlier actions of an RLA that an undo can restore."""
         return self._history.depth(rla_id)
 
     def reset(self, rla_id: int) -> None:
@@ -96,7 +99,7 @@ class TdLambda:
         self._end_step_from(rla_id)
 
     def discard(self, rla_id: int) -> None:
-        """Drop all values of an RLA."""
+        """Drop all values of an RLA whose creation was undone."""
         self._history.discard(rla_id)
         self._drop_trace(rla_id)
         self._end_step_from(rla_id)

@@ -15,15 +15,15 @@ class ValueHistory(Generic[EarnedT]):
         self._former: dict[int, list[EarnedT | None]] = {}
 
     def depth(self, rla_id: int) -> int:
-        """Return the number of earlier values of an RLA."""
+        """Return the number of earlier actions of an RLA whose values are kept."""
         return len(self._former.get(rla_id, ()))
 
     def reset(self, rla_id: int) -> None:
-        """Push the present value; the new action has none."""
+        """Push the present value of an RLA that got another action; the new action has no value."""
         self._former.setdefault(rla_id, []).append(self.present.pop(rla_id, None))
 
     def restore_previous(self, rla_id: int) -> None:
-        """Pop the previous value."""
+        """Pop the value of an RLA's previous action and make it the present one."""
         former = self._former.get(rla_id)
         earned = former.pop() if former else None
         self.present.pop(rla_id, None)
@@ -31,12 +31,12 @@ class ValueHistory(Generic[EarnedT]):
             self.present[rla_id] = earned
 
     def discard(self, rla_id: int) -> None:
-        """Drop all values of an RLA."""
+        """Drop the present and all earlier values of an RLA."""
         self.present.pop(rla_id, None)
         self._former.pop(rla_id, None)
 
     def restore(self, saved: Mapping[int, EarnedT], only: Collection[int] | None) -> None:
-        """Restore the saved present values of all RLAs, or of `only` some."""
+        """Restore saved present values by RLA id: of all RLAs, or of `only` some."""
         if only is None:
             self.present = dict(saved)
             return
@@ -46,12 +46,12 @@ class ValueHistory(Generic[EarnedT]):
                 self.present[rla_id] = saved[rla_id]
 
     def get(self, rla_id: int, depth: int) -> EarnedT | None:
-        """Return the value at a depth; None without rewards."""
+        """Return the value of an RLA's action at a depth, 0 the first action; None without rewards."""
         former = self._former.get(rla_id, [])
         return former[depth] if depth < len(former) else self.present.get(rla_id)
 
     def set(self, rla_id: int, depth: int, earned: EarnedT) -> None:
-        """Replace the value at a depth."""
+        """Replace the value of an RLA's action at a depth, 0 the first action."""
         former = self._former.get(rla_id, [])
         if depth < len(former):
             former[depth] = earned

@@ -41,7 +41,7 @@ class ActiveRlas:
         return self._counts[level]
 
     def get(self, rla_id: int) -> Rla | None:
-        """Return the active RLA of an id, of any level."""
+        """Return the active RLA of an id, of any level; None if there is none."""
         return self._rlas.get(rla_id)
 
     def match(
@@ -83,7 +83,7 @@ class ActiveRlas:
     ) -> tuple[tuple[int, float], ...]:
         """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
-        Computes all distances: for explanations, not for each tick. `limit`: None returns all RLAs.
+        Computes all distances: for explanations, not for each tick. `limit`: largest number of RLAs; None: all.
         """
         index = self._indexes.get((level, behaviour))
         if index is None or not index.ids:
@@ -128,12 +128,12 @@ class ActiveRlas:
         self._counts[rla.level] += 1
 
     def replace(self, rla: Rla) -> None:
-        """Replace the RLA of the same id and condition."""
+        """Replace the active RLA that has the id and the condition of `rla`."""
         self._rlas[rla.rla_id] = rla
         self._groups.add_or_replace(rla)
 
     def remove(self, rla: Rla) -> Rla:
-        """Remove an active RLA and return it."""
+        """Remove an active RLA and return it. Raises KeyError if none has its id."""
         if rla.level in self._spaces:
             self._indexes[rla.level, rla.behaviour].remove(rla.rla_id)
         self._groups.remove(rla)

@@ -31,13 +31,13 @@ class CandidateIndex:
         self.ids.insert(position, rla_id)
 
     def remove(self, rla_id: int) -> None:
-        """Remove an RLA of the index."""
+        """Remove an RLA, which must be in the index."""
         position = bisect_left(self.ids, rla_id)
         self.index.remove(position)
         del self.ids[position]
 
     def nearest_first(self, condition: Condition) -> list[int]:
-        """Return all ids, nearest to a condition first; of equally near RLAs the older first."""
+        """Return all ids, nearest to an unweighted condition first; of equally near RLAs the older first."""
         order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
         return [self.ids[position] for position in order.tolist()]
 

@@ -25,7 +25,7 @@ class CompetitorGroups:
         self._regroup(rla, (*self._others(rla), rla))
 
     def remove(self, rla: Rla) -> None:
-        """Remove a member."""
+        """Remove an RLA from the group of its condition. Raises KeyError if it is in none."""
         others = self._others(rla)
         del self._group[rla.rla_id]
         if others:

@@ -41,7 +41,7 @@ class InvalidEventError(ValueError):
 
     @classmethod
     def of(cls, fault: EventFault, **fields: int | str) -> "InvalidEventError":
-        """Return the error of a fault with its fields."""
+        """Return the error of a fault; `fields` fill the gaps in the fault's text."""
         return cls(fault, fields)
 
     def __str__(self) -> str:

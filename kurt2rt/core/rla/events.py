@@ -16,7 +16,7 @@ class RlaCreated:
 
     @property
     def origin(self) -> Origin:
-        """Origin of the new RLA."""
+        """Origin of the new RLA, which is the event's origin."""
         return self.rla.origin
 
 

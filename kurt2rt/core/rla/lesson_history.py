@@ -40,7 +40,7 @@ class LessonRecord:
 
     @property
     def text(self) -> str:
-        """Short description for a teacher."""
+        """Short description of the lesson for a teacher."""
         if isinstance(self.event, SituationNamed):
             return f"situation named: {self.event.name}"
         rla = rla_title(rla_id_of(self.event), self.behaviour, self.level)
@@ -60,12 +60,12 @@ class LessonRecord:
 
 
 def hold_id(teacher: str, press_id: int) -> str:
-    """Return the id of all lessons of a hold; each has this id, DERIVED and a tick."""
+    """Return the id of all lessons of a hold; the id of each lesson is this one, DERIVED and a tick."""
     return f"{teacher}-hold-{press_id}"
 
 
 def hold_of(command_id: str) -> str | None:
-    """Return the id of the hold that gave a lesson; None for another lesson."""
+    """Return the id of the hold that gave the lesson of a command; None if no hold gave it."""
     found = _HOLD_LESSON.fullmatch(command_id)
     return None if found is None else found[1]
 
@@ -88,7 +88,7 @@ def rla_id_of(lesson: RlaLesson) -> int:
 
 
 def lesson_stack(lesson: Lesson) -> LessonStack:
-    """Return the stack of a lesson: all lessons about one RLA, or all that gave one name."""
+    """Return the key of the stack of a lesson: an RLA's id, or level and name of a named situation."""
     return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_id_of(lesson)
 
 
@@ -121,12 +121,12 @@ class LessonHistory:
 
     @property
     def last_standing(self) -> str | None:
-        """Command id of the newest standing lesson."""
+        """Command id of the newest lesson that is not undone; None without one."""
         return self._records[self._newest[-1]].event.origin.command_id if self._newest else None
 
     @property
     def last_undone(self) -> str | None:
-        """Command id of the lesson that was undone last."""
+        """Command id of the lesson that was undone last; None if none is undone."""
         return self._records[self._undone[-1]].event.origin.command_id if self._undone else None
 
     def get(self, command_id: str) -> LessonRecord | None:
@@ -147,7 +147,7 @@ class LessonHistory:
         return self._records[self._places_of[stack][0]]
 
     def add(self, lesson: Lesson) -> None:
-        """Append a lesson with a new command id."""
+        """Append a lesson, whose command id must be new."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
         hold = hold_of(lesson.origin.command_id)
@@ -197,7 +197,7 @@ class LessonHistory:
         return None
 
     def undo(self, command_id: str) -> Lesson:
-        """Mark a lesson as undone and return it; `why_not_undo` must have returned None."""
+        """Mark a lesson as undone and return it; call it only if `why_not_undo` returned None."""
         place = self._place[command_id]
         record = self._records[place]
         lesson = record.event
@@ -234,7 +234,7 @@ class LessonHistory:
         return Outcome.of(RefusalCode.TAUGHT_INSTEAD, later=later, lesson=command_id, says=newest.text)
 
     def redo(self, command_id: str) -> Lesson:
-        """Mark a lesson as standing and return it; `why_not_redo` must have returned None."""
+        """Mark a lesson as standing and return it; call it only if `why_not_redo` returned None."""
         place = self._place[command_id]
         record = self._records[place] = replace(self._records[place], undone=False)
         self._standing_of.setdefault(lesson_stack(record.event), []).append(place)

@@ -98,7 +98,10 @@ class ConditionIndex:
         self.insert(self._count, condition)
 
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
-        """Insert a condition (d,) before the one at `position`. Raises ValueError as `append` does."""
+        """Insert a condition (d,) before the one at `position`.
+
+        Raises ValueError for a wrong length or a number that is not finite.
+        """
         row = validated_row(condition, self._dimensions)
         if self._count == len(self._exact):
             self._grow()
@@ -115,7 +118,7 @@ class ConditionIndex:
         self._update_views()
 
     def remove(self, position: int) -> None:
-        """Remove one condition; later ones move up."""
+        """Remove the condition at `position`; later ones move up by one position."""
         norm = float(self._norms[position])
         for array in (self._exact, self._rough, self._half_squares, self._norms):
             array[position : self._count - 1] = array[position + 1 : self._count]
@@ -129,7 +132,10 @@ class ConditionIndex:
         return exact_distances(self._exact[: self._count], situation)
 
     def nearest(self, situation: NDArray[np.float64]) -> NearestCondition | None:
-        """Return the condition nearest to `situation` (d,), and the runner-up; None without conditions."""
+        """Return position and distance of the condition nearest to `situation` (d,), and of the runner-up.
+
+        Returns None without conditions; of equally near conditions the older one is nearer.
+        """
         if self._count == 0:
             return None
         if self._count == 1:

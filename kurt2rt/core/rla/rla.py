@@ -59,10 +59,10 @@ class Rla:
 
     @property
     def title(self) -> str:
-        """Name in texts."""
+        """Name of the RLA in texts: RLA 17, RLA 17 of turn_left, mid-level RLA 12."""
         return rla_title(self.rla_id, self.behaviour, self.level)
 
     @property
     def is_withdrawn(self) -> bool:
-        """Return whether its action was withdrawn: inside its radius the robot asks."""
+        """Return whether the RLA's action was withdrawn: inside its radius the robot asks."""
         return self.action == ASK

@@ -100,7 +100,7 @@ class RlaSystem:
         return self._last_id + 1
 
     def get(self, rla_id: int) -> Rla | None:
-        """Return the active RLA of an id, of any level."""
+        """Return the active RLA of an id, of any level; None if there is none."""
         return self._active.get(rla_id)
 
     def named_situations(self, level: str) -> Mapping[str, Condition]:
@@ -127,7 +127,7 @@ class RlaSystem:
 
     @property
     def last_standing_lesson(self) -> str | None:
-        """Command id of the newest standing lesson."""
+        """Command id of the newest lesson that is not undone; None without one."""
         return self._history.last_standing
 
     def lesson(self, command_id: str) -> LessonRecord | None:
@@ -143,7 +143,7 @@ class RlaSystem:
         return self._history.of_hold(hold)
 
     def unused_hold_id(self, hold: str) -> str:
-        """Return the id of a hold, with a number if an earlier run's hold of this id gave lessons."""
+        """Return `hold`, or `hold` with the first free number if an earlier run's hold of this id gave lessons."""
         unused, number = hold, 1
         while self._history.of_hold(unused):
             number += 1
@@ -156,7 +156,7 @@ class RlaSystem:
 
     @property
     def last_undone_lesson(self) -> str | None:
-        """Command id of the lesson that was undone last."""
+        """Command id of the lesson that was undone last; None if none is undone."""
         return self._history.last_undone
 
     def why_not_redo(self, command_id: str) -> Outcome | None:
@@ -183,7 +183,7 @@ class RlaSystem:
     ) -> tuple[tuple[int, float], ...]:
         """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
-        Computes all distances: for explanations, not for each tick. `limit`: None returns all RLAs.
+        Computes all distances: for explanations, not for each tick. `limit`: largest number of RLAs; None: all.
         """
         return self._active.nearest_first(situation, behaviour, level, limit)
 
@@ -225,7 +225,7 @@ class RlaSystem:
         self.changes += 1
 
     def apply_all(self, events: Iterable[TeachingEvent]) -> None:
-        """Apply events in order."""
+        """Apply events in order. Raises InvalidEventError at the first that does not fit; those before it stay."""
         for event in events:
             self.apply(event)
 

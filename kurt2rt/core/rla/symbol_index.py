@@ -53,15 +53,18 @@ class SymbolIndex:
         return len(self._rows)
 
     def append(self, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
-        """Append a condition (d,). Raises ValueError for a wrong length or a number that is not finite."""
+        """Append a condition of symbols (d,). Raises ValueError for a wrong length or a number that is not finite."""
         self.insert(len(self), condition)
 
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
-        """Insert a condition (d,) before the one at `position`. Raises ValueError as `append` does."""
+        """Insert a condition (d,) before the one at `position`.
+
+        Raises ValueError for a wrong length or a number that is not finite.
+        """
         self._rows = np.insert(self._rows, position, validated_row(condition, self._dimensions), axis=0)
 
     def remove(self, position: int) -> None:
-        """Remove one condition; later ones move up."""
+        """Remove the condition at `position`; later ones move up by one position."""
         self._rows = np.delete(self._rows, position, axis=0)
 
     def distances(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -69,7 +72,10 @@ class SymbolIndex:
         return self._distances(self._rows, situation)
 
     def nearest(self, situation: NDArray[np.float64]) -> NearestCondition | None:
-        """Return the condition nearest to `situation` (d,), the older of equal ones, and the runner-up."""
+        """Return position and distance of the condition nearest to `situation` (d,), and of the runner-up.
+
+        Returns None without conditions; of equally near conditions the older one is nearer.
+        """
         if not len(self):
             return None
         distances = self.distances(situation)

@@ -61,7 +61,7 @@ class StatisticsCounter:
         self._reset_predecessors(deleted)
 
     def drop_follow_ups(self, rla_id: int) -> None:
-        """Drop the transitions from an RLA whose action has changed."""
+        """Drop the counted transitions from an RLA whose action has changed."""
         for after in self._followers.pop(rla_id, ()):
             del self.transitions[rla_id, after]
         self._reset_predecessors((rla_id,))

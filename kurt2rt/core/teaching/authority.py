@@ -69,11 +69,17 @@ class ControlAuthority:
         return None
 
     def hand_over(self, to: str | None) -> None:
-        """Give authority to another teacher, or to none; the new one must be present before the robot drives on."""
+        """Give authority to another teacher, or to none (None), and end manual drive.
+
+        The new teacher must be present before the robot drives on.
+        """
         self._set_teacher(to)
 
     def renew_presence(self, teacher: str, tick: int, seen_tick: int) -> None:
-        """Renew the lease of presence by a message that arrived now and was given on the state of `seen_tick`."""
+        """Renew the lease of presence by a message that arrived in `tick`, if its teacher has authority.
+
+        `seen_tick`: tick of the state that the teacher saw when giving it.
+        """
         if teacher == self.teacher:
             self._present_until = max(self._present_until, self._lease_end(tick, seen_tick))
 
@@ -104,14 +110,17 @@ class ControlAuthority:
 
     @property
     def absence_stop(self) -> ActiveStop:
-        """Return the stop of a robot that drove and whose teacher is absent."""
+        """Stop of a robot that drove and whose teacher is absent."""
         if self.teacher is None:
             return ActiveStop(StopReason.NO_TEACHER)
         reason = StopReason.LINK_LOST if self._present_until >= 0 else StopReason.TEACHER_NOT_YET
         return ActiveStop(reason, self.teacher)
 
     def drive(self, command: Drive, tick: int) -> None:
-        """Set the speeds of manual drive; only for the teacher, with a press that is not over."""
+        """Set the speeds of manual drive and renew its lease.
+
+        Call it only for the teacher with authority and a press that is not over.
+        """
         if self._holds.get(command.teacher) == command.press_id:
             del self._holds[command.teacher]
         self._press_ids[command.teacher] = command.press_id
@@ -121,7 +130,10 @@ class ControlAuthority:
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
     def hold(self, command: HoldAction, tick: int) -> None:
-        """Let the held action drive; only for the teacher, with a press that is not over."""
+        """Let the held action drive and renew its lease.
+
+        Call it only for the teacher with authority, a press that is not over and an action of the repertoire.
+        """
         self._press_ids[command.teacher] = self._holds[command.teacher] = command.press_id
         if self.held_press != command.press_id or self._behaviour_name != command.action:
             self._start(command.action)
@@ -131,14 +143,14 @@ class ControlAuthority:
 
     @property
     def driving_press(self) -> tuple[str, int] | None:
-        """Return teacher and press id of the manual drive; None if no speeds are driven by hand."""
+        """Teacher and press id of the manual drive; None if no speeds are driven by hand."""
         if self._speeds is None or self.teacher is None:
             return None
         return self.teacher, self._press_ids[self.teacher]
 
     @property
     def repertoire(self) -> Repertoire:
-        """Return the actions that the teacher can run; free while speeds are driven by hand."""
+        """Actions that the teacher can run; no other part uses them while speeds are driven by hand."""
         return self._repertoire
 
     def is_hold(self, teacher: str, press_id: int) -> bool:
@@ -146,7 +158,10 @@ class ControlAuthority:
         return press_id <= self._holds.get(teacher, -1)
 
     def run(self, action: str, tick: int, ticks: int) -> None:
-        """Let an action of the repertoire drive for `ticks` ticks while the teacher is present."""
+        """Let an action drive for `ticks` ticks from `tick` on, while the teacher is present.
+
+        Raises KeyError for an action outside the repertoire.
+        """
         self._start(action)
         self._behaviour_until = tick + ticks
 
@@ -168,7 +183,7 @@ class ControlAuthority:
             self.end_manual()
 
     def step(self, readings: SensorReadings) -> tuple[str, WheelSpeeds]:
-        """Return the name and the wheel speeds of the manual drive; only while `is_manual`."""
+        """Return the name and the wheel speeds of the manual drive; call it only while `is_manual`."""
         if self._speeds is not None:
             return _BY_HAND, self._speeds
         assert self._behaviour is not None

@@ -17,7 +17,11 @@ class BehaviourSelection:
         """Tick that the teacher had seen at the last selection."""
 
     def select(self, command: Pursue, tick: int) -> Outcome:
-        """Select the behaviour from this tick on and return the outcome. Raises CommandRefusedError."""
+        """Select the behaviour of a command from `tick` on and return the outcome.
+
+        Raises CommandRefusedError for an unknown behaviour, and if the teacher saw a state older than the last
+        selection or the last junction.
+        """
         wanted, mid = self._active_behaviour, self._mid
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if seen_tick < self._seen_tick:

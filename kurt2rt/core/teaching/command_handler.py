@@ -131,7 +131,7 @@ class CommandHandler:
 
     @property
     def active_stop(self) -> ActiveStop | None:
-        """Return the stop that lasts until `Resume`; None without one."""
+        """Stop that lasts until `Resume`; None without one. It can be set."""
         return self.stops.active
 
     @active_stop.setter
@@ -140,7 +140,7 @@ class CommandHandler:
 
     @property
     def stopped_at_tick(self) -> int:
-        """Return the tick of the last stop by a teacher or the guard."""
+        """Tick of the last stop by a teacher or the guard. It can be set."""
         return self.stops.newest_tick
 
     @stopped_at_tick.setter
@@ -153,11 +153,11 @@ class CommandHandler:
 
     @property
     def corrections(self) -> int:
-        """Return the number of corrections of the basic level."""
+        """Number of corrections of the basic level in this run."""
         return self.corrections_at(BASIC)
 
     def corrections_at(self, level_name: str) -> int:
-        """Return the number of corrections of a level."""
+        """Return the number of corrections of a level, such as BASIC or MID, in this run."""
         return self._lessons.corrections_at[level_name]
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
@@ -166,12 +166,12 @@ class CommandHandler:
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
-        """Return all active RLAs of all levels, in no order."""
+        """All active RLAs of all levels, in no order."""
         return self._level.system.active_rlas
 
     @property
     def session(self) -> str | None:
-        """Return the name of the open session; None without one."""
+        """Name of the open session; None without one."""
         return self._clock.session
 
     def teaching_ticks(self, tick: int) -> int:
@@ -197,13 +197,13 @@ class CommandHandler:
         return self.authority.attended and self.phase is not AUTONOMOUS
 
     def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
-        """Apply a message of a stream, in which only the newest counts; return a refusal, or None."""
+        """Apply a message of a stream, in which only the newest counts; return a refusal, or None if applied."""
         return self.streams.handle(command, tick)
 
     def teach_driven(self, tick: int) -> Sequence[TeachingEvent]:
         """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.
 
-        Call it only if lessons can be saved.
+        Call it only if lessons can be saved, and submit the events to the journal.
         """
         if self.authority.held_press is None and not self.demonstration.pending:
             return ()
@@ -222,7 +222,11 @@ class CommandHandler:
             self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
 
     def handle(self, command: Command, situation: Situation, tick: int) -> _Answer:
-        """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""
+        """Carry out one command in this tick; return its result and the events that it caused, oldest first.
+
+        The events are applied already and must be submitted to the journal. A refusal is a result, no error.
+        `situation`: of this tick. `command`: no message of a stream; those go to `handle_stream`.
+        """
         assert not isinstance(command, Stream)
         # Every copy of a stop brakes: a copy may be the one that matters.
         stops_again = isinstance(command, Stop) and command.press_id is None
@@ -268,7 +272,10 @@ class CommandHandler:
             self.mid.on_lesson(command)
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
-        """Learn from a tick after its wheel speeds were sent; see `KnowledgeUpdater.learn_from_tick`."""
+        """Learn from a tick after its wheel speeds were sent; return the events of its repairs and undos.
+
+        The events act from the next tick on and must be submitted to the journal.
+        """
         return self.updater.learn_from_tick(self.phase, tick, decision, opinion)
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:

@@ -351,5 +351,5 @@ class CommandResult:
 
     @property
     def code(self) -> Code:
-        """Return the code of the outcome."""
+        """Code of the outcome."""
         return self.outcome.code

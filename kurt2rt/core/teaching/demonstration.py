@@ -116,7 +116,10 @@ class Demonstration:
         self._segments = None
 
     def segments(self, tick: int) -> tuple[Segment, ...]:
-        """Return the segments, oldest first, at most MOST_SEGMENTS; empty while the press lasts."""
+        """Return the segments of the last press at `tick`, oldest first, at most MOST_SEGMENTS.
+
+        Returns () while the press lasts.
+        """
         if self.press_id is None or tick <= self._last_tick + 1 or self._pending:
             return ()
         if self._segments is None:
@@ -180,7 +183,7 @@ class Demonstration:
 
 
 def nearest_action(repertoire: Repertoire, readings: SensorReadings, speeds: WheelSpeeds) -> str:
-    """Return the action whose wheel speeds have the direction that is nearest to the driven ones.
+    """Return the name of the action whose wheel speeds have the direction that is nearest to the driven ones.
 
     The direction counts first, so that a teacher may show slowly; of actions with about that direction, such as forward
     and flee, the one with the nearest speeds.

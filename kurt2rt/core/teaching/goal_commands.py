@@ -23,7 +23,10 @@ class GoalCommands:
         self._planned_tick = -1
 
     def name_situation(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
-        """Return the outcome and the event that names a situation. Raises CommandRefusedError."""
+        """Return the outcome and the event that gives a mid-level situation a name.
+
+        Raises CommandRefusedError for a bad name, a forgotten tick, and if the robot did not know its place.
+        """
         name = command.name
         if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
             raise CommandRefusedError(RefusalCode.BAD_NAME, name=name, longest=LONGEST_NAME)
@@ -31,7 +34,11 @@ class GoalCommands:
         return Outcome.of(ResultCode.SITUATION_NAMED, name=name), SituationNamed(name, situation, MID, origin)
 
     def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> Outcome:
-        """Carry out a command and return the outcome. Raises CommandRefusedError, also for a superseded command."""
+        """Carry out a command in this tick and return the outcome.
+
+        Raises CommandRefusedError for an unknown goal or place, and for a command that a later command or junction
+        supersedes.
+        """
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if isinstance(command, BeAt):
             return self._locate(command.name, seen_tick)

@@ -57,7 +57,7 @@ class HoldLessons:
 
     @property
     def newest(self) -> Hold | None:
-        """Return the newest hold, over or not; None before the first."""
+        """Newest hold, over or not; None before the first."""
         return None if self._press is None else self._press.hold
 
     def begin(self, command: HoldAction, tick: int, speed: int) -> None:
@@ -70,13 +70,13 @@ class HoldLessons:
         self._press = _Press(hold, max(0, tick - command.seen_tick), earliest, tick)
 
     def on_message(self, command: HoldAction, tick: int) -> None:
-        """Note a further message of the press."""
+        """Note lag and action of a further message of the press; call it only after `begin`."""
         assert self._press is not None
         self._press.lag_ticks = max(0, tick - command.seen_tick)
         self._press.hold = self._press.hold._replace(action=command.action)
 
     def build(self, tick: int, phase: Phase, speed: int) -> TeachingEvent | None:
-        """Return the lesson that is due in a tick of the hold; None if none is.
+        """Return the lesson that is due in a tick of the hold; None if none is. Call it only after `begin`.
 
         Args:
             tick: present tick, in which the action is held.

@@ -42,12 +42,12 @@ class KnowledgeUpdater:
 
     @property
     def critic_state(self) -> CriticState:
-        """Return the critic's state in the last tick; LISTENS without a critic."""
+        """Critic's state in the last tick; LISTENS without a critic."""
         return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.state
 
     @property
     def bad_share(self) -> float | None:
-        """Return the fraction of recently driven time that the critic found bad; None while it only listens."""
+        """Fraction of recently driven time that the critic found bad; None while it only listens."""
         return None if self._self_teaching is None else self._self_teaching.bad_share
 
     def apply(self, event: TeachingEvent) -> None:
@@ -90,7 +90,10 @@ class KnowledgeUpdater:
         return events
 
     def apply_own(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
-        """Apply an event that the robot itself made and append it; skip and report it if it does not fit."""
+        """Apply an event that the robot itself made and append it to `events`.
+
+        An event that does not fit is skipped and reported in `error`.
+        """
         try:
             self.apply(event)
         except InvalidEventError as error:

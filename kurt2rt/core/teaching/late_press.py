@@ -31,7 +31,10 @@ class LatePresses:
         return replace(command, seen_tick=given, decision_tick=self._decision(given, back_ticks))
 
     def described(self, command: Command, outcome: Outcome) -> Outcome:
-        """Return the outcome of a late press with the decision that it was given to; any other one unchanged."""
+        """Return the outcome of a late press with the tick and RLA that it was given to, and by how many ticks.
+
+        `command`: as `put_back` returned it. The outcome of any other command is returned unchanged.
+        """
         if not isinstance(command, Correct) or not _is_late(command):
             return outcome
         meant, given = command.decision_tick, command.seen_tick

@@ -65,7 +65,10 @@ class LessonBuilder:
         """Number of corrections by level."""
 
     def build(self, command: LessonCommand, situation: Situation, origin: Origin) -> LessonResult:
-        """Return the outcome and event of a command in the present `situation`. Raises CommandRefusedError."""
+        """Return the outcome and event of a command in the present `situation`; apply nothing.
+
+        Raises CommandRefusedError for an unknown action, RLA, lesson or tick, and for a lesson that cannot be undone.
+        """
         match command:
             case Teach() | Correct():
                 return self._action_lesson(command, situation, origin)
@@ -94,6 +97,9 @@ class LessonBuilder:
             meant: tick that had a situation.
             origin: of the lesson.
             counts: whether a lesson counts as a correction.
+
+        Raises:
+            CommandRefusedError: if the tick was forgotten or had no situation.
         """
         event = self._in_context(action, self._basic_context(meant, None), origin)
         if event is not None and counts:
@@ -101,7 +107,10 @@ class LessonBuilder:
         return event
 
     def shown(self, action: str, vector: NDArray[np.float64], behaviour: str, origin: Origin) -> TeachingEvent | None:
-        """Return the lesson that a shown action gives a situation (d,); None if it would be done there already."""
+        """Return the lesson that a shown action gives a situation `vector` (d,) of the basic level.
+
+        Returns None if the robot would do that action there already.
+        """
         context = LessonContext(vector, behaviour, BASIC, None, self._insert_beyond_share)
         return self._in_context(action, context, origin)
 

@@ -18,7 +18,10 @@ class LessonResult(NamedTuple):
 
 
 def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Outcome:
-    """Return an outcome with an RLA's id, and with its behaviour and level if they are not the default."""
+    """Return an outcome with an RLA's id, and with its behaviour and level if they are not the default.
+
+    `fields`: further fields of the code's text.
+    """
     named: dict[str, Field] = {"rla": rla.rla_id}
     if rla.behaviour:
         named["behaviour"] = rla.behaviour

@@ -44,7 +44,7 @@ class MidHistory:
 
     @property
     def newest(self) -> MidSnapshot | None:
-        """Return the newest snapshot; None before the first."""
+        """Newest snapshot; None before the first."""
         return self._snapshots[-1] if self._snapshots else None
 
     def get(self, tick: int) -> MidSnapshot | None:

@@ -21,7 +21,7 @@ class MidLessons:
         self._history = MidHistory()
 
     def remember(self, tick: int, decision: Decision) -> None:
-        """Add the mid level's decision of a tick to the history."""
+        """Add the mid level's decision of a tick to the history; call it after each decision."""
         decided = decision.mid
         if decided is None:
             return
@@ -48,6 +48,7 @@ class MidLessons:
         """Let a new lesson about the present situation replace the teacher's override.
 
         If another RLA on the same condition wins against the taught one, override the level by the taught action.
+        Raises CommandRefusedError if the command's tick was forgotten.
         """
         if isinstance(command, Teach) and command.alternative:
             return  # an alternative does not change the present command

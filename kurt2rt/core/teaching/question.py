@@ -101,7 +101,10 @@ class MidQuestion:
 
 
 def ask_the_way(match: Match | None, words: Iterable[str]) -> MidQuestion:
-    """Return the mid level's question with nearest RLA `match`; empty `words` of its situation are left out."""
+    """Return the mid level's question with nearest RLA `match`; None: nothing was taught.
+
+    `words`: texts of the situation's features; empty ones are left out.
+    """
     here = tuple(word for word in words if word)
     if match is None:
         return MidQuestion(None, None, float("inf"), 0.0, here)
@@ -117,9 +120,16 @@ def ask(
     most: int = 5,
     words: SensorWords = NO_WORDS,
 ) -> Question:
-    """Return the question about a situation vector whose nearest RLA of `behaviour` is `match`.
+    """Return the basic level's question about a situation whose nearest RLA of `behaviour` is `match`.
 
-    `situation` and `weights`, with which the match was found, have shape (d,).
+    Args:
+        match: nearest RLA; None if nothing was taught.
+        situation: vector, shape (d,).
+        weights: shape (d,), with which the match was found.
+        feature_names: name of each of the d features.
+        behaviour: active taught behaviour.
+        most: largest number of differing features in the question.
+        words: texts for features.
     """
     if match is None:
         return Question(None, None, float("inf"), 0.0, (), behaviour, words)
@@ -135,7 +145,10 @@ def ask(
 
 
 def ask_in_doubt(question: Question, obstacle: NewObstacle | None, feature_names: tuple[str, ...]) -> Question:
-    """Return the question of a robot that doubts: the new obstacle comes first, against the nearest that was taught."""
+    """Return the question of a robot that doubts, changed from a `question` about the same situation.
+
+    The new obstacle comes first among the differing features; None: only the distance makes the robot doubt.
+    """
     if obstacle is None:
         return replace(question, doubts=True)
     name = feature_names[obstacle.feature]

@@ -20,7 +20,10 @@ class SessionClock:
         return self._lasted_ticks if self.session is None else tick - self._from_tick
 
     def apply(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
-        """Begin or end a session; return the outcome and its event. Raises CommandRefusedError."""
+        """Begin or end a session; return the outcome and the event.
+
+        Raises CommandRefusedError if a session is open at its beginning, or none is at its end.
+        """
         if isinstance(command, BeginSession):
             if self.session is not None:
                 raise CommandRefusedError(RefusalCode.SESSION_ON, session=self.session)

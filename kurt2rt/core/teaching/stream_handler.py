@@ -30,7 +30,7 @@ class StreamHandler:
         self._delay = delay
 
     def handle(self, command: Stream, tick: int) -> Outcome | None:
-        """Apply a message; return a refusal, or None."""
+        """Apply a message of a stream in this tick; return a refusal, or None if it was applied."""
         authority = self._authority
         refusal = name_refusal(command.teacher) or authority.refusal_for(command.teacher) or self.press_refusal(command)
         if refusal is not None:
@@ -59,7 +59,10 @@ class StreamHandler:
         return self._stops.refusal_by_another(command.teacher)
 
     def release(self, press_id: int) -> Outcome:
-        """End a hold, so that the RLAs drive on; a late release of an ended hold changes nothing."""
+        """End the hold of a press, so that the RLAs drive on; return how many lessons it gave.
+
+        A late release of an ended hold changes nothing.
+        """
         if self._authority.held_press == press_id:
             self._authority.end_manual()
         hold = self._holds.newest

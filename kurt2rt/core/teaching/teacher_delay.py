@@ -56,15 +56,21 @@ class TeacherDelay:
             self._answers.setdefault(teacher, deque(maxlen=_WINDOW)).append(took)
 
     def answers(self, teacher: str) -> int:
-        """Return the number of answers that the delay of a teacher is made of."""
+        """Return the number of answers that the delay of a teacher is computed from."""
         return len(self._answers.get(teacher, ()))
 
     def hand_ticks(self, teacher: str, speed: int) -> int:
-        """Return the delay of the hand of a teacher who follows the robot while holding, in ticks of the robot."""
+        """Return the delay of a teacher's hand that follows the robot while holding, in ticks of the robot.
+
+        `speed`: robot seconds in one second.
+        """
         return self.ticks(teacher, speed) // HAND_PART
 
     def ticks(self, teacher: str, speed: int) -> int:
-        """Return the delay of a teacher in ticks of the robot, at most BACK_TICKS of real time."""
+        """Return the delay of a teacher in ticks of the robot, at most BACK_TICKS of real time.
+
+        `speed`: robot seconds in one second.
+        """
         answers = sorted(self._answers.get(teacher, ()))
         delay = answers[len(answers) // 2] if len(answers) >= _LEAST_ANSWERS else self._default_ticks
         return min(delay, BACK_TICKS) * speed

@@ -22,7 +22,7 @@ class ActionsSettings(SymbolSettings):
         return self.actions
 
     def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
-        """Return the source."""
+        """Return a source of actions without a last action; `transitions` are not used."""
         return ActionSymbols(self.actions)
 
 
@@ -34,7 +34,10 @@ class ActionSymbols:
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """Return the symbol of an action that began in the last tick."""
+        """Return the symbol of an action that began in the last tick; NONE without one.
+
+        `before`: decision of the last tick. The other arguments are not used.
+        """
         symbol = NONE if before.action is None else self._symbols.get(before.action, NONE)
         if symbol in (NONE, self._last):
             return NONE

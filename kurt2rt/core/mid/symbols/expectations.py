@@ -24,7 +24,7 @@ class ExpectationsSettings(SymbolSettings):
         return ()
 
     def build(self, transitions: Transitions) -> SymbolSource:
-        """Return the source, which starts with these counts."""
+        """Return a source that starts with these counts: (RLA id, follow-up id) -> count."""
         return ExpectationSymbols(self.least_share, transitions)
 
 
@@ -44,7 +44,10 @@ class ExpectationSymbols:
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """Return the id of an expected RLA that took over in the last tick."""
+        """Return the id of an expected RLA that took over in the last tick; NONE without one.
+
+        `before`: decision of the last tick. The other arguments are not used.
+        """
         driver, self._driver = self._driver, before.rla_id
         if self._driver is None or driver is None or self._driver == driver:
             return NONE

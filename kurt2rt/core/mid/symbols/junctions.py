@@ -17,7 +17,7 @@ class JunctionsSettings(SymbolSettings):
         return tuple(NAMES.values())
 
     def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
-        """Return the source."""
+        """Return a source of the turns at junctions; `transitions` are not used."""
         return JunctionSymbols()
 
 
@@ -25,7 +25,7 @@ class JunctionSymbols:
     """Source of the turn at each passed junction."""
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """Return the symbol of the junction passed in this tick."""
+        """Return the symbol of `passed`, the junction passed in this tick; NONE without one."""
         return NONE if passed is None else _SYMBOLS[passed.quarters]
 
     def restart(self) -> None:

@@ -43,7 +43,7 @@ class SymbolSettings(KindSettings):
 
     @abstractmethod
     def build(self, transitions: Transitions) -> SymbolSource:
-        """Return the source; `transitions`: counts of all levels."""
+        """Return the source; `transitions`: (RLA id, follow-up id) -> count so far, of all levels."""
 
 
 def _checked(given: object) -> SymbolSettings:

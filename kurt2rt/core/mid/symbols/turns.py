@@ -31,11 +31,11 @@ class TurnsSettings(SymbolSettings):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the symbols."""
+        """Names of the symbols, from symbol 1 on."""
         return ("street", "crossing", "left", "right")
 
     def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
-        """Return the source."""
+        """Return a source of turns without a last symbol; `transitions` are not used."""
         return TurnSymbols(self)
 
 
@@ -56,7 +56,10 @@ class TurnSymbols:
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """Return the symbol that has just begun, or the passed crossing."""
+        """Return the symbol that has just begun, or the passed crossing; NONE without a change.
+
+        `detector`: has processed this tick. The other arguments are not used.
+        """
         rims_m = detector.rims_m
         if rims_m == 0.0:
             return NONE
