@@ -26,11 +26,13 @@ from tests.texts import (
     outcomes,
     page,
     robot_bus,
+    robot,
     shutdown,
     standing,
     startup,
     units,
     verdicts,
+    why,
 )
 
 COMMAND = "python -m tests.golden_texts"
@@ -64,6 +66,16 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "errors of knowledge": merging.knowledge_errors,
         "findings of the doctor": doctor.findings,
         "summary of the doctor": doctor.summaries,
+        "reasons of a decision": why.reasons,
+        "actions without a stop": why.own_actions,
+        "sentences about a decision": why.sentences,
+        "summaries of a run": why.summaries,
+    },
+    "robot": {
+        "questions": robot.questions,
+        "goals": robot.goals,
+        "lessons": robot.lessons,
+        "features": robot.features,
     },
     "studies": {
         "targets": verdicts.targets,

