@@ -29,7 +29,7 @@ def test_recovery_copies_a_truncated_file_and_adds_its_index(whole: Path, tmp_pa
     for share in (0.5, 0.7, 0.9, 1.0):
         truncated.write_bytes(content[: round(len(content) * share) - 1])
         because = recover_segment(truncated, copy)
-        assert "ends without its index" in because
+        assert "index" in because
         assert list(SegmentReader(copy).messages()) == list(SegmentReader(truncated).messages())
         head = SegmentReader(truncated).head()
         assert SegmentReader(copy).head().attachments == head.attachments
@@ -52,7 +52,7 @@ def test_a_whole_file_is_copied_whole(whole: Path, tmp_path: Path) -> None:
 def test_of_a_file_in_which_nothing_is_whole_no_copy_is_left(tmp_path: Path) -> None:
     truncated, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
     truncated.write_bytes(b"\x89MCAP")
-    with pytest.raises(RecordingError, match="nothing of it was written"):
+    with pytest.raises(RecordingError, match=r"torn\.mcap"):
         recover_segment(truncated, copy)
     assert not copy.exists()
 
@@ -60,6 +60,6 @@ def test_of_a_file_in_which_nothing_is_whole_no_copy_is_left(tmp_path: Path) -> 
 def test_a_copy_that_is_there_stays(whole: Path, tmp_path: Path) -> None:
     copy = tmp_path / "copy.mcap"
     copy.write_text("mine")
-    with pytest.raises(RecordingError, match="give another folder"):
+    with pytest.raises(RecordingError, match=r"copy\.mcap"):
         recover_segment(whole, copy)
     assert copy.read_text() == "mine"

@@ -162,11 +162,11 @@ MANY = 100_000_000
 def test_a_chunk_that_would_fill_the_memory_is_refused(tmp_path: Path, told: int) -> None:
     packed = zstandard.compress(bytes(MANY))
     path = with_chunk(tmp_path / "0001.mcap", packed, told)
-    with pytest.raises(RecordingError, match=f"a chunk of {len(packed)} bytes unpacks to {MANY}, allowed are"):
+    with pytest.raises(RecordingError, match=rf"0001\.mcap: .* {len(packed)} .* {MANY},"):
         SegmentReader(path).head()
 
 
 def test_a_chunk_of_a_compression_without_limit_is_refused(tmp_path: Path) -> None:
     path = with_chunk(tmp_path / "0001.mcap", bytes(100), 100, "lz4")
-    with pytest.raises(RecordingError, match="a chunk is packed with 'lz4', allowed is zstd"):
+    with pytest.raises(RecordingError, match=r"0001\.mcap: .*'lz4'.*zstd"):
         SegmentReader(path).head()

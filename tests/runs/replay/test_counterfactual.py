@@ -191,7 +191,7 @@ def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
 
 def test_knowledge_of_other_features_is_refused() -> None:
     run = stored("walls")
-    with pytest.raises(RecordingError, match="this knowledge cannot decide there"):
+    with pytest.raises(RecordingError, match="knowledge"):
         CounterfactualPolicy(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])
 
 

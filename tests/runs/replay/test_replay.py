@@ -1,6 +1,7 @@
 """A recorded run comes out again as it was: each decision, and all that is known, bit for bit."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -111,7 +112,8 @@ def test_replay_tells_zeros_by_sign_and_booleans_from_numbers() -> None:
     entry, record = next(iter(Replay(stored("walls"))))
     still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
     (found,) = compare(entry._replace(decision=still), record)
-    assert found.text == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
+    assert found.field == "decision.wheel_speeds.left_m_s"
+    assert repr((found.recorded, found.replayed)) == "(-0.0, 0.0)"
     (found,) = compare(entry._replace(readings=entry.readings._replace(bumpers=False)), record)
     assert found.field == "senses.bumpers"
 
@@ -163,44 +165,45 @@ def test_replay_ends_at_a_gap_and_reports_it() -> None:
     run = part_of(stored("walls"), range(201, 204))
     assert differences(run) == (200, [])
     assert not run.whole
-    assert run.trouble.startswith("3 ticks before 2.03 s (tick 204) are not in the recording")
+    assert run.trouble.startswith("3 ticks ")
+    assert "(tick 204)" in run.trouble
 
 
 def test_a_run_whose_beginning_is_gone_says_so() -> None:
     run = stored("walls")
     kept = {name: data for name, data in run._attachments.items() if name != "knowledge.jsonl"}
-    with pytest.raises(RecordingError, match=r"knowledge\.jsonl is missing, with which the run began"):
+    with pytest.raises(RecordingError, match=r"late: .*knowledge\.jsonl"):
         Run("late", run.head, kept, run._source)
 
 
 def test_damaged_settings_are_refused() -> None:
     run = stored("walls")
     kept = {**run._attachments, "settings/robot.json": b"{}"}
-    with pytest.raises(RecordingError, match=r"settings/robot\.json is damaged"):
+    with pytest.raises(RecordingError, match=r"worn: .*settings/robot\.json"):
         Run("worn", run.head, kept, run._source)
 
 
 def test_settings_of_another_version_are_refused_with_its_name() -> None:
     run = stored("walls")
     head = RunHead(**{**{name: getattr(run.head, name) for name in RunHead.__slots__}, "fingerprints": {}})
-    with pytest.raises(RecordingError, match="recorded by kurt2rt story, whose settings this one cannot use"):
+    with pytest.raises(RecordingError, match=r"old: .* story,"):
         Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._source)
 
 
 @pytest.mark.parametrize("name", ["settings/../../escaped", "/escaped", "settings/task.json/escaped"])
 def test_a_run_that_would_write_elsewhere_is_refused(name: str) -> None:
     run = stored("walls")
-    with pytest.raises(RecordingError, match=r"evil: holds .*escaped|evil: holds 'settings/task\.json' as a file and"):
+    with pytest.raises(RecordingError, match=r"evil: .*escaped|evil: .*'settings/task\.json'"):
         Run("evil", run.head, {**run._attachments, name: b"!"}, run._source)
 
 
 def test_read_run_of_another_file_raises_recording_error(tmp_path: Path) -> None:
-    with pytest.raises(RecordingError, match="no recorded run"):
+    with pytest.raises(RecordingError, match=re.escape(f"{tmp_path}: ")):
         read_run(tmp_path)
-    with pytest.raises(RecordingError, match="cannot be read"):
+    with pytest.raises(RecordingError, match="nothing: "):
         read_run(tmp_path / "nothing")
     (tmp_path / "empty.mcap").write_bytes(b"")
-    with pytest.raises(RecordingError, match="says of no run"):
+    with pytest.raises(RecordingError, match=r"empty\.mcap: "):
         read_run(tmp_path / "empty.mcap")
 
 
