@@ -30,10 +30,15 @@ BuildTaught = Callable[[TaughtAction | TaskAction, Path], Behaviour]
 def load_repertoire(
     name_or_path: str, robot: RobotSettings, build_taught: BuildTaught | None = None
 ) -> dict[str, Behaviour]:
-    """Return the actions of a repertoire, built for a robot.
+    """Return the actions of a shipped repertoire or a file, built for a robot, by action name.
 
-    `build_taught` builds actions that are RLA systems, which this package does not know; None refuses them.
-    Raises SettingsError that names file and entry.
+    Args:
+        name_or_path: name in `config/repertoires`, or a path.
+        robot: settings of the robot.
+        build_taught: builder of actions that are RLA systems, which this package does not know; None refuses them.
+
+    Raises:
+        hal.settings.SettingsError: for a missing or invalid file or entry, which it names.
     """
     path = find_config("repertoires", name_or_path)
     settings = load_settings(path, RepertoireSettings)

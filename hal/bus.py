@@ -68,7 +68,10 @@ class CanBus:
         self._filter_ids = ids
 
     def now_s(self) -> float | None:
-        """Return the present on the clock of the time stamps; None if frames count as just arrived. Raises BusError."""
+        """Return the present in s on the clock of the time stamps; None if frames count as just arrived.
+
+        Raises BusError.
+        """
         return self._usable().now_s()
 
     def drain(self) -> list[can.Message]:

@@ -31,7 +31,13 @@ def pack_bus_frame(frame: can.Message) -> bytes:
 
 
 def frame_of(flagged_id: int, length: int, payload: bytes) -> can.Message:
-    """Return the frame of a record that BUS_FRAME unpacked, without time stamp and channel."""
+    """Return the frame of a record that BUS_FRAME unpacked, without time stamp and channel.
+
+    Args:
+        flagged_id: identifier with the flags of Linux in its highest bits.
+        length: number of bytes of `payload` that count.
+        payload: 8 bytes.
+    """
     if not flagged_id & _FLAGS:
         return Frame(flagged_id & _STANDARD_ID, payload[:length])
     is_extended = bool(flagged_id & _EXTENDED)

@@ -48,7 +48,7 @@ class BusState:
         self.receiving_errors = 0
 
     def note(self, frame: can.Message) -> None:
-        """Read one error frame. Cheap, because a broken cable makes thousands a second."""
+        """Read one error frame of Linux's layout. Cheap, because a broken cable makes thousands a second."""
         classes = frame.arbitration_id
         self.error_frames += 1
         for bits, kind in _KINDS:

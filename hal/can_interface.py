@@ -19,22 +19,28 @@ class CanInterface(Protocol):
     """Frames lost since the end was opened because it read too late."""
 
     def now_s(self) -> float | None:
-        """Return the present on the clock that stamps the frames; None if frames count as just arrived."""
+        """Return the present in s on the clock that stamps the frames; None if frames count as just arrived."""
         ...
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
-        """Deliver only frames with these standard identifiers, and error frames."""
+        """Deliver only frames with these standard identifiers, and error frames.
+
+        Raises can.CanError or OSError.
+        """
         ...
 
     def recv(self, timeout: float | None) -> can.Message | None:
         """Return the oldest waiting frame, or None; called with `timeout` 0 seconds.
 
-        After the bus is lost every call raises, so silence is never taken for a quiet bus.
+        Raises can.CanError or OSError on every call after the bus is lost, so silence is never taken for a quiet bus.
         """
         ...
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Send a frame, also after failures; called with `timeout` 0 seconds."""
+        """Send a frame, also after failures; called with `timeout` 0 seconds.
+
+        Raises can.CanError or OSError if the bus does not take it, ValueError for a frame that is not classic CAN.
+        """
         ...
 
     def shutdown(self) -> None:

@@ -112,7 +112,10 @@ def control_frame(control: Control) -> Frame:
 
 
 def encode_control(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings) -> Frame:
-    """Return the CONTROL frame of finite wheel speeds; yaw 0 and keep 1 always (docs/the-robot.md#yaw-and-keep)."""
+    """Return the CONTROL frame of finite wheel speeds; yaw 0 and keep 1 always (docs/the-robot.md#yaw-and-keep).
+
+    Raises ValueError for a speed in SPEED_CM that does not fit its field.
+    """
     return control_frame(set_point(mode, wheel_speeds, motors))
 
 

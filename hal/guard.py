@@ -62,7 +62,7 @@ class Guard:
 
     @property
     def latched(self) -> GuardReason | None:
-        """Why the robot stays stopped until `release`; None when it does not."""
+        """Reason that the robot stays stopped until `release`; None if it does not."""
         return self._latched
 
     @property
@@ -78,8 +78,9 @@ class Guard:
     def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
-        The applied speeds are those in the frame: truncated to its resolution, which needs no reason. No set
-        point is queued after frames that the bus has not carried yet; a brake is.
+        Returns the applied speeds, which are those in the frame, truncated to its resolution, and the reasons for other
+        differences. No set point is queued after frames that the bus has not carried yet; a brake is. A bus that fails
+        raises nothing: the guard brakes and stays stopped.
         """
         with self._lock:
             if self._latched is None and self._port.unconfirmed >= _UNCONFIRMED:
@@ -117,7 +118,7 @@ class Guard:
             self._send_brake()
 
     def release(self) -> None:
-        """End a latched stop; the robot stands until it is driven, and starts from zero."""
+        """End a latched stop; the robot stands until it is driven, and starts from a speed of 0."""
         with self._lock:
             if self._latched == GuardReason.BUS_BLOCKED:
                 # Frames that were lost on the way out would count as yet to be carried for ever.

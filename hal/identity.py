@@ -5,5 +5,5 @@ SIMULATED_HARDWARE_ID = 0x5349
 
 
 def hardware(hardware_id: int) -> str:
-    """Return the text of a hardware id."""
+    """Return the hardware id of an INFO frame as text, which names the simulated robot."""
     return f"hardware {hardware_id}" + (" (the simulated robot)" if hardware_id == SIMULATED_HARDWARE_ID else "")

@@ -50,7 +50,10 @@ class InfraredFrame:
         self.last_payload: bytes | bytearray = b""
 
     def read(self, data: bytes | bytearray, at_s: float, batch: FrameBatch) -> None:
-        """Store the distance channels of a frame. Raises InvalidFrameError, changing nothing."""
+        """Store the counts and the time `at_s`, in s, of a frame's distance channels; note changes in `batch`.
+
+        Raises InvalidFrameError, changing nothing, for a payload that is too short or a count above the range.
+        """
         if data != self.last_payload:
             raw, counts = self.codec.unpack(data), self.counts
             for at, _ in self.places:
@@ -72,7 +75,14 @@ class InfraredFrame:
 def infrared_frames(
     channels: tuple[str, ...], codec: Codec, watch: InfraredWatch, newest: InfraredCounts
 ) -> tuple[InfraredFrame, ...]:
-    """Return the frames that carry channels of the sensor table; channel names are signal names."""
+    """Return the frames that carry channels of the sensor table; channel names are signal names.
+
+    Args:
+        channels: channel of each sensor, in the order of the table.
+        codec: of all messages.
+        watch: has the board of each channel.
+        newest: counts and times of all sensors, which the frames write to.
+    """
     frames = []
     for message in codec.by_id.values():
         places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)

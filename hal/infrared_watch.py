@@ -34,7 +34,10 @@ class InfraredWatch:
         self._boards = {letters: Board(letters) for letters in sorted({channel[:3] for channel in channels})}
 
     def board_of(self, channel: str) -> Board:
-        """Return the board of a channel; the reader of the channel resets `still_s` there after a change."""
+        """Return the board of a channel, such as ADC00. Raises KeyError for a board without sensors.
+
+        The reader of the channel sets `still_s` of the board to 0 after a change.
+        """
         return self._boards[channel[:3]]
 
     def check_frozen(self, now_s: float, *, driving: bool) -> str:

@@ -71,11 +71,12 @@ class Kurt2:
         bus.set_id_filter({CONTROL_ID, *self._readers})
 
     def sense(self, now_s: float) -> SensorReadings:
-        """Take everything that arrived, without waiting, and return the newest values.
+        """Take everything that arrived, without waiting, and return the newest values; `now_s` in s.
 
-        A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk
-        in it, or from the future, changes nothing, not even its age: a channel that stays broken becomes stale, and
-        the guard stands. A lost bus raises nothing; the readings age. What must stop the robot at once does so here.
+        A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk in
+        it, or from the future, changes nothing, not even its age: a channel that stays broken becomes stale, and the
+        guard stands. A lost bus raises nothing; the readings age. Faults that must stop the robot at once do so in this
+        call.
         """
         messages, bus_now_s = self._drain(now_s)
         paused = now_s - self._readings.time_s > self._pause_s
@@ -89,7 +90,10 @@ class Kurt2:
         return self._readings
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Ask for wheel speeds in m/s; what is safe by the newest readings goes out in this tick's CONTROL frame."""
+        """Ask for wheel speeds in m/s; times in s. The guard sends the safe part in this tick's CONTROL frame.
+
+        Call it once per tick after `sense`, because the call is the watchdog's beat.
+        """
         if self.watchdog.ticks_ceased:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
             self._guard.emergency_stop(GuardReason.TICKS_CEASED)
@@ -111,7 +115,7 @@ class Kurt2:
         self._guard.release()
 
     def close(self) -> None:
-        """Brake, end the watchdog and give the bus back."""
+        """Brake, end the watchdog and close the bus; may be called twice."""
         self._closed = True
         self.watchdog.stop()
         self._guard.emergency_stop(GuardReason.CLOSED)

@@ -56,11 +56,17 @@ class Robot(Protocol):
     """A robot that the runtime can sense and drive. Every set point passes a guard inside."""
 
     def sense(self, now_s: float) -> SensorReadings:
-        """Take everything that arrived, without waiting, and return the newest values."""
+        """Take everything that arrived, without waiting, and return the newest values.
+
+        `now_s`: time of the tick on the runtime's clock, in s.
+        """
         ...
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Request wheel speeds; the guard sends the safe part of them in this tick's CONTROL frame. Times in s."""
+        """Request wheel speeds in m/s; the guard sends the safe part of them in this tick's CONTROL frame.
+
+        `decided_at_s`: time of the tick that decided them. `now_s`: present time. Both in s on the runtime's clock.
+        """
         ...
 
     def emergency_stop(self, reason: GuardReason) -> None:

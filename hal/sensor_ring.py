@@ -19,7 +19,7 @@ class Neighbours(NamedTuple):
 
 
 def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
-    """Return the neighbours of each sensor, in the order of the table.
+    """Return the neighbours of each sensor, in the order of the table, as indexes into it.
 
     The ring goes by heading, and among sensors of one heading by their place along the side.
     """

@@ -92,7 +92,7 @@ class SensorWatch:
         """Their places in the sensor table."""
 
     def update(self, counts: tuple[int, ...], *, driving: bool) -> tuple[BrokenSensor, ...]:
-        """Look at the readings of one tick, in counts, and return the sensors that are noticed now.
+        """Process the readings of one tick, in counts, and return the sensors that are newly noticed as broken.
 
         Call it in each tick with fresh readings. `driving`: whether the wheels were told to turn in the tick before.
         """
@@ -106,7 +106,7 @@ class SensorWatch:
         return () if signs is None else self._judge(signs, counts)
 
     def readmit(self) -> None:
-        """Trust a broken sensor again if its reading has changed since it was noticed, after a teacher looked at it.
+        """Trust each broken sensor again whose reading has changed since it was noticed; a teacher looked at it.
 
         A sensor that is still broken is noticed again.
         """

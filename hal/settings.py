@@ -150,7 +150,10 @@ def kept_name(name_or_path: str) -> str:
 
 
 def find_beside(settings: Path, name: str) -> Path:
-    """Return the path of a file that settings name, relative to their folder; it need not exist."""
+    """Return the path of a file that settings name, relative to their folder; it need not exist.
+
+    `settings`: path of the settings file. `name`: relative, absolute, or with a tilde.
+    """
     kept = _KEPT.get()
     return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
 
@@ -182,14 +185,14 @@ def find_config(kind: str, name_or_path: str) -> Path:
 
 
 def shipped_names(kind: str) -> list[str]:
-    """Return the names of the shipped settings files in `config/<kind>`, sorted."""
+    """Return the names of the shipped settings files in `config/<kind>`, without ending, sorted."""
     return sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
 
 
 def content_of(path: Path) -> Any:
     """Return the unvalidated content of a YAML file, in the types of JSON.
 
-    Raises SettingsError with one line that names the file.
+    Raises SettingsError, with one line that names the file, if it cannot be read or is no YAML.
     """
     return json.loads(_json_in(path))
 
@@ -286,7 +289,10 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
 
 
 def keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:
-    """Return the keys that a nested place allows, as far as the schema's annotations tell."""
+    """Return the keys that a nested place allows, as far as the schema's annotations tell.
+
+    `location`: keys and list positions from the outermost in, as pydantic reports them.
+    """
     here: list[type[BaseModel]] = [schema]
     for part in location:
         within = [model.model_fields[part].annotation for model in here if part in model.model_fields]

@@ -78,7 +78,7 @@ class SharedBus(can.BusABC):
         super().__init__(channel=name)
 
     def now_s(self) -> float | None:
-        """Return the monotonic clock, which all processes of a machine share."""
+        """Return the monotonic clock in s, which all processes of a machine share; never None."""
         return time.monotonic()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -90,7 +90,10 @@ class SharedBus(can.BusABC):
         return self._next() if timeout == 0 else super().recv(timeout)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Append a frame; `timeout` (s) is unused. Raises can.CanOperationError, ValueError if not classic CAN."""
+        """Append a frame; `timeout` (s) is unused.
+
+        Raises can.CanOperationError if the bus is lost, ValueError for a frame that is not classic CAN.
+        """
         record = pack_bus_frame(msg) + _STAMP_AND_SENDER.pack(time.monotonic(), self._sender)
         record += _CHECKSUM.pack(zlib.crc32(record))
         with self._lock:  # no other thread closes the file meanwhile

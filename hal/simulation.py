@@ -88,27 +88,27 @@ class Simulation(Protocol):
 
     @property
     def robot(self) -> Robot:
-        """The robot, with its bus and its guard."""
+        """Robot that is simulated, with its bus and its guard."""
         ...
 
     @property
     def position(self) -> Position:
-        """True position."""
+        """True position of the robot, in m."""
         ...
 
     @property
     def pose(self) -> Pose:
-        """True pose."""
+        """True pose of the robot, in m and rad."""
         ...
 
     @property
     def plan(self) -> WorldPlan:
-        """The world from above."""
+        """World from above."""
         ...
 
     @property
     def nearest_m(self) -> float:
-        """Distance from the robot's centre to the nearest wall or obstacle."""
+        """Distance in m from the robot's centre to the nearest wall or obstacle."""
         ...
 
     @property
@@ -171,7 +171,8 @@ class SimulationFactory(Protocol):
         """Open a simulation of the robot in a world, by name.
 
         The seed makes the robot, with the spread of its sensors, so a robot is examined with the sensors it was taught
-        with; seed and purpose ("lesson", "exam") together make the start pose and the noise.
+        with; seed and purpose ("lesson", "exam") together make the start pose and the noise. Raises
+        hal.settings.SettingsError for an unknown world.
         """
         ...
 
@@ -180,19 +181,25 @@ class SimulationFactory(Protocol):
         ...
 
     def settings_of(self, world: str) -> str:
-        """Return all settings of a world as a text, which tells its versions apart."""
+        """Return all settings of a world as a text, which tells its versions apart.
+
+        Raises hal.settings.SettingsError for an unknown world.
+        """
         ...
 
     def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError."""
+        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
         ...
 
     def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above."""
+        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
         ...
 
     def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at a pose where a drive in this world may begin."""
+        """Draw the robot at a pose where a drive in this world may begin, on axes in m.
+
+        Raises hal.settings.SettingsError for an unknown world.
+        """
         ...
 
 
@@ -203,7 +210,7 @@ class SimulatedWorld(Protocol):
     """
 
     def place(self) -> SimulatedPlace:
-        """Return the robot's true place."""
+        """Return the true place of the robot."""
         ...
 
     def world(self) -> WorldPlan:
@@ -211,13 +218,16 @@ class SimulatedWorld(Protocol):
         ...
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Shift a wall or obstacle. Raises WorldRefusedError."""
+        """Shift a wall or obstacle by (dx_m, dy_m), in m.
+
+        Raises WorldRefusedError for an unknown name, or if it would lie on the robot.
+        """
         ...
 
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Put the robot elsewhere. Raises WorldRefusedError."""
+        """Put the robot, standing, at a pose in m and rad. Raises WorldRefusedError if it does not fit there."""
         ...
 
     def put_robot_back(self) -> None:
-        """Put the robot where the run began. Raises WorldRefusedError."""
+        """Put the robot where the run began. Raises WorldRefusedError if it does not fit there now."""
         ...

@@ -53,7 +53,7 @@ class SocketCanBus(SocketcanBus):
         self.socket.setsockopt(socket.SOL_SOCKET, _SO_RXQ_OVFL, 1)
 
     def now_s(self) -> float | None:
-        """Return the wall clock, on which the kernel stamps frames."""
+        """Return the wall clock in s, on which the kernel stamps frames; never None."""
         return time.time()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -67,7 +67,10 @@ class SocketCanBus(SocketcanBus):
         return self._take() if timeout == 0 else super().recv(timeout)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002 - it never waits
-        """Queue a frame in the kernel; `timeout` (s) is unused. Raises can.CanOperationError, ValueError."""
+        """Queue a frame in the kernel; `timeout` (s) is unused.
+
+        Raises can.CanOperationError if the queue is full or the interface is lost, ValueError if it is not classic CAN.
+        """
         try:
             self.socket.send(pack_bus_frame(msg), socket.MSG_DONTWAIT)
         except OSError as error:

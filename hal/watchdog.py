@@ -27,7 +27,7 @@ class Watchdog:
         self._thread: threading.Thread | None = None
 
     def beat(self) -> None:
-        """Note the end of a tick."""
+        """Note the end of a tick; the first beat starts the watch."""
         self._beat_s = self._clock()
 
     def check(self, now_s: float) -> bool:

@@ -26,7 +26,7 @@ class CommonFaults(Settings):
 
 
 def has_fault(now: AppraisalFeatures, trouble: CommonFaults) -> bool:
-    """Return whether the robot bumped into something, makes no progress, backs or stands."""
+    """Return whether the robot bumped into something, makes no progress, backs or stands, by these thresholds."""
     return (
         now.bumped > 0.0
         or (now.no_progress > 0.0 and now.speed_m_s < trouble.creeps_m_s)

@@ -39,7 +39,7 @@ class EightSettings(JudgeSettings):
     """Distance at both front edges above which a right turn without a column in view is bad."""
 
     def build(self) -> Judge:
-        """Return the judge."""
+        """Return a judge with these thresholds."""
         return Eight(self)
 
 

@@ -37,7 +37,7 @@ class FleeingSettings(JudgeSettings):
     """Turn rate above which the robot turns to a side."""
 
     def build(self) -> Judge:
-        """Return the judge."""
+        """Return a judge with these thresholds."""
         return Fleeing(self)
 
 

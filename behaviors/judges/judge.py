@@ -48,4 +48,4 @@ class JudgeSettings(KindSettings):
 
     @abstractmethod
     def build(self) -> Judge:
-        """Return the judge."""
+        """Return a judge with these settings."""

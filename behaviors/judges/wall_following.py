@@ -62,7 +62,7 @@ class WallFollowingSettings(JudgeSettings):
     """Free distance ahead that makes curving to the wall good."""
 
     def build(self) -> Judge:
-        """Return the judge."""
+        """Return a judge with these thresholds."""
         return WallFollowing(self)
 
 

@@ -15,7 +15,7 @@ class AngleAbout:
         self._angle_rad: float | None = None
 
     def away_m(self, pose: Pose) -> float:
-        """Distance of the robot's centre."""
+        """Return the distance in m from the centre of the angle to the robot's centre."""
         return math.hypot(pose.x_m - self._x_m, pose.y_m - self._y_m)
 
     def interrupt(self) -> None:

@@ -22,14 +22,17 @@ class EightsSettings(MetricSettings):
     """Distance from the robot's centre to the face of the nearer post."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
-        """Raise hal.settings.SettingsError unless the world has two posts."""
+        """Raise hal.settings.SettingsError unless the world has two posts. `behaviours` may be any."""
         if len(plan.posts) != 2:
             raise SettingsError(
                 f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation.
+
+        Raises hal.settings.SettingsError unless the world has two posts.
+        """
         plan = simulation.plan
         self.require(plan, behaviours)
         west, east = sorted(plan.posts, key=lambda post: post.x_m)

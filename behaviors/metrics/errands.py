@@ -36,11 +36,17 @@ class ErrandsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation. `chance` is not used.
+
+        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        """
         return self.walk_in(simulation.plan, behaviours)
 
     def walk_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> "Errands":
-        """Return the metric as a tracker of streets. Raises hal.settings.SettingsError."""
+        """Return the metric in a world, as a tracker of streets.
+
+        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        """
         self.require(plan, behaviours)
         return Errands(Town(StreetMap(plan), {each: QUARTERS[each] for each in behaviours}), behaviours[0])
 
@@ -62,16 +68,16 @@ class Errands:
 
     @property
     def findings(self) -> Metrics:
-        """Number of junctions that the robot left."""
+        """Number of junctions that the robot left, by its name."""
         return {JUNCTIONS: self.progress}
 
     def reset(self, pose: Pose) -> None:
-        """Start at this pose."""
+        """Continue at this pose, after a repositioning too; the way there counts no junction."""
         self.street = self.town.street_at(pose)
         self.streets += [None, self.street]
 
     def update(self, pose: Pose) -> None:
-        """Update the metric with the robot's pose."""
+        """Count a junction if this pose is in the next street; call it in every tick."""
         # From the edge of the junction on: a robot may know that it is in the next street a hand's breadth behind it.
         here = self.town.street_at(pose)
         if here is None:

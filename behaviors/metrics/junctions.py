@@ -30,7 +30,10 @@ class JunctionsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation, which draws the required behaviours by `chance`.
+
+        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        """
         plan = simulation.plan
         self.require(plan, behaviours)
         return Junctions(StreetMap(plan), behaviours, chance)

@@ -17,11 +17,11 @@ class LapsSettings(MetricSettings):
     """Distance that is wanted from the robot's centre to the nearest wall."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:
-        """Return the laps of a drive that makes 0.1 m/s along walls."""
+        """Return the laps of a drive of `duration_s`, in s, that makes 0.1 m/s along walls."""
         return LEAST_SPEED_M_S * duration_s / simulation.lap_m
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation. `chance` is not used."""
         return Laps(self, simulation, behaviours[0])
 
 

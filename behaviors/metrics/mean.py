@@ -19,5 +19,5 @@ class Mean:
         self._count += 1
 
     def as_metric(self, name: str) -> Metrics:
-        """Return the mean by its name; empty without values."""
+        """Return the mean by its name, {name: mean}; empty without values."""
         return {name: self._sum / self._count} if self._count else {}

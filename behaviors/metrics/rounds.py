@@ -32,7 +32,10 @@ class RoundsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation. `chance` is not used.
+
+        Raises hal.settings.SettingsError unless the world has one post.
+        """
         plan = simulation.plan
         self.require(plan, behaviours)
         return Rounds(self, plan.posts[0], behaviours[0])
@@ -60,7 +63,7 @@ class Rounds:
 
     @property
     def findings(self) -> Metrics:
-        """Distance error in m, also far from the post."""
+        """Distance error in m by its name; poses far from the post are included."""
         return self._error_m.as_metric(DISTANCE_ERROR)
 
     def reset(self, pose: Pose) -> None:

@@ -52,7 +52,7 @@ class RouteSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation, without random choices: exam and lesson share the route.
 
-        Raises hal.settings.SettingsError as `require` does.
+        Raises hal.settings.SettingsError if the world has no such loop, or for behaviours that choose no exit.
         """
         plan = simulation.plan
         self.require(plan, behaviours)
@@ -113,12 +113,12 @@ class FixedRoute:
 
     @property
     def ahead(self) -> WayAhead:
-        """Position on the route."""
+        """Position on the route, with the required behaviour and the turn there."""
         return WayAhead(self._passed, self._inside, self.behaviour, self._meaning[self._at(1).quarters])
 
     @property
     def reset_pose(self) -> Pose:
-        """Middle of the street that the robot should be in."""
+        """Pose in the middle of the street that the robot should be in, looking ahead."""
         return self._at(1 if self._inside else 0).middle
 
     @property
@@ -139,7 +139,7 @@ class FixedRoute:
         return found | deviation_m
 
     def reset(self, pose: Pose) -> None:
-        """Continue after the current junction, or on the way to the same junction as before."""
+        """Continue at this pose: after the junction under way, which counts as wrong, or toward the next one."""
         self.needs_reset = False
         if self._inside:
             self._judge(None)

@@ -52,12 +52,15 @@ class Route:
 
 
 def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], chance: random.Random) -> Route:
-    """Return a closed loop past so many junctions, drawn from a random walk that never turns back.
+    """Return a closed loop past `decisions` junctions, drawn from a random walk that never turns back.
 
     The loop may cross itself and use a street twice, but repeats no shorter loop.
 
     Args:
+        streets: of the world.
+        decisions: number of junctions.
         quarters: allowed turns, in quarters to the left.
+        chance: source of the walk.
 
     Raises:
         hal.settings.SettingsError: the streets have no such loop.

@@ -18,7 +18,7 @@ class Side(IntEnum):
     SOUTH = 3
 
     def turned(self, quarters: int) -> "Side":
-        """Return the side after so many quarter turns to the left."""
+        """Return the side after so many quarter turns to the left; negative: to the right."""
         return Side((self + quarters) % 4)
 
     @property
@@ -32,7 +32,7 @@ ALONG = {Side.EAST: (1, 0), Side.NORTH: (0, 1), Side.WEST: (-1, 0), Side.SOUTH: 
 
 
 def side_towards(dx: float, dy: float) -> Side:
-    """Return the side nearest to a direction in m or as a unit vector."""
+    """Return the side nearest to the direction (dx, dy), in m or as a unit vector; x east, y north."""
     if abs(dx) >= abs(dy):
         return Side.EAST if dx > 0 else Side.WEST
     return Side.NORTH if dy > 0 else Side.SOUTH
@@ -59,7 +59,7 @@ class Junction:
         )
 
     def side_of(self, pose: Pose) -> Side:
-        """Return the side of the junction that a pose lies at."""
+        """Return the side of the junction that a pose in or next to it is nearest to."""
         return side_towards((pose.x_m - self.x_m) / self.half_width_m, (pose.y_m - self.y_m) / self.half_height_m)
 
 
@@ -91,7 +91,7 @@ class StreetMap:
         self.junctions = tuple(self._junction(x_m, y_m) for x_m, y_m in plan.junctions)
 
     def junction_at(self, pose: Pose) -> Junction | None:
-        """Return the junction that a pose lies in."""
+        """Return the junction that a pose lies in; None outside of all junctions."""
         return next((each for each in self.junctions if each.holds(pose)), None)
 
     def deviation_m(self, pose: Pose) -> float | None:
@@ -102,7 +102,7 @@ class StreetMap:
         return min(deviations_m, default=None)
 
     def next_junction(self, pose: Pose, way: Side) -> Junction | None:
-        """Return the next junction in this direction along the street of a pose; None without one."""
+        """Return the next junction in the direction `way` along the street of a pose; None without one."""
         along_x, along_y = ALONG[way]
         ahead = [
             (along_m, each)

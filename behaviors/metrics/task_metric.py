@@ -52,7 +52,7 @@ class TaskMetric(Protocol):
         ...
 
     def reset(self, pose: Pose) -> None:
-        """Start at this pose, at the beginning or after a repositioning."""
+        """Start at this pose: call it at the beginning and after each repositioning."""
         ...
 
     def update(self, pose: Pose) -> None:
@@ -96,9 +96,9 @@ class MetricSettings(KindSettings):
     """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Look whether a world has what the course needs, for a task that teaches these behaviours.
+        """Check that a world has all that the metric needs, for a task that teaches these behaviours.
 
-        Raises hal.settings.SettingsError.
+        Raises hal.settings.SettingsError if it lacks something. This base needs nothing.
         """
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - for other courses
@@ -114,4 +114,12 @@ class MetricSettings(KindSettings):
 
     @abstractmethod
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric of one drive in a simulation.
+
+        Raises hal.settings.SettingsError if the world lacks something that the metric needs.
+
+        Args:
+            simulation: that the robot drives in.
+            behaviours: taught behaviours of the task.
+            chance: source of random requirements.
+        """

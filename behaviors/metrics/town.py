@@ -47,7 +47,7 @@ class Town:
                 self._graph.add_edge(street, on, length_m=street.length_m)
 
     def street_at(self, pose: Pose) -> Street | None:
-        """Return the street that a pose lies in and looks along; None within a junction."""
+        """Return the street that a pose lies in and looks along; None within a junction and off the streets."""
         if any(each.holds(pose) for each in self._map.junctions):
             return None
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
@@ -55,7 +55,7 @@ class Town:
         return None if ahead is None else self._of.get((way, ahead))
 
     def on_from(self, street: Street) -> dict[str, Street]:
-        """Return the possible behaviours at the end of a street, each with the street that follows."""
+        """Return the street that follows a street, by each behaviour that is possible at its end."""
         found = {}
         for behaviour, quarters in self._meaning.items():
             way = street.way.turned(quarters)
@@ -66,14 +66,14 @@ class Town:
         return found
 
     def shortest(self, start: Street, goal: Street) -> tuple[Street, ...] | None:
-        """Return the streets of the shortest way, with both ends; None without a way."""
+        """Return the streets of the shortest way, start and goal included; None without a way."""
         try:
             return tuple(nx.dijkstra_path(self._graph, start, goal, weight="length_m"))
         except nx.NetworkXNoPath:
             return None
 
     def nearest(self, start: Street, goals: Sequence[Street]) -> tuple[Street, ...] | None:
-        """Return the shortest way to the nearest of several streets; None without a way."""
+        """Return the streets of the shortest way to the nearest goal, both ends included; None without a way."""
         ways = [way for goal in goals if (way := self.shortest(start, goal)) is not None]
         return min(ways, key=lambda way: length_m(way), default=None)
 
@@ -94,9 +94,10 @@ class Town:
 
 
 def length_m(way: Sequence[Street], start: Pose | None = None, end: Pose | None = None) -> float:
-    """Return the length along the middles of streets, from a pose in the first to one in the last.
+    """Return the length in m along the middles of streets, from a pose in the first to one in the last.
 
     Args:
+        way: streets in their order, at least one.
         start: None: the middle of the first street.
         end: None: the middle of the last street.
     """

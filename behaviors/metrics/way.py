@@ -11,11 +11,11 @@ class WaySettings(MetricSettings):
     """Settings of the metric `way`."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
-        """Return the way of a drive at 0.1 m/s, in m."""
+        """Return the distance in m of a drive of `duration_s`, in s, at 0.1 m/s."""
         return LEAST_SPEED_M_S * duration_s
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation. The other arguments are not used."""
         return Way(simulation.pose, behaviours[0])
 
 
@@ -32,7 +32,7 @@ class Way:
 
     @property
     def findings(self) -> Metrics:
-        """No further measures."""
+        """Empty: the distance is the progress."""
         return {}
 
     def reset(self, pose: Pose) -> None:

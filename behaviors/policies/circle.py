@@ -16,7 +16,7 @@ class CircleSettings(PolicySettings):
     """Distance on the left above which an object counts as not seen."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return the policy."""
+        """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
         return Circle(self, infrared)
 
 

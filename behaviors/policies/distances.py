@@ -32,11 +32,14 @@ class Distances:
         self._x_m = {name: sensor.x_m for name, sensor in zip(infrared.names, infrared.sensors, strict=True)}
 
     def of(self, *names: str) -> Look:
-        """Return a function from counts of all sensors to the distances in m of the named ones, in their order."""
+        """Return a function from counts of all sensors to the distances in m of the named ones, in their order.
+
+        Raises KeyError for an unknown sensor.
+        """
         distance_m = self._distance_m
         places = tuple(self._index[name] for name in names)
         return lambda counts: tuple([distance_m[counts[place]] for place in places])
 
     def ahead_m(self, *names: str) -> tuple[float, ...]:
-        """Return the sensors' positions ahead of the robot's centre, in m."""
+        """Return the positions of the named sensors ahead of the robot's centre, in m. Raises KeyError."""
         return tuple(self._x_m[name] for name in names)

@@ -32,7 +32,7 @@ class EightSettings(PolicySettings):
     """Distance at a front edge below which the robot curves away from the column."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return the policy."""
+        """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
         return Eight(self, infrared)
 
 

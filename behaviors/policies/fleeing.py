@@ -16,7 +16,7 @@ class FleeingSettings(PolicySettings):
     """Distance at the front edges below which the robot curves away."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return the policy."""
+        """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
         return Fleeing(self, infrared)
 
 

@@ -11,10 +11,11 @@ class ReferencePolicy(Protocol):
     """Memoryless choice of the right action: a robot cannot learn from hidden state of the teacher."""
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
-        """Return the name of the action.
+        """Return the name of the action that is right in this tick.
 
-        Args: `infrared_counts` as in hal's sensor readings; `behaviour`: the selected taught behaviour, empty if the
-        task has only one.
+        Args:
+            infrared_counts: readings of all sensors in counts, in the order of the sensor table.
+            behaviour: selected taught behaviour; empty if the task has only one.
         """
         ...
 

@@ -43,7 +43,7 @@ class StreetsSettings(PolicySettings):
     """Distance above which a side is open."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return the policy."""
+        """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
         return Streets(self, infrared)
 
 

@@ -37,7 +37,7 @@ class WallFollowingSettings(PolicySettings):
     """Distance error in m per radian of heading error."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return the policy."""
+        """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
         return WallFollowing(self, infrared)
 
 

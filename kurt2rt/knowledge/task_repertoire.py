@@ -20,7 +20,11 @@ from kurt2rt.knowledge.taught_actions import build_taught_system
 
 
 def load_task_repertoire(task: TaskSettings, robot: RobotSettings) -> dict[str, Behaviour]:
-    """Return the actions that RLAs of a task may have, each a new instance. Raises SettingsError."""
+    """Return the actions that RLAs of a task may have, by name, each a new instance.
+
+    Raises:
+        SettingsError: the repertoire, or settings or knowledge that it names, cannot be loaded.
+    """
     return _RepertoireLoader(robot, ()).load(task.repertoire)
 
 

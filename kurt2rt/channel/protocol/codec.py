@@ -92,7 +92,7 @@ def encode_answer(answer: Mapping[str, Any]) -> bytes:
 
 
 def decode_answer(payload: bytes) -> dict[str, Any]:
-    """Return the map of an answer. Raises WireError."""
+    """Return the map of an answer. Raises WireError if the payload is no CBOR map with text keys."""
     # Integer keys are allowed: an answer comes from the robot, and phases have numbers.
     answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH, text_keys=False)
     if not isinstance(answer, dict) or not all(isinstance(key, str) for key in answer):

@@ -19,7 +19,7 @@ class HealthRow(NamedTuple):
 
 
 def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
-    """Return the rows of all subjects."""
+    """Return one row (name, text, level) per subject of the report, in the order of the screens."""
     late, bus = report.punctuality, report.bus
     rows = [
         ("does", report.doing),
@@ -67,7 +67,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
 
 
 def trouble_in(trouble: Trouble) -> str:
-    """Return the fault, its duration and the remedy."""
+    """Return a line with the fault, its duration and the remedy."""
     to_do = f": {trouble.to_do}" if trouble.to_do else ""
     return f"{trouble.what} (for {lasting(trouble.since_s)}){to_do}"
 
@@ -81,7 +81,7 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
 
 
 def progress_in(progress: Progress) -> str:
-    """Return the percentage driven by RLAs and the number of questions, over the last minute."""
+    """Return a text: percentage driven by RLAs and number of questions, over the last minute."""
     if progress.driven_percent is None:
         return "nothing was driven yet"
     asks = "1 question" if progress.asks == 1 else f"{progress.asks} questions"
@@ -109,7 +109,7 @@ def name_of(trouble: Trouble) -> str:
 
 
 def headline(report: HealthReport) -> str:
-    """Return the names of all troubles, or `well`, and the lateness."""
+    """Return a line with the names of all troubles, or `well`, and the lateness in ms."""
     late = report.punctuality
     punctual = f"late {late.p99_ms:.2f} ms (p99), missed {late.missed}"
     urgent = {name_of(each) for each in report.troubles if each.urgent}
@@ -119,7 +119,7 @@ def headline(report: HealthReport) -> str:
 
 
 def lasting(seconds: float) -> str:
-    """Return a duration with at most two of its units."""
+    """Return a duration in s as text with at most two of its units, such as days and hours."""
     minutes, rest_s = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     days, hours = divmod(hours, 24)

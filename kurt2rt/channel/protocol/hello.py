@@ -90,7 +90,7 @@ class Hello:
 
     @property
     def sensor_words(self) -> SensorWords:
-        """Words for features by the sensors' places."""
+        """Texts for features, by the places of this robot's sensors."""
         return SensorWords({each.name: each.label for each in self.sensors}, self.law)
 
 

@@ -64,7 +64,7 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
 
 
 def numbers_of(code: TroubleCode) -> int:
-    """Return the count of numbers that the text of a code needs."""
+    """Return how many numbers the text of a code needs."""
     fields = (field for _, field, _, _ in Formatter().parse(_TEXTS[code][0]))
     return sum(field is not None and field.isdigit() for field in fields)
 

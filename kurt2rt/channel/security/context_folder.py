@@ -81,6 +81,6 @@ class ContextFolder:
         os.fsync(self._folder)
 
     def close(self) -> None:
-        """Close the folder and release the lock."""
+        """Close the folder and release the lock; call it once."""
         os.close(self._lock)
         os.close(self._folder)

@@ -93,7 +93,10 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
 
     @property
     def seen(self) -> tuple[int | None, int | None]:
-        """Replay window, which changes with each authenticated request."""
+        """Lowest number and bits of the replay window, which change with each authenticated request.
+
+        Both are None until the first request after a restart has proved to be new.
+        """
         window: Any = self.recipient_replay_window
         return window._index, window._bitfield
 

@@ -126,7 +126,10 @@ def revoke(teachers: Path, devices: Path, name: str) -> None:
 
 
 def list_pairings(teachers: Path) -> tuple[PairingInfo, ...]:
-    """Return all pairings of the robot by name, those of this machine included. Raises CredentialsError."""
+    """Return all pairings of the robot by name, those of this machine included.
+
+    Raises CredentialsError if the folder cannot be read.
+    """
     found = []
     for name in pairing_names(teachers):
         made, used = _changed_at(teachers / name / SECRET), _changed_at(teachers / name / USED)
@@ -138,13 +141,15 @@ def list_pairings(teachers: Path) -> tuple[PairingInfo, ...]:
 def local_pairing(teachers: Path, devices: Path, name: str = LOCAL, *, port: int = PORT) -> Pairing:
     """Return the pairing of one of this machine's own teachers; make it if absent, or if its sides do not fit.
 
-    Raises CredentialsError; ValueError for another name.
-
     Args:
         teachers: Folder of the robot's sides.
         devices: Folder of the devices' sides.
         name: One of OF_THIS_MACHINE.
         port: UDP port of the robot at this machine.
+
+    Raises:
+        CredentialsError: a folder cannot be read or written.
+        ValueError: another name.
     """
     if name not in OF_THIS_MACHINE:
         raise ValueError(f"{name} is none of {', '.join(sorted(OF_THIS_MACHINE))}")

@@ -118,7 +118,10 @@ class Channel:
 async def open_channel(
     runtime: Runtime, teachers: Teachers, port: int, parts: ChannelDependencies
 ) -> AsyncIterator[Channel]:
-    """Listen for the teachers of `teachers`, on this machine only while no device is paired. Raises ChannelError."""
+    """Listen for the teachers of `teachers` and yield the channel; close it at the end of the context.
+
+    It listens on this machine only while no device is paired. Raises ChannelError if the port cannot be opened.
+    """
     channel = Channel(runtime, teachers, parts, pairing_trouble=lambda: teachers.trouble)
     site = channel.site
     host = LOOPBACK if teachers.only_local else EVERYWHERE

@@ -32,27 +32,30 @@ class Copies(Protocol):
     """Maker of copies of the knowledge on the robot, outside the loop. Each method raises KnowledgeError."""
 
     def save(self, label: str) -> Awaitable[SavedCopy]:
-        """Copy the knowledge file."""
+        """Copy the knowledge file, with a label of any text in the name. Raises KnowledgeError."""
         ...
 
     def export(self) -> Awaitable[SavedCopy]:
-        """Write the RLAs as a table."""
+        """Write the RLAs as a table (CSV). Raises KnowledgeError."""
         ...
 
     def package(self) -> Awaitable[SavedCopy]:
-        """Write all knowledge as one file to give away."""
+        """Write all knowledge as one file to give away. Raises KnowledgeError."""
         ...
 
     def examine(self) -> Awaitable[None]:
-        """Begin an exam of a copy of the knowledge."""
+        """Begin an exam of a copy of the knowledge, without waiting for its end. Raises KnowledgeError."""
         ...
 
     def settle(self) -> Awaitable[None]:
-        """Wait until all lessons are durable."""
+        """Wait until all lessons are durable. Raises KnowledgeError."""
         ...
 
     def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
-        """Return part of a copy that was made in this run, at most `most_bytes` bytes."""
+        """Return part of a copy that was made in this run, at most `most_bytes` bytes from `offset` on.
+
+        Raises KnowledgeError if this run made no copy of that name, or it cannot be read.
+        """
         ...
 
 
@@ -88,24 +91,28 @@ class RunControl(Protocol):
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> Outcome:
         """Check the next run and keep it until the present one ends; return the outcome for the teacher.
 
-        Raises CommandRefusedError, UserError.
-
         Args:
             world: World by name. None: the present one.
             task: Task by name. None: the present one.
             fresh: Begin with an empty knowledge file and archive the present one.
             teacher: Teacher of the next run.
+
+        Raises:
+            CommandRefusedError: the run is refused, with the reason for the teacher.
+            UserError: settings or knowledge cannot be loaded.
         """
         ...
 
     async def load(self, content: bytes, teacher: TeacherNow) -> Outcome:
         """Check knowledge for the next run and keep it until the present one ends; return the outcome for the teacher.
 
-        Raises CommandRefusedError, UserError.
-
         Args:
             content: Archive of an export, or a knowledge file; the present knowledge is archived then.
             teacher: Teacher of the next run.
+
+        Raises:
+            CommandRefusedError: the run is refused, with the reason for the teacher.
+            UserError: the knowledge is damaged, or does not fit robot or task.
         """
         ...
 

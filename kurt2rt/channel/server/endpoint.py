@@ -22,7 +22,7 @@ class Site(Protocol):
     """Answerer of requests."""
 
     async def render_to_pipe(self, pipe: Any) -> None:
-        """Answer one request; called by aiocoap in a task of its own."""
+        """Answer one request by adding responses to `pipe` (aiocoap.pipe.Pipe); called in a task of its own."""
         ...
 
 

@@ -94,7 +94,7 @@ class OffTickRequests:
         return Reply(ReplyStatus.NOT_HERE)
 
     def begin(self, device: str, command_id: str, request: OffTickCommand) -> Reply | None:
-        """Carry out a command; return a refusal, or None if it is pending or done."""
+        """Carry out a command; return a refusal, or None if the reply is in the pending commands."""
         match request:
             case SpeedRequest(times=times):
                 return self._change_speed(device, command_id, times)

@@ -18,7 +18,7 @@ class TokenBucket:
         self._since_s = now()
 
     def acquire(self) -> bool:
-        """Remove a token; return whether there was one."""
+        """Remove a token if there is one; return whether there was one. It never waits."""
         now_s = self._now()
         self._tokens = min(self._capacity, self._tokens + (now_s - self._since_s) * self._rate_per_s)
         self._since_s = now_s

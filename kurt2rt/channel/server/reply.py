@@ -55,7 +55,10 @@ def unsaved(outcome: Outcome, tick: int) -> Reply:
 
 
 def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
-    """Return the reply to a request that was carried out, and is durable if it has to be."""
+    """Return the reply to a request that was carried out, and is durable if it has to be.
+
+    `more`: further keys of the answer.
+    """
     shown = {"text": ""} if outcome is None else plain_outcome(outcome)
     return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **shown, **more})
 

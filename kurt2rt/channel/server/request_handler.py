@@ -99,11 +99,14 @@ class RequestHandler:
         self._off_tick.close()
 
     def settle(self, command_id: str, reply: Reply) -> None:
-        """Resolve the reply to a pending command."""
+        """Resolve the reply to a pending command; do nothing for an id that is not pending."""
         self._pending.settle(command_id, reply)
 
     async def answer(self, sender: Sender, request: Request) -> Reply:
-        """Return the reply to a request of an authenticated sender."""
+        """Return the reply to a request of an authenticated sender; refusals are replies, too.
+
+        It waits for the tick that takes a command, and until a lesson is durable, at most `longest_wait_s`.
+        """
         device = sender.device
         match request:
             case StreamRequest():

@@ -59,7 +59,7 @@ class SenderRegistry(Protocol):
     """Registry of the senders that proved to hold a key."""
 
     def mark_proven(self, remote: Any) -> None:
-        """Note that a sender has sent a message that only a key holder can make."""
+        """Note that `remote`, a sender's address, has sent a message that only a key holder can make."""
         ...
 
 
@@ -125,7 +125,7 @@ class RobotSite:
         return any(each.remote == remote and now_s - each.heard_s < _CONFIRMED_EVERY_S for each in self._observers)
 
     def key_of(self, sealed: SealedRequest) -> Any:
-        """Return the security context that an OSCORE request names; None if there is none."""
+        """Return the security context (aiocoap's) that an OSCORE request names; None if there is none."""
         header = {oscore.COSE_KID: sealed.kid}
         if sealed.kid_context is not None:
             header[oscore.COSE_KID_CONTEXT] = sealed.kid_context
@@ -135,13 +135,18 @@ class RobotSite:
             return None
 
     def publish(self, state: bytes) -> None:
-        """Send an encoded state to all observers."""
+        """Send a state, encoded by `encode_state`, to all observers; never waits."""
         self._state = state
         for observer in self._observers:
             observer.publish(state)
 
     async def render_to_pipe(self, pipe: Any) -> None:
-        """Answer one request; called by aiocoap in a task of its own."""
+        """Answer one request; aiocoap calls it in a task of its own.
+
+        `pipe` (aiocoap.pipe.Pipe) holds the request and takes the responses; the state has one response per
+        publication. Messages without a valid key get no answer. Raises aiocoap.oscore.ContextUnavailable if the disk
+        does not take the sequence number of the answer.
+        """
         try:
             unprotected = oscore.verify_start(pipe.request)
         except oscore.NotAProtectedMessage:
@@ -225,7 +230,7 @@ class RobotSite:
 
 
 def path_of(request: Any) -> str:
-    """Return the path of a request."""
+    """Return the path of a request (aiocoap.Message), such as /correct."""
     return "/" + "/".join(request.opt.uri_path)
 
 

@@ -8,7 +8,7 @@ from kurt2rt.channel.protocol.schema import ChannelError
 
 
 def require_port(host: str, port: int) -> None:
-    """Check that the port can be opened. Raises ChannelError with the reason."""
+    """Check that the UDP port can be opened at an address of this machine. Raises ChannelError with the reason."""
     bound_socket(host, port).close()
 
 

@@ -42,7 +42,13 @@ class Archive:
 
 
 def pack(about: Mapping[str, Any], files: Mapping[str, bytes], key: Ed25519PrivateKey | None) -> bytes:
-    """Return an archive of `files`, by name; `about` are further fields of its manifest. `key` signs it, if given."""
+    """Return the bytes of an archive (ZIP) of `files`, content by name.
+
+    Args:
+        about: further fields of its manifest, as JSON values.
+        files: content by name.
+        key: that signs the manifest; None: not signed.
+    """
     prints = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     manifest = json.dumps({_FORMAT: FORMAT, **about, _FILES: prints}, indent=1).encode()
     content = {MANIFEST: manifest, **dict(sorted(files.items()))}

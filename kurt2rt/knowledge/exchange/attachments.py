@@ -45,7 +45,18 @@ def collect_attachments(
     entries: Iterable[StoredEntry | KnownLesson] = (),
     saved: Statistics | None = None,
 ) -> dict[str, bytes]:
-    """Return all attachments of a run by name; call it before the first tick. Raises SettingsError, KnowledgeError."""
+    """Return all attachments of a run by name; call it before the first tick.
+
+    Args:
+        robot: settings in force.
+        task: settings in force.
+        entries: lessons that the run begins with.
+        saved: statistics that the run begins with; None: no attachment of them.
+
+    Raises:
+        SettingsError: a file that the task uses cannot be read.
+        KnowledgeError: a knowledge file that an action of the task uses cannot be read.
+    """
     attached = {
         ROBOT: _in_force(robot),
         TASK: _in_force(task),
@@ -94,7 +105,7 @@ def encode_statistics(statistics: Statistics) -> bytes:
 
 
 def decode_statistics(data: bytes) -> Statistics:
-    """Return the statistics that `encode_statistics` wrote. Raises ValueError, which names the file."""
+    """Return the statistics in the JSON of `encode_statistics`. Raises ValueError, which names the file."""
     try:
         content: dict[str, Any] = json.loads(data)
         return Statistics(

@@ -17,7 +17,13 @@ _MOST = 6
 def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task: TaskSettings) -> str:
     """Return the differences of the basic situation, there against here, in a few words; empty if there are none.
 
-    `settings`: files as `kurt2rt.knowledge.exchange.attachments` makes them. Unreadable settings count as different.
+    Raises hal.settings.SettingsError if the situation of `task`, here, cannot be loaded.
+
+    Args:
+        settings: files there, as `kurt2rt.knowledge.exchange.attachments` makes them. Unreadable ones count as
+            different.
+        robot: here.
+        task: here.
     """
     try:
         there_robot = RobotSettings.model_validate_json(settings[ROBOT])

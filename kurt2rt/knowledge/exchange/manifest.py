@@ -44,7 +44,7 @@ class Manifest(BaseModel):
 
     @property
     def binding(self) -> KnowledgeBinding:
-        """Return what the knowledge in the package is bound to."""
+        """Features and task that the knowledge in the package is bound to."""
         basic = self.features.of_level
         levels = {level: features.of_level for level, features in self.levels.items()}
         return KnowledgeBinding(basic.feature_hash, basic.feature_names, self.system, self.robot, levels)

@@ -88,6 +88,7 @@ def export_knowledge(
 
     Raises:
         KnowledgeError: the file does not belong to `task` and `robot`, or one of both files fails.
+        SettingsError: a file that the task uses cannot be read.
     """
     with Journal.read_only(path) as journal:
         content = _package(journal, robot, task, key, stamp)
@@ -96,9 +97,13 @@ def export_knowledge(
 
 
 def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSettings, task: TaskSettings) -> SavedCopy:
-    """Save the package of `export_knowledge` as `<task>-<stamp>.zip`, not signed, while this process writes `path`.
+    """Save an unsigned package of the knowledge file `path` as `<task>-<stamp>.zip` in `folder`.
 
-    Waits and raises as `kurt2rt.knowledge.files.backup.save_copy`.
+    This process may be writing `path`. The call waits for the disk. `stamp`: UTC, ISO 8601.
+
+    Raises:
+        KnowledgeError: the file does not belong to `task` and `robot`, or one of both files fails.
+        SettingsError: a file that the task uses cannot be read.
     """
     with Journal.in_writer_process(path) as journal:
         content = _package(journal, robot, task, None, stamp)
@@ -132,7 +137,7 @@ def _package(
 
 
 def read_package(path: Path) -> KnowledgePackage:
-    """Read and check an exported file. Raises KnowledgeError."""
+    """Read and check an exported file. Raises KnowledgeError if it is damaged, changed or of another kind."""
     archive = unpack(path)
     try:
         return _content(path, archive)
@@ -158,6 +163,7 @@ def import_knowledge(
 
     Raises:
         KnowledgeError: the package is damaged, not signed by `trusted`, or of other features or another task.
+        SettingsError: a file that `task` uses cannot be read.
     """
     package = read_package(path)
     if trusted is not None and package.signed_by != trusted:

@@ -52,7 +52,7 @@ def make_key(path: Path) -> Path:
 
 
 def read_private_key(path: Path) -> Ed25519PrivateKey:
-    """Return the private key in a PEM file. Raises KnowledgeError."""
+    """Return the private key in a PEM file. Raises KnowledgeError if it cannot be read or is no such key."""
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError, TypeError, UnsupportedAlgorithm) as error:
@@ -63,7 +63,10 @@ def read_private_key(path: Path) -> Ed25519PrivateKey:
 
 
 def read_public_key(path: Path) -> bytes:
-    """Return the public key in a PEM file, 32 raw bytes. Raises KnowledgeError."""
+    """Return the public key in a PEM file, 32 raw bytes.
+
+    Raises KnowledgeError if it cannot be read or is no such key.
+    """
     try:
         key = load_pem_public_key(path.read_bytes())
     except (OSError, ValueError, UnsupportedAlgorithm) as error:
@@ -74,7 +77,7 @@ def read_public_key(path: Path) -> bytes:
 
 
 def signature_of(content: bytes, key: Ed25519PrivateKey) -> tuple[bytes, bytes]:
-    """Return the raw public key and the signature of `content`."""
+    """Return the raw public key (32 bytes) and the signature (64 bytes, Ed25519) of `content`."""
     return key.public_key().public_bytes_raw(), key.sign(content)
 
 

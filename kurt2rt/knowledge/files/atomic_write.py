@@ -30,7 +30,7 @@ def write_numbered(content: bytes, folder: Path, parts: tuple[str, ...], ending:
     """Save `content` in `folder`, which is made if it is missing; durable on return.
 
     The name joins those `parts` that are not empty, then `ending`; it gets a number if such a file is there already.
-    Raises KnowledgeError.
+    Raises KnowledgeError if the disk does not take it.
     """
     stem = "-".join(part for part in parts if part)
     try:
@@ -48,7 +48,8 @@ def write_numbered(content: bytes, folder: Path, parts: tuple[str, ...], ending:
 def write_new(content: bytes, path: Path) -> None:
     """Save `content` at `path`, where no file may be yet; durable on return.
 
-    The temporary file of a program that was killed is removed. Raises KnowledgeError.
+    The temporary file of a program that was killed is removed. Raises KnowledgeError if a file is there, or the disk
+    does not take it.
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

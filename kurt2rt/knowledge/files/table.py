@@ -24,10 +24,13 @@ _FORMULA_BEGINS = "=+-@\t\r\n"
 def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
     """Save `<task>-<stamp>-rlas.csv`: a row per RLA, oldest first, with a column per feature of its condition.
 
-    The basic level comes first; features of a further level with RLAs have columns of their own, such as
-    `critic: speed_m_s`. An empty radius is that of the system; an RLA without rewards has an empty value. Taught
-    behaviours have a column if one has a name. Numbers are exact, text is UTF-8. A text that a spreadsheet would run
-    as a formula gets an apostrophe before it. Waits and raises as `kurt2rt.knowledge.files.backup.save_copy`.
+    The basic level comes first; features of a further level with RLAs have columns of their own, such as `critic:
+    speed_m_s`. An empty radius is that of the system; an RLA without rewards has an empty value. Taught behaviours have
+    a column if one has a name. Numbers are exact, text is UTF-8. A text that a spreadsheet would run as a formula gets
+    an apostrophe before it. The call waits for the disk.
+
+    Raises:
+        KnowledgeError: the file at `journal_path` cannot be read, or the table not be written.
     """
     with Journal.in_writer_process(journal_path) as journal:
         task = journal.binding.system

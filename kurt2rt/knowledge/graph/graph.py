@@ -28,7 +28,10 @@ RlaNetwork: TypeAlias = "nx.DiGraph[int]"
 
 
 def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None = None) -> RlaNetwork:
-    """Return the network of one level in a knowledge file. Raises KnowledgeError, also if it has no RLA."""
+    """Return the network of one level in a knowledge file, or of one behaviour of the level.
+
+    Raises KnowledgeError for a damaged file, and if it has no such RLA.
+    """
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = journal.entries()
     system = fold_entries(journal, entries, radius=math.inf)
@@ -77,7 +80,7 @@ def build_network(
 
 
 def drop_rare_edges(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
-    """Return a copy without edges of a smaller share, and without RLAs that have no edge then and no use."""
+    """Return a copy without edges below a share in percent, and without unused RLAs that have no edge then."""
     kept: RlaNetwork = nx.DiGraph()
     edges = [edge for edge in network.edges(data=True) if edge[2]["percent"] >= at_least_percent]
     linked = {end for edge in edges for end in edge[:2]}

@@ -24,7 +24,10 @@ _WEAK = 1.2
 
 
 def compute_layout(network: RlaNetwork) -> Places:
-    """Return places at least APART from each other: the known places of the RLAs, else a layout by edges."""
+    """Return places, at least APART from each other, by RLA id.
+
+    Known places of the RLAs are kept; otherwise the edges make the layout.
+    """
     nodes = network.nodes
     known = {rla_id: (nodes[rla_id]["x_m"], nodes[rla_id]["y_m"]) for rla_id in network if "x_m" in nodes[rla_id]}
     if known and len(known) == len(network):
@@ -68,7 +71,7 @@ def _packed(parts: list[Places]) -> Places:
 
 
 def span(places: Places) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return (lowest, highest) of x, and of y."""
+    """Return (lowest, highest) of x, and of y, of at least one place."""
     xs, ys = [x for x, _ in places.values()], [y for _, y in places.values()]
     return (min(xs), max(xs)), (min(ys), max(ys))
 

@@ -27,7 +27,7 @@ _LABELLED_PERCENT = 10.0
 
 
 def draw_network(network: RlaNetwork, title: str, path: Path) -> None:
-    """Write a picture, SVG or PNG by the file's ending.
+    """Write a picture, SVG or PNG by the file's ending. Raises OSError.
 
     Each behaviour has a panel: commands lead from one to another, so there are no edges between panels.
     """

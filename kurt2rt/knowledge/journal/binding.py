@@ -28,13 +28,16 @@ class KnowledgeBinding:
 def require_compatible(
     taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path, has_lessons: Callable[[str], bool]
 ) -> None:
-    """Refuse knowledge of other features or of another task.
+    """Raise KnowledgeError for knowledge of other features or of another task.
 
     A level that only one of the two has is no difference: it is added, or left alone. A level without lessons, as
     `has_lessons` tells, is none either: it is bound again.
 
-    Raises:
-        KnowledgeError: names the difference.
+    Args:
+        taught: binding of the knowledge.
+        wanted: binding of robot and task.
+        path: of the file, for the error.
+        has_lessons: whether the file has lessons at a level.
     """
     here = LevelFeatures(wanted.feature_hash, wanted.feature_names)
     there = LevelFeatures(taught.feature_hash, taught.feature_names)

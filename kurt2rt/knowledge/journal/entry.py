@@ -43,7 +43,10 @@ class Receipt:
 
 
 def checksum(command_id: str, stamped_at: str, text: str) -> int:
-    """Return the CRC-32 of a row: a worn flash disk may turn one digit into another, which SQLite does not notice."""
+    """Return the CRC-32 of a row.
+
+    A worn flash disk may turn one digit into another, which SQLite does not notice.
+    """
     return zlib.crc32("\n".join((command_id, stamped_at, text)).encode(errors="surrogateescape"))
 
 

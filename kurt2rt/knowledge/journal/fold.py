@@ -15,7 +15,13 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:
-    """Return the RLA system that all lessons make; `radius` (dimensionless) and errors as `fold_entries`."""
+    """Return the RLA system that all lessons of a journal make.
+
+    `radius`: R of all levels, dimensionless; 0.0 or infinity for a fold without matches.
+
+    Raises:
+        KnowledgeError: a row is damaged, or a lesson does not fit those before it; names file and row.
+    """
     return fold_entries(journal, journal.entries(), radius)
 
 

@@ -71,6 +71,9 @@ class Journal:
         """Open for reading, also while another process writes the file; it may be read one lesson behind.
 
         A log next to the file stays if one is there, of a robot that runs or was killed; none is left otherwise.
+
+        Raises:
+            KnowledgeError: the file is missing, damaged or no knowledge file.
         """
         path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
@@ -82,6 +85,9 @@ class Journal:
 
         Only SQLite opens it here: closing any other handle would silently drop the writer's locks, and another program
         could then remove its log.
+
+        Raises:
+            KnowledgeError: the file is missing, damaged or no knowledge file.
         """
         path = Path(os.path.realpath(path))
         connection = journal_file.connect_read_only(path)
@@ -92,15 +98,19 @@ class Journal:
             raise
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        """Write lessons, all or none, durable on return; return a receipt each.
+        """Write lessons, all or none, durable on return; return a receipt for each, in order.
 
-        A known command id is not written twice.
+        A known command id is not written twice. Raises KnowledgeError if the disk does not take them; none is written
+        then.
         """
         with self._transaction():
             return [self._append(entry) for entry in entries]
 
     def append_and_checkpoint(self, entries: Sequence[JournalEntry], statistics: Statistics) -> list[Receipt]:
-        """Write lessons, and the statistics after them, in one transaction; return a receipt for each lesson."""
+        """Write lessons, and the statistics after them, in one transaction; return a receipt for each lesson.
+
+        Raises KnowledgeError if the disk does not take them; nothing is written then.
+        """
         changed = self._changes_to(statistics)
         with self._writing(statistics):
             receipts = [self._append(entry) for entry in entries]
@@ -159,7 +169,10 @@ class Journal:
         return list(self.iter_entries())
 
     def read_all(self) -> tuple[list[StoredEntry], Statistics]:
-        """Return lessons and statistics of one moment, also while a robot writes both. Raises as `entries`."""
+        """Return lessons and statistics of one moment, also while a robot writes both.
+
+        Raises KnowledgeError, naming file and row of a damaged one.
+        """
         with self._reading():
             self._connection.execute("BEGIN")
             try:
@@ -169,7 +182,10 @@ class Journal:
                     self._connection.execute("COMMIT")
 
     def iter_entries(self) -> Iterator[StoredEntry]:
-        """Yield all lessons in the order of writing, of one moment. Raises as `entries`."""
+        """Yield all lessons in the order of writing, of one moment.
+
+        Raises KnowledgeError, naming file and row of a damaged one.
+        """
         with self._reading():
             for row in self._connection.execute(_ROWS):
                 yield read_row(row, self._where(row))
@@ -179,32 +195,38 @@ class Journal:
         return journal_file.has_lessons(self._connection, self.path, level)
 
     def events(self) -> list[TeachingEvent]:
-        """Return all teaching events in order, which an RLA system is the fold of. Raises as `entries`."""
+        """Return all teaching events in the order of writing; they make an RLA system.
+
+        Raises KnowledgeError, naming file and row of a damaged one.
+        """
         return [entry.event for entry in self.entries()]
 
     def image(self) -> bytes:
         """Return the bytes of a knowledge file with all that this one holds at one moment, SQLite's log folded in.
 
-        The writer does not wait for it.
+        The writer does not wait for it. Raises KnowledgeError.
         """
         with self._reading(), closing(sqlite3.connect(":memory:")) as copy:
             self._connection.backup(copy)
             return journal_file.without_log(copy.serialize())
 
     def checkpoint(self, statistics: Statistics) -> None:
-        """Replace the statistics in one transaction; write only what has changed."""
+        """Replace the statistics in one transaction; write only rows that have changed. Raises KnowledgeError."""
         changed = self._changes_to(statistics)
         if changed:
             with self._writing(statistics):
                 self._execute(changed)
 
     def statistics(self) -> Statistics:
-        """Return the statistics of the last checkpoint."""
+        """Return the statistics of the last checkpoint; empty before the first. Raises KnowledgeError."""
         with self._reading():
             return read_statistics(self._connection)
 
     def integrity_errors(self) -> list[KnowledgeError]:
-        """Return what SQLite finds wrong with the file's pages: lessons may be missing without a trace."""
+        """Return the errors that SQLite finds in the file's pages: lessons may be missing without a trace.
+
+        Empty if the pages are intact. It raises nothing.
+        """
         try:
             lines = [line for (line,) in self._connection.execute("PRAGMA integrity_check")]
         except sqlite3.Error as error:
@@ -213,7 +235,7 @@ class Journal:
         return [KnowledgeError(KnowledgeCode.INTEGRITY, where=self.path, line=each) for each in wrong]
 
     def check(self) -> list[KnowledgeError]:
-        """Return everything that is wrong with pages and rows."""
+        """Return all errors in pages and rows; empty for an intact file. It raises nothing."""
         errors = self.integrity_errors()
         try:
             for expected, row in enumerate(self._connection.execute(_ROWS), start=1):
@@ -229,12 +251,12 @@ class Journal:
         return errors
 
     def note(self, name: str, text: str) -> None:
-        """Write a note about the file as a whole; it replaces an earlier one of this name."""
+        """Write a note about the file as a whole; it replaces an earlier one of this name. Raises KnowledgeError."""
         with self._transaction():
             self._connection.execute("INSERT OR REPLACE INTO binding VALUES (?, ?)", (f"{_NOTE}{name}", text))
 
     def notes(self) -> dict[str, str]:
-        """Return the notes about the file as a whole, by name."""
+        """Return the notes about the file as a whole, by name. Raises KnowledgeError."""
         with self._reading():
             rows = self._connection.execute("SELECT key, value FROM binding ORDER BY key")
             return {key.removeprefix(_NOTE): value for key, value in rows if key.startswith(_NOTE)}

@@ -281,7 +281,7 @@ def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
 
 
 def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:
-    """Return what the file is bound to. Raises KnowledgeError."""
+    """Return features and task that the file is bound to. Raises KnowledgeError."""
     try:
         meaning: dict[str, str] = dict(connection.execute("SELECT key, value FROM binding"))
         names = json.loads(meaning["feature_names"])

@@ -87,7 +87,7 @@ def _one_line(sql: str | None) -> str:
 
 
 def new_database() -> sqlite3.Connection:
-    """Make an empty knowledge file in memory."""
+    """Return an empty knowledge file in memory, without binding. The caller closes the connection."""
     connection = sqlite3.connect(":memory:", isolation_level=None)
     connection.executescript(_SCHEMA)
     for statement in LATER_TABLES.values():

@@ -37,12 +37,12 @@ class OpenedKnowledge:
 
     @property
     def events(self) -> list[TeachingEvent]:
-        """Return the teaching events that the RLA system is the fold of."""
+        """Teaching events of all rows, in the order of writing."""
         return [entry.event for entry in self.entries]
 
     @property
     def stamps(self) -> dict[str, str]:
-        """Return the stamp of each row (UTC, ISO 8601) by command id."""
+        """Stamp of each row (UTC, ISO 8601) by command id."""
         return {entry.event.origin.command_id: entry.stamped_at for entry in self.entries}
 
 
@@ -51,6 +51,7 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
 
     Raises:
         KnowledgeError: the journal belongs to other features or another task, or none can be made.
+        SettingsError: a file that the task uses cannot be read.
     """
     binding = binding_for(settings, task)
     try:
@@ -61,7 +62,12 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
 
 
 def open_for_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
-    """Open the journal at `path` with its lessons and counts; raises as `open_knowledge`, also for a damaged file."""
+    """Open the journal at `path`, or make one there, with its lessons and counts.
+
+    Raises:
+        KnowledgeError: the journal is damaged, in use, or of other features or another task, or none can be made.
+        SettingsError: a file that the task uses cannot be read.
+    """
     journal = open_knowledge(path, settings, task)
     try:
         _require_integrity(journal)
@@ -93,13 +99,19 @@ def read_lessons(
 
     Raises:
         KnowledgeError: the file cannot be read, or belongs to other features or another task.
+        SettingsError: a file that the task uses cannot be read.
     """
     with Journal.in_writer_process(path) if in_writer_process else Journal.read_only(path) as journal:
         return _read_fitting(journal, path, settings, task)[0]
 
 
 def read_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> tuple[list[TeachingEvent], Statistics]:
-    """Return teaching events and statistics of one moment; raises as `read_lessons`."""
+    """Return teaching events and statistics of the file at `path`, both of one moment.
+
+    Raises:
+        KnowledgeError: the file cannot be read, or belongs to other features or another task.
+        SettingsError: a file that the task uses cannot be read.
+    """
     with Journal.read_only(path) as journal:
         return _read_fitting(journal, path, settings, task)
 
@@ -121,7 +133,10 @@ def _read_fitting(
 
 
 def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
-    """Return what knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
+    """Return the features and the task that knowledge of a task on a robot is bound to.
+
+    Raises hal.settings.SettingsError if a file that the task uses cannot be read.
+    """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
     levels = {CRITIC: load_critic(task.critic).level_features}

@@ -64,7 +64,7 @@ _NUMBERS = _Table("number", ("name", "value"))
 
 
 def read_statistics(connection: sqlite3.Connection) -> Statistics:
-    """Return the statistics as they stand in the file. Raises sqlite3.Error."""
+    """Return the statistics in the file's tables; empty before the first checkpoint. Raises sqlite3.Error."""
     return Statistics(
         _USES.read(connection),
         _TRANSITIONS.read(connection),

@@ -61,6 +61,7 @@ def utc_now() -> str:
 class JournalWriter:
     """Owner of a journal, which writes lessons in the order of `submit`, drops none, and closes the journal.
 
+    It is the tick's `EventStore` (`kurt2rt/core/tick.py`) on a robot: a thread of its own writes, so no tick waits.
     On a failing disk the lessons wait and `saving_error` tells the cause: the robot must stand meanwhile. The writer
     tries again until it succeeds.
     """
@@ -80,7 +81,7 @@ class JournalWriter:
         self._progress_at_s = -math.inf
         self._retry = retry or RetryDelays()
         # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
-        self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
+        self._queued: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
         self._acknowledged: queue.SimpleQueue[Acknowledgement] = queue.SimpleQueue()
         self._accepting = True
         self._ended = False
@@ -98,14 +99,14 @@ class JournalWriter:
 
     @property
     def saving_error(self) -> str | None:
-        """Return one line (where, what is wrong, what to do); None while lessons become durable."""
+        """Reason that lessons cannot be saved, in one line (where, what, what to do); None while they are durable."""
         if self._failure is None and self.unwritten and self._clock() - self._progress_at_s > HANGS_AFTER_S:
             return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
         return self._failure
 
     @property
     def unwritten(self) -> int:
-        """Return the number of lessons submitted and not yet acknowledged."""
+        """Number of lessons submitted and not yet acknowledged."""
         return self._submitted - self._settled
 
     @property
@@ -114,17 +115,20 @@ class JournalWriter:
         return self._thread.is_alive()
 
     def submit(self, event: TeachingEvent) -> None:
-        """Queue a lesson; never waits. Raises KnowledgeError after `close`."""
+        """Queue a lesson; never waits. `acknowledged` tells later that it is durable.
+
+        Raises KnowledgeError after `close`.
+        """
         self._require_open()
         if not self.unwritten:
             self._progress_at_s = self._clock()
         self._submitted += 1
-        self._inbox.put(event)
+        self._queued.put(event)
 
     def submit_statistics(self, statistics: Statistics) -> None:
         """Queue statistics; never waits. Only the newest that wait are written. Raises KnowledgeError after `close`."""
         self._require_open()
-        self._inbox.put(statistics)
+        self._queued.put(statistics)
 
     def acknowledged(self) -> list[Acknowledgement]:
         """Return the acknowledgements since the last call, in the order of `submit`; never waits."""
@@ -138,8 +142,8 @@ class JournalWriter:
     def flush(self, timeout_s: float) -> bool:
         """Wait until everything queued before is durable; return False if it is not after `timeout_s`."""
         flush = _Flush()
-        self._inbox.put(flush)
-        # Queued before the check: a writer that ends after the check still finds it in the inbox.
+        self._queued.put(flush)
+        # Queued before the check: a writer that ends after the check still finds it in the queue.
         if not self._ended:
             flush.settled.wait(timeout_s)
         return flush.durable
@@ -155,7 +159,7 @@ class JournalWriter:
         self._accepting = False
         until_s = time.monotonic() + timeout_s
         self.flush(timeout_s)
-        self._inbox.put(_Stop())
+        self._queued.put(_Stop())
         self._thread.join(max(0.0, until_s - time.monotonic()))
         if self.saving_error is not None or self._thread.is_alive():
             reason = self.saving_error or f"{self._journal.path}: the disk does not answer; look at its health"
@@ -188,8 +192,8 @@ class JournalWriter:
         except KnowledgeError as error:  # what was acknowledged is durable nevertheless
             self._failure = self._failure or str(error)
         self._ended = True
-        while not self._inbox.empty():
-            item = self._inbox.get()
+        while not self._queued.empty():
+            item = self._queued.get()
             if isinstance(item, _Flush):
                 self._flushes.append(item)
         for flush in self._flushes:
@@ -217,7 +221,7 @@ class JournalWriter:
     def _receive(self, pause_s: float) -> bool:
         """Sort everything queued and return whether to stop; wait for the next item, or the whole pause."""
         until_s = time.monotonic() + pause_s
-        item = self._inbox.get() if pause_s == 0.0 else None
+        item = self._queued.get() if pause_s == 0.0 else None
         while True:
             match item:
                 case _Stop():
@@ -231,7 +235,7 @@ class JournalWriter:
                 case _:
                     self._receive_event(item)
             try:
-                item = self._inbox.get(timeout=max(0.0, until_s - time.monotonic()))
+                item = self._queued.get(timeout=max(0.0, until_s - time.monotonic()))
             except queue.Empty:
                 return False
 

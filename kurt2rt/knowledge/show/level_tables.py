@@ -56,7 +56,10 @@ def mid_table(
 
 
 def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> TextTable:
-    """Return the table of named situations in alphabetical order, in words or numbers as `mid_table` has them."""
+    """Return the table of named situations in alphabetical order, a row each.
+
+    A history is shown in words if its settings are shipped; else in numbers.
+    """
     settings = _shipped_mid(features.feature_hash)
     table = TextTable()
     for heading in ("named", "where: the newest first"):

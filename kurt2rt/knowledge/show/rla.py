@@ -46,9 +46,9 @@ def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> Rende
 
 
 def expectation_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
-    """Return what is expected to follow an RLA, for JSON; None if nothing is yet.
+    """Return the number of observed ends, the mean time in s, mean and spread of an RLA's end, for JSON.
 
-    Raises KnowledgeError if no such RLA lives.
+    Returns None before its first end. Raises KnowledgeError if no such RLA lives.
     """
     _, names, _, expectation = _read(journal, rla_id)
     if expectation is None:

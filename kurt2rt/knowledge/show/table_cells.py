@@ -16,12 +16,12 @@ def printable(text: str) -> Text:
 
 
 def stamp_and_teacher(stamped_at: str, teacher: str) -> Text:
-    """Return a stamp to the second, and the teacher."""
+    """Return a cell with a stamp, cut to the second, and the teacher."""
     return printable(f"{stamped_at[:19].replace('T', ' ')}, {teacher}")
 
 
 def format_action(rla: Rla) -> Text:
-    """Return the RLA's action, or that it was withdrawn."""
+    """Return the RLA's action for a cell, or that it was withdrawn."""
     return printable(_ASKS if rla.is_withdrawn else rla.action)
 
 

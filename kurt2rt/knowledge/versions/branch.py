@@ -77,7 +77,10 @@ def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> BranchResult
 
 
 def branch_origin(journal: Journal) -> BranchOrigin | None:
-    """Return the origin of a branch; None for a file that is none. Raises KnowledgeError."""
+    """Return the file and row that a branch was made from; None for a file that is no branch.
+
+    Raises KnowledgeError.
+    """
     note = journal.notes().get(_NOTE)
     if note is None:
         return None

@@ -67,7 +67,10 @@ class Contradictions:
                 self._system.apply(RlaCreated(rla))
 
     def find(self, rla: Rla) -> Overlap | None:
-        """Return the RLA nearest to the condition of `rla`, if it is within the fraction of R and acts differently."""
+        """Return the RLA of the other file that is nearest to the condition of `rla`, if the two contradict.
+
+        They do if it is within the fraction of R and acts differently; otherwise None is returned.
+        """
         fraction = self._fractions.get(rla.level)
         if fraction is None:
             return None

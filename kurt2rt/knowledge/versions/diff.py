@@ -25,7 +25,7 @@ class KnowledgeDiff:
 
     @property
     def is_empty(self) -> bool:
-        """Return whether both have the same RLAs by the same lessons."""
+        """Return whether both files have the same RLAs by the same lessons."""
         return not (self.lessons_a or self.lessons_b or self.rlas_a or self.rlas_b or self.changed)
 
 
@@ -44,7 +44,7 @@ def compare(a: KnowledgeContent, b: KnowledgeContent) -> KnowledgeDiff:
 
 
 def active_rlas(content: KnowledgeContent) -> list[Rla]:
-    """Return all living RLAs, of all levels."""
+    """Return all living RLAs of a file, level by level, the basic one first, and oldest first in each."""
     return [rla for level in (BASIC, *content.journal.binding.levels) for rla in content.system.rlas_at(level)]
 
 

@@ -28,7 +28,7 @@ def open_for_editing(path: Path) -> Journal:
 
 
 def require_no_robot(path: Path) -> None:
-    """Raise KnowledgeError while a robot runs on the file; call it before a user waits for a long preparation."""
+    """Raise KnowledgeError if a robot runs on the file; call it before a user waits for a long preparation."""
     require_no_writer(Path(os.path.realpath(path)))
 
 
@@ -38,9 +38,13 @@ def new_origin(kind: str, teacher: str) -> Origin:
 
 
 def append_with_values(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics | None = None) -> None:
-    """Append events that fit, and the values after them, in one transaction. Raises KnowledgeError.
+    """Append events that fit, and the values after them, in one transaction.
 
     `saved`: the statistics to go on from; None: those of the file.
+
+    Raises:
+        KnowledgeError: the file cannot be read, or the disk does not take the rows.
+        InvalidEventError: an event does not fit.
     """
     before, saved = journal.events(), saved or journal.statistics()
     after = statistics_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
@@ -57,6 +61,9 @@ def statistics_after(
         new: events that follow them.
         saved: statistics after `before`.
         dimensions: number of features of the basic level.
+
+    Raises:
+        InvalidEventError: an event does not fit those before it.
     """
     if not saved.values and VALUES_INCLUDE not in saved.numbers:
         return saved  # credits of another rule

@@ -56,12 +56,12 @@ class KnowledgeContent:
 
     @property
     def records(self) -> Mapping[str, LessonRecord]:
-        """Return all lessons by command id."""
+        """All lessons by command id."""
         return {record.event.origin.command_id: record for record in self.system.lessons}
 
     @cached_property
     def lesson_keys(self) -> Mapping[str, LessonKey]:
-        """Return the keys of all lessons, in their order, by command id in this file."""
+        """Keys of all lessons, in their order, by command id in this file."""
         keys, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
         of_rla = dict[LessonStack, StackKey]()
         for record in self.system.lessons:
@@ -77,12 +77,12 @@ class KnowledgeContent:
 
     @cached_property
     def stacks(self) -> Mapping[StackKey, LessonStack]:
-        """Return all stacks that ever were, in their order."""
+        """All stacks that ever were, in their order, by key."""
         return {self.key_of(record).stack: lesson_stack(record.event) for record in self.system.lessons}
 
     @cached_property
     def rla_keys(self) -> Mapping[int, StackKey]:
-        """Return the stack keys of all RLAs that ever lived, by RLA id in this file."""
+        """Stack keys of all RLAs that ever lived, by RLA id in this file."""
         return {stack: key for key, stack in self.stacks.items() if isinstance(stack, int)}
 
     def key_of(self, record: LessonRecord) -> LessonKey:
@@ -91,7 +91,10 @@ class KnowledgeContent:
 
 
 def read_content(journal: Journal) -> KnowledgeContent:
-    """Read all entries of a file and fold them. Raises KnowledgeError."""
+    """Read all entries of a file and fold them.
+
+    Raises KnowledgeError for a damaged row, or a lesson that does not fit those before it.
+    """
     entries = tuple(journal.entries())
     return KnowledgeContent(journal, entries, fold_entries(journal, entries, radius=math.inf))
 
@@ -122,7 +125,10 @@ def count_common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) 
 def standing_stacks(
     lessons: Iterable[LessonRecord], lesson_keys: Mapping[str, LessonKey]
 ) -> dict[StackKey, tuple[LessonKey, ...]]:
-    """Return the lessons that stand, by stack, the undermost first."""
+    """Return the keys of the lessons that stand, by stack, the undermost first.
+
+    `lesson_keys`: key of each lesson by command id.
+    """
     stacks = dict[StackKey, tuple[LessonKey, ...]]()
     for record in lessons:
         if not record.undone:

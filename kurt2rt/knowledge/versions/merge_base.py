@@ -39,7 +39,7 @@ class MergeBase:
     """File whose lessons the other one saw."""
 
     def is_after(self, other: "MergeBase") -> bool:
-        """Return whether all that was known at `other` was known here."""
+        """Return whether this base is another one than `other` and includes all rows of `other` in both files."""
         return self != other and self.mine >= other.mine and self.theirs >= other.theirs
 
 
@@ -63,7 +63,7 @@ class StackPair:
 
     @property
     def without_rewards(self) -> "StackPair":
-        """Return the pair without rewards."""
+        """Pair of the stacks without rewards."""
         return StackPair(without_rewards(self.mine), without_rewards(self.theirs))
 
 
@@ -73,7 +73,10 @@ def without_rewards(stack: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
 
 
 def find_merge_bases(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[MergeBase, ...]:
-    """Return the last common row or merge; two bases if each file was merged into an older state of the other."""
+    """Return the last common row or merge; two bases if each file was merged into an older state of the other.
+
+    `mine` and `theirs`: all rows of the two files, in order.
+    """
     common = count_common_rows(mine, theirs)
     found = [MergeBase(common, common, "mine")]
     for row, seen in _merges(mine, theirs):
@@ -96,7 +99,7 @@ def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[t
 
 
 def base_state(base: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
-    """Return what both files knew at a merge base."""
+    """Return the lessons that both files knew at a merge base, and those that each file has undone since."""
     here, there = lessons_up_to(mine, base.mine), lessons_up_to(theirs, base.theirs)
     on_mine, on_theirs = standing_stacks(here, mine.lesson_keys), standing_stacks(there, theirs.lesson_keys)
     return BaseState(
@@ -134,18 +137,21 @@ class ThreeWayDiff:
         """Lessons undone there after the last row that mine has seen."""
 
     def resolve(self, stack: StackKey, sides: StackPair) -> Resolution:
-        """Return what becomes of a stack here, by its lessons without rewards."""
+        """Return whether a stack of mine stays, becomes as in theirs, or is a conflict; rewards do not count.
+
+        `stack`: its key. `sides`: its lessons in both files.
+        """
         sides = sides.without_rewards
         found = {self._since(without_rewards(base.stacks.get(stack, ())), base, sides) for base in self._bases}
         return found.pop() if len(found) == 1 else Resolution.CONFLICT
 
     def new_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
-        """Return the rewards that are new or redone there."""
+        """Return the rewards of a stack that were given or redone in theirs since the merge bases."""
         rewards = [key for key in sides.theirs if key.is_reward and key not in sides.mine]
         return tuple(key for key in rewards if all(self._is_new(key, base) for base in self._bases))
 
     def withdrawn_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
-        """Return the rewards that stand here and were undone there."""
+        """Return the rewards of a stack that stand in mine and were undone in theirs since the merge bases."""
         rewards = [
             key for key in sides.mine if key.is_reward and key not in sides.theirs and key in self._undone_unseen
         ]

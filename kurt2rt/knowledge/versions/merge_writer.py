@@ -47,7 +47,7 @@ class TargetStack:
 
     @property
     def same(self) -> int:
-        """Return the number of lessons at the bottom that stay as they are."""
+        """Number of lessons at the bottom that stay as they are."""
         for place, (now, then) in enumerate(zip(self.now, self.then, strict=False)):
             if now != then:
                 return place
@@ -105,11 +105,11 @@ class MergeWriter:
 
     @property
     def rlas(self) -> Mapping[int, int]:
-        """Return RLA id there -> here, of all that are in both."""
+        """Id in theirs -> id in mine, of all RLAs that are in both files."""
         return self._rlas
 
     def name_of(self, key: LessonKey) -> str | None:
-        """Return the newest command id of a lesson in this file; None if it is not here."""
+        """Return the newest command id of a lesson in mine; None if mine lacks the lesson."""
         names = self._names.get(key)
         return names[-1] if names else None
 
@@ -135,7 +135,7 @@ class MergeWriter:
                 self._restore(key)
 
     def write_sessions(self) -> None:
-        """Add sessions and agreements that are not here."""
+        """Add sessions and agreements of theirs that mine lacks. Raises KnowledgeError if one does not fit."""
         kinds = SessionBegun | SessionEnded | Appraised
         here = {event_key(entry.event) for entry in self._mine.entries if isinstance(entry.event, kinds)}
         for entry in self._theirs.entries:
