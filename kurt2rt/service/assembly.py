@@ -89,6 +89,7 @@ def assemble_service(
         UnknownActionError: the knowledge names an action that the task's repertoire lacks.
         UnknownBehaviourError: the knowledge names a behaviour that the task lacks.
         CommandRefusedError: the task does not teach `context.behaviour`.
+        ValueError: a saved expectation has another number of features.
     """
     behaviour = ActiveBehaviour(settings.task.behaviours)
     if context.behaviour:

@@ -76,17 +76,20 @@ class ChildProcesses:
 
     @property
     def trouble(self) -> str:
-        """Return the children that do not run and what happens next, in a line; empty while all run."""
+        """Line that names the children that do not run, and what happens next; empty while all run."""
         return ", ".join(each.trouble for each in self._children if each.trouble)
 
     def start(self, name: str, *words: str, restarts: bool, on_line: Callable[[str], None] | None = None) -> None:
-        """Start `kurt2rt WORDS`.
+        """Start `kurt2rt WORDS --settings FILE --while-stdin`, which ends with this process.
 
         Args:
             name: name of the child in the log.
             words: command and options.
-            restarts: whether it is started again if it ends.
+            restarts: whether it is started again whenever it ends; otherwise `trouble` tells a failure.
             on_line: gets each line that it prints, from a thread; None: the log gets them.
+
+        Raises:
+            OSError: the process cannot be started.
         """
         command = (*self._program, *words, "--settings", self._settings, "--while-stdin")
         process, read_line = _started(command), on_line or self._log

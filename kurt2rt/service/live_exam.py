@@ -33,7 +33,10 @@ class LiveExam:
         """Status, replaced by the thread that reads."""
 
     def begin(self, knowledge: Path, picture: Path) -> None:
-        """Start an exam of a copy of the knowledge, deleted at the end. Raises KnowledgeError while one runs."""
+        """Start an exam of a copy of the knowledge, deleted at the end; `picture` is the file to draw.
+
+        Raises KnowledgeError while one runs, and if its process cannot be started.
+        """
         with self._lock:
             if self._closed or self.status.running:
                 knowledge.unlink(missing_ok=True)

@@ -31,12 +31,12 @@ class LiveMeasure:
 
     @property
     def progress(self) -> float:
-        """Return the progress since the run began, a count in `unit`."""
+        """Progress since the run began, a count in `unit`."""
         return self._course.progress
 
     @property
     def unit(self) -> str:
-        """Return the unit of `progress`: laps, rounds, eights or m."""
+        """Unit of `progress`: laps, rounds, eights or m."""
         return self._course.unit
 
     def on_tick(self, record: TickRecord) -> None:

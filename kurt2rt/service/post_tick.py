@@ -112,7 +112,7 @@ class PostTick:
             collect_young()
 
     def apply_settings(self, settings: ServiceSettings) -> None:
-        """Apply reloaded periods, and the reloaded budget for recordings."""
+        """Apply the periods and the budget for recordings of reloaded settings."""
         self._set_periods(settings)
         if self._recorder is not None:
             self._recorder.set_budget(budget_of(settings.recordings_mb))
@@ -131,7 +131,10 @@ class PostTick:
             self._console.taught(text)
 
     def save_statistics(self) -> None:
-        """Submit counters and values of the RLAs to the journal's thread."""
+        """Submit counters and values of the RLAs to the journal's thread; never waits.
+
+        Raises KnowledgeError after the journal was closed.
+        """
         self._writer.submit_statistics(self._runtime.snapshot())
 
     def _set_periods(self, settings: ServiceSettings) -> None:

@@ -100,7 +100,10 @@ class RobotProgram:
         return with_unit_priority(settings) if self._options.as_service else settings
 
     def run(self) -> None:
-        """Run until a user or a signal ends it. Raises the errors of `serve` and of the opener of the robot."""
+        """Run until a user or a signal ends it.
+
+        Raises the errors of `kurt2rt.service.serve.serve`, and BusError if the robot cannot be opened.
+        """
         service, options = self._service, self._options
         pin_mmap_threshold()
         end = "" if options.as_service else "; Ctrl-C ends"

@@ -27,9 +27,9 @@ class ProgramScreen(Protocol):
         ...
 
     def page_line(self, line: str) -> None:
-        """Take a line that the page's program printed."""
+        """Process a line that the page's program printed: the pages that it serves, or a message."""
         ...
 
     def close(self) -> None:
-        """Remove what stays in place."""
+        """Remove the lines that stay in place on a terminal."""
         ...

@@ -59,9 +59,15 @@ class ProgramStartup:
         """Knowledge that a service opened; None until it is open, and always if no service manager runs the program."""
 
     async def open(self) -> OpenedRobot | None:
-        """Return the robot; None if the program is told to end while it waits.
+        """Open the robot, the knowledge and the keys, and return the robot; a service waits for what is missing.
 
-        Raises the errors of the opener of the robot, and CredentialsError.
+        Returns None if the program is told to end while it waits.
+
+        Raises:
+            BusError, SettingsError: the robot cannot be opened.
+            CredentialsError: the programs of this machine cannot be paired.
+            KnowledgeError: the knowledge of a service is damaged, or does not fit robot or task.
+            StartError: a folder of a service cannot be made.
         """
         if self._options.as_service:
             with anyio.CancelScope() as waiting:

@@ -113,6 +113,7 @@ async def serve(
         UnknownBehaviourError: the knowledge names a behaviour that the task lacks.
         CommandRefusedError: the task does not teach the behaviour of the start.
         ChannelError: the UDP port cannot be opened.
+        CredentialsError: the folder of pairings cannot be read.
     """
     with ExitStack() as stack:
         clock: Clock = stack.enter_context(TimerfdClock())

@@ -41,7 +41,7 @@ class ServiceSettings(Settings):
 
     @property
     def priority(self) -> int:
-        """Return the real-time priority of the loop; 0: none."""
+        """Real-time priority of the loop, 1 to 99; 0: none."""
         return 0 if self.real_time_priority == AUTO else self.real_time_priority
 
 
@@ -62,7 +62,7 @@ def load_service(name_or_path: str = "default") -> ServiceSettings:
 
 
 def with_unit_priority(settings: ServiceSettings) -> ServiceSettings:
-    """Return the settings with the priority of a unit for `auto`."""
+    """Return a copy of the settings in which the priority `auto` is that of a unit."""
     if settings.real_time_priority != AUTO:
         return settings
     return settings.model_copy(update={"real_time_priority": UNIT_PRIORITY})

@@ -89,7 +89,7 @@ class ShutdownHandler:
 
     @property
     def thread(self) -> threading.Thread:
-        """Return the signal thread, to be given real-time priority."""
+        """Thread that receives the signals, to be given real-time priority."""
         return self._thread
 
     @property

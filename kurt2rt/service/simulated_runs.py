@@ -104,7 +104,14 @@ class SimulatedRuns:
         return self._view
 
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> Outcome:
-        """Check and keep the next run; return its world and task. Raises CommandRefusedError."""
+        """Check and keep the next run; return an outcome with its world and task.
+
+        `world`, `task`: names; None: the present one. `fresh`: begin with an empty knowledge file.
+
+        Raises:
+            CommandRefusedError: a script teaches, or there is no such world or task.
+            KnowledgeError, SettingsError: knowledge or settings of the run cannot be loaded.
+        """
         if self._taught_by_script:
             raise CommandRefusedError(RefusalCode.TAUGHT_BY_SCRIPT)
         view = await self.view()
@@ -133,9 +140,14 @@ class SimulatedRuns:
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"
 
     async def load(self, content: bytes, teacher: TeacherNow) -> Outcome:
-        """Check and keep the knowledge that the next run begins with; return its number of lessons.
+        """Check and keep the knowledge that the next run begins with; return an outcome with its lessons' number.
 
-        Raises CommandRefusedError, KnowledgeError, SettingsError.
+        `content`: bytes of an export or a knowledge file.
+
+        Raises:
+            CommandRefusedError: a script teaches.
+            KnowledgeError: the knowledge is damaged or does not fit, or cannot be stored.
+            SettingsError: its task or the robot cannot be loaded.
         """
         if self._taught_by_script:
             raise CommandRefusedError(RefusalCode.TAUGHT_BY_SCRIPT)

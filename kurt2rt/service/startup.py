@@ -79,15 +79,19 @@ class StartupGate:
 
     @property
     def missing(self) -> tuple[MissingDependency, ...]:
-        """Return the missing dependencies, each with the reason once it is known."""
+        """Missing dependencies, each with the reason once it is known."""
         return tuple(self._missing.values())
 
     async def wait_for(self, name: DependencyName) -> None:
-        """Return as soon as one dependency is there."""
+        """Wait until one dependency is there; `wait_for_all`, which checks it, must run meanwhile."""
         await self._available[name].wait()
 
     async def wait_for_all(self) -> None:
-        """Return as soon as all dependencies are there. Raises errors that waiting does not cure."""
+        """Check all dependencies again and again, and return as soon as each is there.
+
+        Raises the errors of a check that waiting does not cure, such as knowledge of another task, in an exception
+        group.
+        """
         async with anyio.create_task_group() as standing:
             standing.start_soon(self._hold_still)
             async with anyio.create_task_group() as looking:
@@ -133,7 +137,8 @@ class StartupGate:
 def require_folder(folder: Path) -> None:
     """Make a folder with a relative path; require one with an absolute path, whose disk may be mounted later.
 
-    A new folder at a mount point would hide the knowledge on the disk. Raises StartError.
+    A new folder at a mount point would hide the knowledge on the disk. Raises StartError if the folder is missing or
+    cannot be made.
     """
     if not folder.is_absolute():
         make_private_folder(folder)

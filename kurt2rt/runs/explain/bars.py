@@ -17,7 +17,10 @@ _SMALLER = "#f0b27f"
 
 
 def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str]) -> None:
-    """Draw all RLAs on one line, nearer ones further left."""
+    """Draw all RLAs of a level on one line, nearer ones further left; `rla` is marked.
+
+    `colours`: by action.
+    """
     _bare(axes)
     if level.nearest is None or rla is None or not math.isfinite(level.nearest.distance):
         axes.set_axis_off()
@@ -69,7 +72,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: 
 
 
 def draw_differences(axes: Axes, level: LevelFacts, rla: RlaFacts | None, rows: int, words: SensorWords) -> None:
-    """Draw the features with the largest shares of the distance, and both values of each."""
+    """Draw the `rows` features with the largest shares of the distance to an RLA, and both values of each."""
     _bare(axes)
     found = () if rla is None else distance_attribution(level, rla)[:rows]
     if rla is None or not found:
@@ -103,7 +106,7 @@ def draw_differences(axes: Axes, level: LevelFacts, rla: RlaFacts | None, rows: 
 def draw_contrast(
     axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str], rows: int, words: SensorWords
 ) -> None:
-    """Draw the features that favour the RLA and those that favour its rival."""
+    """Draw the `rows` features that favour the RLA and those that favour its rival. `colours`: by action."""
     _bare(axes)
     other = None if rla is None else level.contrast_of(rla)
     found = () if rla is None or other is None else contrast_attribution(level, rla, other)[:rows]

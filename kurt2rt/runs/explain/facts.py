@@ -86,12 +86,12 @@ class LevelFacts:
 
     @property
     def runner_up(self) -> RlaFacts | None:
-        """The second nearest."""
+        """Second nearest RLA; None without one."""
         return self.others[0] if self.others else None
 
     @property
     def otherwise(self) -> RlaFacts | None:
-        """Return the nearest RLA with another action than the nearest of all; None if none is known."""
+        """Nearest RLA with another action than the nearest of all; None if none is known."""
         if self.nearest is None:
             return None
         return next((other for other in self.others if other.action != self.nearest.action), None)
@@ -103,7 +103,7 @@ class LevelFacts:
 
     @property
     def leader(self) -> RlaFacts | None:
-        """Return the RLA that answers among those on the nearest condition."""
+        """RLA that answers among those on the nearest condition; None if nothing was taught."""
         nearest = self.nearest
         if nearest is None or nearest.leads:
             return nearest
@@ -111,7 +111,7 @@ class LevelFacts:
         return next(same, nearest)
 
     def contrast_of(self, rla: RlaFacts) -> RlaFacts | None:
-        """Return the RLA to compare with: the nearest, or for the nearest its closest rival."""
+        """Return the RLA to compare with: the nearest, or for the nearest its closest rival; None without one."""
         if self.nearest is not None and self.nearest.condition != rla.condition:
             return self.nearest
         return self.otherwise or self.runner_up
@@ -185,5 +185,5 @@ class DecisionFacts:
 
     @property
     def stopped_because(self) -> str:
-        """Return the sentence of the stop for older devices; empty without one."""
+        """Sentence of the stop, for older devices; empty without one."""
         return stop_text(self.stopped)

@@ -38,9 +38,10 @@ class ExplainedMoment:
 
 
 def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda _s: None) -> ExplainedMoment:
-    """Explain the last decision by `at_s` seconds from the first tick of the run. Raises RecordingError.
+    """Explain the last decision by `at_s` seconds from the first tick of the run.
 
-    `report` is called every second of the run with the seconds replayed so far.
+    `report` is called every second of the run with the seconds replayed so far. Raises RecordingError if the run cannot
+    be read or replayed.
     """
     replay = Replay(run)
     stamps = {lesson.event.origin.command_id: lesson.stamped_at for lesson in run.lessons}

@@ -17,7 +17,7 @@ _MOST_SYMBOLS = 12
 
 
 def draw_mid(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
-    """Draw a map or a row of symbols, depending on the situation's features."""
+    """Draw a map or a row of symbols, depending on the situation's features. `colours`: by action."""
     axes.set_xticks([])
     axes.set_yticks([])
     for spine in axes.spines.values():

@@ -41,7 +41,7 @@ _WORTH_POINTING = 0.03
 def draw_why(
     facts: DecisionFacts, found: tuple[SensorCounterfactual, ...], robot: RobotSettings, title: str, path: Path
 ) -> None:
-    """Write the picture in the format of the file's suffix. Raises OSError.
+    """Write the picture of one decision in the format of the file's suffix. Raises OSError.
 
     `found`: changes of one reading that would have changed the decision.
     """

@@ -61,7 +61,7 @@ class SensorView:
 
 
 def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView) -> None:
-    """Draw one situation from above."""
+    """Draw one situation from above, in m: body, beams, readings and the predicted path."""
     counts, averages, differing = view.counts, view.averages, view.differing
     law = robot.infrared
     reach_m = law.far_m + _MARGIN_M
@@ -230,7 +230,10 @@ def _spin(*, turns_left: bool) -> list[Point]:
 
 
 def predicted_path(motion: WheelSpeeds, track_m: float, lasts_s: float) -> Sequence[Point] | None:
-    """Return the predicted path of the centre in the robot's frame; None for a turn on the spot."""
+    """Return the predicted path of the centre in `lasts_s` seconds, as points in m in the robot's frame.
+
+    `track_m`: distance between the wheels. Returns None for less than 3 cm, such as a turn on the spot.
+    """
     speed_m_s = (motion.left_m_s + motion.right_m_s) / 2
     turn_rad_s = (motion.right_m_s - motion.left_m_s) / track_m
     if abs(speed_m_s) * lasts_s < 0.03:

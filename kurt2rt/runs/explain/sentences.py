@@ -10,7 +10,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, Rl
 
 
 def format_runner_up(level: LevelFacts) -> list[str]:
-    """Return the runner-up and the nearest RLA with another action, with their margins."""
+    """Return sentences on the runner-up and the nearest RLA with another action, with their margins."""
     nearest, runner_up, otherwise = level.nearest, level.runner_up, level.otherwise
     if nearest is None:
         return []
@@ -37,7 +37,7 @@ def format_counterfactuals(found: tuple[SensorCounterfactual, ...], most: int = 
 
 
 def format_held(facts: DecisionFacts) -> str:
-    """Return the sentence about an action held for its minimum time; empty without one."""
+    """Return the sentence about an action held for its minimum time; empty if none is held."""
     if not facts.kept or facts.cause != DecisionCause.RLA or facts.latched:
         return ""
     return (
@@ -47,7 +47,7 @@ def format_held(facts: DecisionFacts) -> str:
 
 
 def format_guard(facts: DecisionFacts) -> str:
-    """Return the guard's change of the decision; empty if it was applied unchanged."""
+    """Return the sentence on the guard's change of the decision; empty if it was applied unchanged."""
     if not facts.reasons or facts.latched or facts.cause == DecisionCause.TOUCHES:  # said already
         return ""
     return (
@@ -66,7 +66,7 @@ def format_teaching(rla: RlaFacts) -> str:
 
 
 def standing_lessons(rla: RlaFacts) -> tuple[LessonFact, ...]:
-    """Return the lessons that made the present action, oldest first, without rewards."""
+    """Return the lessons that made the RLA's present action, oldest first, without rewards."""
     return tuple(act for act in rla.acts if act.changes)
 
 

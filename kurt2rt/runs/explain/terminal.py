@@ -33,7 +33,7 @@ _BAR = 20
 def render_why(
     facts: DecisionFacts, found: tuple[SensorCounterfactual, ...], where: str, words: SensorWords = NO_WORDS
 ) -> RenderableType:
-    """Render one decision.
+    """Return the text of one decision for a terminal.
 
     `found`: changes of one reading that would have changed it. `where`: run and time. `words`: for the robot's sensors.
     """
@@ -116,7 +116,7 @@ def _history(rla: RlaFacts) -> TextTable:
 
 
 def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType:
-    """Render the stretches of a run.
+    """Return the table of the stretches of a run for a terminal.
 
     If there are more than `most`, show only those in which the robot did not drive by itself.
     """

@@ -52,7 +52,7 @@ class Stretch:
 
     @property
     def lasts_s(self) -> float:
-        """Return the duration."""
+        """Duration in s."""
         return self.to_s - self.from_s
 
 
@@ -101,12 +101,12 @@ class Timeline:
 
     @property
     def from_s(self) -> float:
-        """Return the time of the first tick."""
+        """Time of the first tick in s."""
         return self.stretches[0].from_s if self.stretches else 0.0
 
     @property
     def to_s(self) -> float:
-        """Return the end of the last tick."""
+        """End of the last tick in s."""
         return self.stretches[-1].to_s if self.stretches else 0.0
 
 

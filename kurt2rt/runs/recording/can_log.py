@@ -50,22 +50,22 @@ class CanLog:
 
     @property
     def lost(self) -> int:
-        """Return the number of frames missing in the file: the writer was too slow or failed."""
+        """Number of frames missing in the file: the writer was too slow or failed."""
         return self._thread.overruns + self._not_written
 
     @property
     def trouble(self) -> str:
-        """Return the log's error in one line; empty while every frame is written."""
+        """Error of the log in one line; empty while every frame is written."""
         wrong = [self._failure] if self._failure else []
         wrong += [f"{self.lost} frames lost"] if self.lost else []
         return f"CAN log {self.name}: {', '.join(wrong)}" if wrong else ""
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
-        """Note a received frame of age `age_s`."""
+        """Note a received frame that the bus carried `age_s` seconds ago; never waits."""
         self._thread.submit(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
 
     def on_tx(self, frame: can.Message) -> None:
-        """Note a sent frame."""
+        """Note a sent frame; never waits."""
         self._thread.submit(_Noted(self._began_at_s + time.monotonic(), False, frame))
 
     def write_waiting(self) -> None:
@@ -115,7 +115,10 @@ class CanLog:
 
 
 def open_can_log(path: Path, bus: str) -> CanLog:
-    """Open a log in a new file, in the format of its suffix. Raises RecordingError, OSError."""
+    """Open a log of the bus named `bus` in a new file, in the format of its suffix; not started yet.
+
+    Raises RecordingError for an unknown suffix, OSError.
+    """
     file = LogFile(path)
     return CanLog(file, str(file.path), bus)
 

@@ -28,7 +28,7 @@ class FrameWriter(Protocol):
         ...
 
     def close(self) -> None:
-        """End the log."""
+        """Complete the log and close it; call it once."""
         ...
 
 

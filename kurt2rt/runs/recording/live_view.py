@@ -34,12 +34,12 @@ class LiveView:
 
     @property
     def port(self) -> int:
-        """Return the port; the requested one until the server listens."""
+        """TCP port; the requested one until the server listens."""
         return self._port if self._server is None else self._server.port
 
     @property
     def address(self) -> str:
-        """Return the URL for Foxglove."""
+        """URL for Foxglove."""
         return f"ws://{self._host}:{self.port}"
 
     def poll(self) -> None:

@@ -48,7 +48,7 @@ class NoteLog:
         self._world: WorldPlan | None = None
 
     def log(self, note: Note) -> None:
-        """Log one note. Raises RecordingError for a note that cannot be encoded."""
+        """Log one note to its topic. Raises RecordingError or KnowledgeError for a note that cannot be encoded."""
         topics = self.topics
         match note:
             case TickNote(record, time_ns, saved, truth, world):

@@ -68,17 +68,17 @@ class RunRecorder:
 
     @property
     def run(self) -> Path | None:
-        """Return the run's folder; None without one, or before it is created."""
+        """Folder of the run; None without one, or before it is created."""
         return None if self._files is None else self._files.run
 
     @property
     def dropped(self) -> int:
-        """Return the number of notes missing in the files: the disk was too slow or failed."""
+        """Number of notes missing in the files: the disk was too slow or failed."""
         return self._thread.overruns + self._left_behind + self._not_written
 
     @property
     def trouble(self) -> str:
-        """Return the recording's error in one line; empty while everything is recorded."""
+        """Error of the recording in one line; empty while everything is recorded."""
         wrong = [self._failure] if self._failure else []
         if self._files is not None and self._files.trouble:
             wrong.append(self._files.trouble)
@@ -115,7 +115,7 @@ class RunRecorder:
         self._note(HealthNote(report))
 
     def set_budget(self, budget: Budget) -> None:
-        """Apply another budget."""
+        """Apply another budget of disk space; older runs may be deleted for it."""
         if self._files is not None:
             self._files.set_budget(budget)
 

@@ -67,7 +67,11 @@ class Recording:
         """Return the recorder of one run, not started yet; call it before the first tick.
 
         `knowledge`: state at the start; None: nothing is known. `started`: beginning of a run in simulated time; None:
-        now. Raises SettingsError, KnowledgeError.
+        now.
+
+        Raises:
+            SettingsError: a file that the task uses cannot be read.
+            KnowledgeError: a knowledge file that an action of the task uses cannot be read.
         """
         entries = () if knowledge is None else knowledge.entries
         attachments = collect_attachments(settings, task, entries, None if knowledge is None else knowledge.saved)

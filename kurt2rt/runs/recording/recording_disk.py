@@ -25,7 +25,7 @@ class WritableFile(Protocol):
         ...
 
     def close(self) -> None:
-        """Close the file. Raises OSError."""
+        """Close the file, without a sync. Raises OSError."""
         ...
 
 

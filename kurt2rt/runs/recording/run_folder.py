@@ -17,7 +17,10 @@ _SEGMENT_NAME = re.compile(r"\d{4,}\.mcap")
 
 
 def run_name(started: datetime, task: str) -> str:
-    """Return the folder name of a run, which sorts by time. `started`: with time zone."""
+    """Return the folder name of a run, which sorts by time.
+
+    `started`: with time zone. `task`: its name.
+    """
     return f"{started.astimezone(UTC):{_STAMP}}-{task}"
 
 
@@ -55,7 +58,7 @@ def segments_in(run: Path) -> list[Path]:
 
 
 def segment_number(segment: Path) -> int:
-    """Return the number in a segment's name."""
+    """Return the number in a segment's name, from 1."""
     return int(segment.stem)
 
 

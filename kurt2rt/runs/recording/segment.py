@@ -38,7 +38,7 @@ class MemoryFile:
         """Do nothing: the segment decides when it writes."""
 
     def pop_all(self) -> bytearray:
-        """Return the bytes since the last call."""
+        """Return the bytes that were written since the last call, and drop them."""
         taken, self._bytes = self._bytes, bytearray()
         return taken
 
@@ -76,7 +76,7 @@ class Segment:
 
     @property
     def size_bytes(self) -> int:
-        """Return the size of the file including unwritten data."""
+        """Size of the file in bytes, unwritten data included."""
         return self._saved_bytes + len(self._unsaved)
 
     @property
@@ -85,11 +85,11 @@ class Segment:
         return len(self._unsaved) > KEPT_BYTES
 
     def describe(self, name: str, metadata: dict[str, str]) -> None:
-        """Add a metadata record."""
+        """Add a metadata record to the file: texts by name."""
         self._writer.write_metadata(name, metadata)
 
     def attach(self, name: str, data: bytes, time_ns: int) -> None:
-        """Add an attachment."""
+        """Add an attachment to the file; `time_ns` in ns since 1970."""
         media_type = _MEDIA_TYPES.get(Path(name).suffix, "application/octet-stream")
         self._writer.attach(log_time=time_ns, create_time=time_ns, name=name, media_type=media_type, data=data)
 

@@ -82,7 +82,11 @@ class Topics:
         self._log = LogChannel(LOG, context=context)
 
     def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
-        """Log one tick. Raises RecordingError for a tick that cannot be encoded."""
+        """Log one tick to its topics.
+
+        `truth`: true place of a simulated robot; None for a real one. Raises RecordingError or KnowledgeError for a
+        tick that cannot be encoded.
+        """
         readings = record.readings
         motion = self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks)
         pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
@@ -137,7 +141,7 @@ class Topics:
         self._next_scan = self._next_scene = self._next_ground = 0
 
     def log_text(self, text: str, level: LogLevel, time_ns: int) -> None:
-        """Log a line of text."""
+        """Log a line of text with its level to the topic of texts."""
         self._log.log(Log(timestamp=timestamp(time_ns), level=level, message=text, name="kurt2rt"), log_time=time_ns)
 
     def _log_event(self, event: TeachingEvent, time_ns: int) -> None:

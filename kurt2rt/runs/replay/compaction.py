@@ -58,8 +58,17 @@ class _Coverage:
 def compact(path: Path, recordings: Path, *, stamp: str, dry_run: bool, report: Report) -> Compaction:
     """Delete the basic-level RLAs that no recorded decision needs, as durable lessons that can be undone.
 
-    Raises KnowledgeError, and changes nothing, if a robot runs on the file, if no compatible run has a driven tick, or
-    if any of their decisions would change.
+    Args:
+        path: of the knowledge file.
+        recordings: folder of the runs, or one run.
+        stamp: of the deletions, UTC, ISO 8601.
+        dry_run: change nothing.
+        report: progress callback.
+
+    Raises:
+        KnowledgeError: a robot runs on the file, no compatible run has a driven tick, or a decision would change;
+            nothing is changed then.
+        RecordingError: a run cannot be replayed.
     """
     if dry_run:
         with Journal.read_only(path) as journal:

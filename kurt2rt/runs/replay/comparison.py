@@ -19,7 +19,7 @@ class TickDifference(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Return the recorded and the replayed value in words."""
+        """Line with the recorded and the replayed value."""
         return f"{self.field} was {_short_repr(self.recorded)}, and is {_short_repr(self.replayed)} now"
 
     def __str__(self) -> str:

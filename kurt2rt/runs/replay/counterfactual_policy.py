@@ -45,12 +45,12 @@ class PolicyAnswer(NamedTuple):
 
     @property
     def action(self) -> str | None:
-        """Return the action; None for a question."""
+        """Action of the answer; None for a question."""
         return None if self.rla is None else self.rla.action
 
     @property
     def share_of_radius(self) -> float:
-        """Return the distance to the nearest condition as a fraction of R."""
+        """Distance to the nearest condition as a fraction of R; above 1 outside."""
         return self.distance / self.radius if self.radius else math.inf
 
 
@@ -85,7 +85,7 @@ class CounterfactualPolicy:
             raise RecordingError(f"this knowledge cannot decide there: {cause}", where=run.name) from error
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> PolicyAnswer:
-        """Return the answer to a situation vector, shape (d,), of a level for the active behaviour."""
+        """Return the answer of a level to a situation vector, shape (d,), for the active behaviour."""
         match = self._system.match(situation, behaviour, level)
         return _answer(match, self._system, self._worths.choice) if level == BASIC else _mid_answer(match)
 
@@ -107,7 +107,7 @@ class CounterfactualPolicy:
 def load_policy(run: Run, knowledge: Path) -> CounterfactualPolicy:
     """Return the policy of a knowledge file, which may be in use by a robot.
 
-    Raises RecordingError, KnowledgeError.
+    Raises RecordingError if the run's settings cannot be read, KnowledgeError if the file does not fit them.
     """
     with run.settings():
         events, statistics = read_knowledge(knowledge, run.robot, run.task)

@@ -15,7 +15,7 @@ class ReplayEnvironment:
 
     @property
     def saving_error(self) -> str | None:
-        """Return the recorded error of the journal (LessonKeeper)."""
+        """Recorded error of the journal (LessonKeeper); None without one."""
         return self._entry.saving_error
 
     def submit(self, event: TeachingEvent) -> None:
@@ -26,7 +26,7 @@ class ReplayEnvironment:
         return self._entry.now_s
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Return at once (Clock)."""
+        """Return at once: the recorded ticks tell the time (Clock)."""
 
     def sense(self, now_s: float) -> SensorReadings:  # noqa: ARG002 - what was sensed then
         """Return the recorded readings (Robot)."""
@@ -43,7 +43,7 @@ class ReplayEnvironment:
         """Do nothing: the recorded guard results contain the release (Robot)."""
 
     def close(self) -> None:
-        """Do nothing (Robot)."""
+        """Do nothing: a replay holds no bus (Robot)."""
 
     @property
     def _entry(self) -> TickEntry:

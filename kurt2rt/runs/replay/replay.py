@@ -41,7 +41,7 @@ class Replay:
         self.runtime = self._build()
 
     def step(self, entry: TickEntry) -> TickRecord:
-        """Replay the next tick with its recorded inputs."""
+        """Replay the next tick with its recorded inputs and return its record; call it for each tick in order."""
         runtime = self.runtime
         self._replayed.entry = entry
         runtime.inbox.replace_pending(entry.commands)

@@ -67,23 +67,23 @@ class Run:
 
     @property
     def trouble(self) -> str:
-        """Return why `entries` ended early, in a sentence; empty if it did not so far."""
+        """Reason that `entries` ended early, in a sentence; empty if it did not so far."""
         return self._gap or self._source.truncated()
 
     @property
     def duration_s(self) -> float:
-        """Return the runtime clock's time from the first tick to the last; 0 if unknown.
+        """Time of the runtime's clock in s from the first tick to the last; 0 if unknown. Reads the last segment.
 
-        Reads the last segment.
+        Raises RecordingError.
         """
         first = next(self.entries(), None)
         return 0.0 if first is None else max(self._source.ends_s() - first.now_s, 0.0)
 
     @property
     def duration_without_gap_s(self) -> float:
-        """Return the time from the first tick to the last that can be replayed, before any gap.
+        """Time in s from the first tick to the last that can be replayed, before any gap.
 
-        Reads all those ticks if there is a gap.
+        Reads all those ticks if there is a gap. Raises RecordingError.
         """
         if self._source.without_gap():
             return self.duration_s
@@ -93,7 +93,7 @@ class Run:
         return newest
 
     def elapsed_s(self, entry: TickEntry) -> float:
-        """Return the time from the first tick to the entry's; the first tick must have been read."""
+        """Return the time in s from the first tick to the entry's; the first tick must have been read."""
         return 0.0 if self.began_s is None else entry.now_s - self.began_s
 
     @property
@@ -103,17 +103,17 @@ class Run:
 
     @cached_property
     def robot(self) -> RobotSettings:
-        """Return the robot's settings of the run."""
+        """Settings of the robot in the run."""
         return RobotSettings.model_validate_json(self._attachments[ROBOT])
 
     @cached_property
     def task(self) -> TaskSettings:
-        """Return the task's settings of the run."""
+        """Settings of the task in the run."""
         return TaskSettings.model_validate_json(self._attachments[TASK])
 
     @cached_property
     def lessons(self) -> tuple[KnownLesson, ...]:
-        """Return the lessons from before the run; empty if its beginning was deleted."""
+        """Lessons from before the run; empty if its beginning was deleted. Raises RecordingError."""
         data = self._attachments.get(KNOWLEDGE)
         return () if data is None else tuple(_decoded(decode_lessons, data))
 
@@ -133,7 +133,7 @@ class Run:
 
     @cached_property
     def saved(self) -> Statistics:
-        """Return the statistics from before the run."""
+        """Statistics from before the run. Raises RecordingError."""
         data = self._attachments.get(STATISTICS)
         return Statistics() if data is None else _decoded(decode_statistics, data)
 

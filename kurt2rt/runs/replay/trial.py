@@ -45,7 +45,7 @@ class RecentRuns:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Return what was not replayed, with reasons; a gap is known after the replay."""
+        """Lines on runs that were not replayed, with reasons; a gap is known after the replay."""
         gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.whole)
         return (*self.left_out, *gaps)
 
@@ -98,7 +98,10 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
 def replay_answers(
     run: Run, knowledge: Sequence[TrialKnowledge], report: Report
 ) -> Iterator[tuple[TickRecord, list[PolicyAnswers]]]:
-    """Yield each tick of a run with the answers of each knowledge to its situations."""
+    """Yield each tick of a run with the answers of each knowledge to its situations, in the order given.
+
+    Raises RecordingError if the run cannot be replayed.
+    """
     replay = Replay(run)
     policies = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
     tell = progress_reporter(run, report)
@@ -108,7 +111,7 @@ def replay_answers(
 
 
 def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
-    """Return a callback for each replayed tick of a run that reports every 500 ticks."""
+    """Return a callback for each replayed tick of a run; it calls `report` every 500 ticks."""
     whole_s = run.duration_s
 
     def tell(tick: ReplayedTick) -> None:

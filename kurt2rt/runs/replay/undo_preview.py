@@ -65,7 +65,8 @@ def preview_on_newest(
 ) -> UndoPreview:
     """Replay the end of the newest recorded run of this knowledge, if there is one; change nothing.
 
-    `last_s`: length of the compared end. The end of a run with a gap is the part before the gap; its notes say so.
+    `last_s`: length in s of the compared end. The end of a run with a gap is the part before the gap; its notes say so.
+    A run longer than `longest_s` is not replayed, which a note says.
     """
     newest = newest_compatible_run(recordings, planned.binding, planned.path)
     too_long = [run for run in newest.runs if run.duration_s > longest_s]

@@ -32,9 +32,9 @@ class ReplayVerdict:
 
 
 def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> ReplayVerdict:
-    """Replay a run up to the first difference. `on_tick` is called for each equal tick.
+    """Replay a run up to the first difference, and return the verdict.
 
-    Raises RecordingError, also for a run without ticks.
+    `on_tick` is called for each equal tick. Raises RecordingError, also for a run without ticks.
     """
     ticks = knowledge = 0
     lasted_s = 0.0

@@ -13,17 +13,17 @@ class JournalStats(Protocol):
 
     @property
     def unwritten(self) -> int:
-        """Return the number of lessons that are not durable yet."""
+        """Number of lessons that are not durable yet."""
         ...
 
     @property
     def saving_error(self) -> str | None:
-        """Return why lessons cannot be saved and what to do; None if they can."""
+        """Reason that lessons cannot be saved and what to do; None if they can."""
         ...
 
     @property
     def last_write_s(self) -> float | None:
-        """Return the duration of the last write in s; None before the first."""
+        """Duration of the last write in s; None before the first."""
         ...
 
 
@@ -47,5 +47,5 @@ class Probes:
         drops: Mapping[str, Callable[[], int]] | None = None,
         errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> "Probes":
-        """Return these probes with more counters and errors."""
+        """Return a copy of these probes with more counters and errors, by name of the queue or part."""
         return replace(self, drops={**self.drops, **(drops or {})}, errors={**self.errors, **(errors or {})})

@@ -43,7 +43,15 @@ class Snapshot:
 def take_snapshot(
     runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
 ) -> Snapshot:
-    """Return the snapshot; takes some 10 µs and never waits."""
+    """Return the values of a program after a tick; takes some 10 µs and never waits.
+
+    Args:
+        runtime: of the program.
+        record: of the tick.
+        keeping: statistics of the journal.
+        instruments: parts outside the runtime.
+        now_s: present time of the monotonic clock, in s.
+    """
     readings, system, ledger = record.readings, runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
     errors["teaching"] = runtime.handler.updater.error

@@ -56,7 +56,7 @@ class StatusSocket:
         watch.add_listener(self._wake)
 
     async def serve(self) -> None:
-        """Serve until cancelled; if the socket cannot be made, set `trouble` and return."""
+        """Serve readers until cancelled; if the socket cannot be made, set `trouble` and return."""
         try:
             async with _listener(self._path) as listener:
                 await listener.serve(self._tell)

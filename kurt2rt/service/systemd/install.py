@@ -26,7 +26,7 @@ class InstallPaths:
     """Folders of other programs' units, which our unit must not hide."""
 
     def files(self, name: str) -> tuple[Path, Path]:
-        """Return the files of a unit and of its user."""
+        """Return the paths of a unit's files: the service, and the definition of its user."""
         return self.units / f"{name}.service", self.users / f"{name}.conf"
 
 
@@ -42,7 +42,7 @@ def run_command(command: Sequence[str]) -> None:
 
 
 def require_free(name: str, places: InstallPaths | None = None) -> None:
-    """Require a name that no unit and no user of another program has. Raises UnitError."""
+    """Raise UnitError for an invalid name, or one that a unit or a user of another program has."""
     require_name(name)
     places = places or InstallPaths()
     for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
@@ -57,7 +57,10 @@ def require_free(name: str, places: InstallPaths | None = None) -> None:
 
 
 def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
-    """Write the unit and make its user, without starting it; return the files. Raises UnitError."""
+    """Write the unit and make its user, without starting it; return the written files.
+
+    Raises UnitError if the name is taken, a file cannot be written, or a command of systemd fails.
+    """
     places = places or InstallPaths()
     require_free(unit.name, places)
     files = places.files(unit.name)
@@ -72,7 +75,10 @@ def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths |
 
 
 def uninstall(name: str, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
-    """Stop and disable the unit and remove its files; knowledge and user stay. Returns the files. Raises UnitError."""
+    """Stop and disable the unit and remove its files; knowledge and user stay. Return the removed files.
+
+    Raises UnitError if there is no such unit of kurt2rt, or a file or a command of systemd fails.
+    """
     require_name(name)
     places = places or InstallPaths()
     files = tuple(each for each in places.files(name) if _is_there(each))

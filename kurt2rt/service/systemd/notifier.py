@@ -48,7 +48,7 @@ class Notifier:
         self._send("STOPPING=1")
 
     def ping(self) -> None:
-        """Send a ping of the manager's watchdog."""
+        """Send a ping of the manager's watchdog; due at least every `watchdog_s`."""
         self._send("WATCHDOG=1")
 
     def status(self, text: str) -> None:

@@ -53,13 +53,16 @@ def build_unit(name: str, bus: str, command: Sequence[str], folders: Iterable[Pa
 
 
 def require_name(name: str) -> None:
-    """Require a valid name of a unit and of its user. Raises UnitError."""
+    """Raise UnitError for an invalid name of a unit and of its user."""
     if not _NAME.fullmatch(name):
         raise UnitError(UnitCode.BAD_NAME, where=repr(name))
 
 
 def quoted(word: str) -> str:
-    """Return a word quoted for a unit's command line or list of paths, as systemd.syntax(7) reads it back."""
+    """Return a word quoted for a unit's command line or list of paths, as systemd.syntax(7) reads it back.
+
+    Raises UnitError for a word that cannot stand in a unit.
+    """
     free = _specifier_free(word)
     if _PLAIN.fullmatch(word):
         return free

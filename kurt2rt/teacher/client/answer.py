@@ -121,7 +121,7 @@ class RefusedError(UserError):
         self.answer = answer
 
     def text_on(self, surface: Surface) -> str:
-        """Return the sentence for a surface."""
+        """Return the sentence of the refusal for a surface."""
         return str(self) if self.answer is None else self.answer.text_on(surface) or self.answer.why
 
 
@@ -134,7 +134,7 @@ def _outcome_in(body: Mapping[str, Any]) -> Outcome | None:
 
 
 def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
-    """Return the answer in a decoded body; `code` is CoAP's, such as "4.09 Conflict"."""
+    """Return the answer in the decoded body of a response; `code` is CoAP's, such as "4.09 Conflict"."""
     accepted = code.startswith("2.") and body.get("ok", True) is not False
     tick, text, why = body.get("t"), body.get("text"), body.get("why")
     return Answer(

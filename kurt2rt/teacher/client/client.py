@@ -53,6 +53,9 @@ class TeacherClient(ObserverClient):
             of: Tick of the state that is meant. None: the present decision.
             level: BASIC or MID.
             alternative: Add the behaviour to those that the mid level knows for this situation.
+
+        Raises:
+            NoAnswerError: The robot does not answer.
         """
         return await self._command(
             requests.AnswerRequest, action=action, decision_tick=of, level=level, alternative=alternative
@@ -67,6 +70,9 @@ class TeacherClient(ObserverClient):
             level: BASIC or MID.
             late: Correct the decision that a person reacted to, before the state of `of` by their delay, which the
                 robot learns from their answers to its questions. The answer says which decision it was.
+
+        Raises:
+            NoAnswerError: The robot does not answer.
         """
         return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level, late=late)
 
@@ -87,27 +93,39 @@ class TeacherClient(ObserverClient):
         return await self.correct(action, of=max(0, drove - await self._ticks(seconds)))
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
-        """Reward what the robot did (phase 3); `value` is -1 or +1."""
+        """Reward what the robot did (phase 3).
+
+        `value`: -1 or +1. `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
+        """
         return await self._command(requests.RewardRequest, value=value, decision_tick=of)
 
     async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
-        """Teach the critic the value of a situation (phase 4): a name of `Hello.appraisals`."""
+        """Teach the critic the value of a situation (phase 4): a name of `Hello.appraisals`.
+
+        `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
+        """
         return await self._command(requests.AppraiseRequest, appraisal=appraisal, decision_tick=of)
 
     async def replace(self, rla: int, action: str) -> Answer:
-        """Give one RLA another action."""
+        """Give one RLA, named by its id, another action. Raises NoAnswerError."""
         return await self._command(requests.ReplaceRequest, rla_id=rla, action=action)
 
     async def delete(self, rla: int) -> Answer:
-        """Delete one RLA."""
+        """Delete one RLA, named by its id. Raises NoAnswerError."""
         return await self._command(requests.DeleteRequest, rla_id=rla)
 
     async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
-        """Give the mid level's situation a name, so that it can be a goal."""
+        """Give the mid level's situation a name, so that it can be a goal.
+
+        `of`: tick of the state that is meant; None: the present situation. Raises NoAnswerError.
+        """
         return await self._command(requests.NameRequest, name=name, decision_tick=of)
 
     async def undo(self, lesson: str | None = None) -> Answer:
-        """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands."""
+        """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands.
+
+        Raises NoAnswerError.
+        """
         return await self._command(requests.UndoRequest, lesson=lesson)
 
     async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
@@ -145,12 +163,18 @@ class TeacherClient(ObserverClient):
         return self._open.stops.pending
 
     async def resume(self) -> Answer:
-        """Let the robot drive again after a stop (the page's GO)."""
+        """Let the robot drive again after a stop (the page's GO). Raises NoAnswerError.
+
+        The answer is a refusal if a stop came since the newest state.
+        """
         self._open.stops.supersede()
         return await self._move("go", requests.ResumeRequest)
 
     async def run(self, action: str, seconds: float) -> Answer:
-        """Run one action of the repertoire for a time; the robot stands afterwards."""
+        """Run one action of the repertoire for `seconds` of robot time; the robot stands afterwards.
+
+        Returns as soon as the action begins. Raises NoAnswerError.
+        """
         self._open.stops.supersede()
 
         async def begin() -> Answer:
@@ -185,17 +209,20 @@ class TeacherClient(ObserverClient):
         return self._drive.hold(action)
 
     async def let_go(self) -> Answer | None:
-        """End the press with a stop that ends no later press; return None if no press is on.
+        """End the press that is on, and return the robot's answer; None if no press is on.
 
-        After a held action the robot drives on by its RLAs, and the answer tells how many lessons it gave.
-
-        The press is over before this waits for the answer. Without an answer the robot stops by its own deadman time.
+        The press is over before this waits for the answer, and a later press is not ended. After a held action the
+        robot drives on by its RLAs, and the answer tells how many lessons it gave; after manual drive it stands. Raises
+        NoAnswerError; the robot then ends the press by itself after its deadman time.
         """
         return await self._open.end_press(self._drive.press_id)
 
     @asynccontextmanager
     async def driving(self) -> AsyncIterator[ManualDriveHandle]:
-        """Drive by hand inside the block; the press begins with the first speeds and ends with a stop."""
+        """Drive by hand inside the block; the press begins with the first speeds and ends with a stop.
+
+        Raises NoAnswerError at the end of the block if the stop is not answered.
+        """
         handle = ManualDriveHandle(self._drive)
         async with self._open.ending(handle):
             yield handle
@@ -206,6 +233,7 @@ class TeacherClient(ObserverClient):
 
         At the end of the block the robot drives on by its RLAs at once. Each 0.1 s becomes a lesson, unless the robot
         would do that action there by itself; the lessons are undone together. Afterwards the handle tells how many.
+        Raises NoAnswerError at the end of the block, and WireError for a name that cannot be sent.
         """
         handle = HoldHandle(self._drive)
         handle.set(action)
@@ -213,10 +241,14 @@ class TeacherClient(ObserverClient):
             yield handle
 
     async def hold_for(self, action: str, seconds: float) -> Answer:
-        """Hold an action for a time; see `hold`.
+        """Hold an action for a time: the robot does it, is taught it on the way, and then drives on by its RLAs.
 
         Returns:
             Answer to the release, with the number of lessons; the refusal of a hold that ended before its time.
+
+        Raises:
+            NoAnswerError: The release is not answered.
+            WireError: The name cannot be sent.
         """
         async with self.hold(action) as handle:
             await handle.wait(seconds)
@@ -227,15 +259,18 @@ class TeacherClient(ObserverClient):
     # Goals
 
     async def pursue(self, behaviour: str) -> Answer:
-        """Select which of the task's behaviours the robot follows and is taught."""
+        """Select which of the task's behaviours the robot follows and is taught. Raises NoAnswerError."""
         return await self._move(behaviour, requests.PursueRequest, behaviour=behaviour)
 
     async def seek(self, name: str) -> Answer:
-        """Go to a named situation; the robot plans the way, and reports if there is none."""
+        """Go to a named situation; the robot plans the way. Raises NoAnswerError.
+
+        Without a way it stands and says so in its state.
+        """
         return await self._move(name, requests.SeekRequest, name=name)
 
     async def seek_rla(self, rla: int) -> Answer:
-        """Go to the situation that an RLA of the mid level knows."""
+        """Go to the situation that an RLA of the mid level knows; `rla` is its id. Raises NoAnswerError."""
         return await self._move(f"RLA {rla}", requests.SeekRlaRequest, rla_id=rla)
 
     async def seek_like(self, features: Mapping[str, float], tolerance: float) -> Answer:
@@ -244,31 +279,37 @@ class TeacherClient(ObserverClient):
         Args:
             features: Values by the name of the feature, in its unit.
             tolerance: Largest difference of each value, in the feature's unit (m, rad, counts or 0 to 1).
+
+        Raises:
+            NoAnswerError: The robot does not answer.
         """
         return await self._move(
             "a goal", requests.SeekLikeRequest, features=tuple(features.items()), tolerance=tolerance
         )
 
     async def stop_seeking(self) -> Answer:
-        """Drop the goal; the mid level commands as before."""
+        """Drop the goal; the mid level commands by its nearest RLA again. Raises NoAnswerError."""
         return await self._move("no goal", requests.SeekRequest, name=None)
 
     async def set_location(self, name: str) -> Answer:
-        """Tell the robot that it was put down at a named situation."""
+        """Tell the robot that it was put down at a named situation. Raises NoAnswerError."""
         return await self._command(requests.SetLocationRequest, name=name)
 
     # Session
 
     async def begin_session(self, name: str) -> Answer:
-        """Begin a session: the teaching clock runs."""
+        """Begin a session: the teaching clock runs. Raises NoAnswerError."""
         return await self._command(requests.SessionRequest, name=name)
 
     async def end_session(self) -> Answer:
-        """End the session: the teaching clock stops."""
+        """End the session: the teaching clock stops. Raises NoAnswerError."""
         return await self._command(requests.SessionRequest, name=None)
 
     async def take(self) -> Answer:
-        """Become the robot's teacher. On return the robot knows that its teacher is there."""
+        """Become the robot's teacher. On return the robot knows that its teacher is there.
+
+        Raises NoAnswerError.
+        """
         answer = await self._move("take", requests.TakeRequest)
         if answer.accepted:
             with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
@@ -279,39 +320,54 @@ class TeacherClient(ObserverClient):
         return answer
 
     async def hand_over(self, to: str | None = None) -> Answer:
-        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot."""
+        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot.
+
+        Raises NoAnswerError.
+        """
         return await self._command(requests.HandOverRequest, to=to)
 
     async def set_phase(self, phase: Phase) -> Answer:
-        """Choose the training phase. Phase 5 drives without a teacher, so a stop ends that command."""
+        """Choose the training phase. Phase 5 drives without a teacher, so a stop ends that command.
+
+        Raises NoAnswerError.
+        """
         if phase is Phase.AUTONOMOUS:
             return await self._move("phase 5", requests.PhaseRequest, phase=phase)
         return await self._command(requests.PhaseRequest, phase=phase)
 
     async def save(self, label: str = "") -> Answer:
-        """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`."""
+        """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`.
+
+        `label` becomes part of the name. Raises NoAnswerError.
+        """
         return await self._command(requests.SaveRequest, label=label)
 
     async def export(self, form: str = requests.TABLE) -> Answer:
-        """Write the RLAs as a table on the robot, or with PACKAGE one file to give away; answered like `save`."""
+        """Write the RLAs as a table on the robot, or with PACKAGE one file to give away.
+
+        `extra` of the answer holds the file's `name` and `sha256`. Raises NoAnswerError.
+        """
         return await self._command(requests.ExportRequest, form=form)
 
     async def examine(self) -> Answer:
-        """Begin an exam of a copy of the present knowledge, of a simulated robot only; see `exam`."""
+        """Begin an exam of a copy of the present knowledge, of a simulated robot only; `exam` tells its status.
+
+        Raises NoAnswerError.
+        """
         return await self._command(requests.ExamRequest)
 
     # Simulation
 
     async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
-        """Shift a wall or an obstacle."""
+        """Shift a named wall or obstacle of the simulated world by (dx_m, dy_m), in m. Raises NoAnswerError."""
         return await self._command(requests.MoveWallRequest, name=name, dx_m=dx_m, dy_m=dy_m)
 
     async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
-        """Put the robot down elsewhere."""
+        """Put the simulated robot, standing, at a pose in m and rad. Raises NoAnswerError."""
         return await self._command(requests.PlaceRequest, x_m=x_m, y_m=y_m, heading_rad=heading_rad)
 
     async def put_back(self) -> Answer:
-        """Put the robot down at the start of its run."""
+        """Put the simulated robot, standing, at the start of its run. Raises NoAnswerError."""
         return await self._command(requests.BackToStartRequest)
 
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
@@ -321,17 +377,23 @@ class TeacherClient(ObserverClient):
             world: World by name. None: the present one.
             task: Task by name. None: the present one.
             fresh: Begin with an empty knowledge file; the present file is kept under another name.
+
+        Raises:
+            NoAnswerError: The robot does not answer.
         """
         return await self._command(requests.NextRunRequest, world=world, task=task, fresh=fresh)
 
     async def set_speed(self, times: int) -> Answer:
-        """Set the speed of a simulated robot's time, 1 to 10 times real time; a slow machine reaches less."""
+        """Set the speed of a simulated robot's time, 1 to 10 times real time; a slow machine reaches less.
+
+        Raises NoAnswerError.
+        """
         return await self._command(requests.SpeedRequest, times=times)
 
     async def load(self, content: bytes) -> Answer:
         """Upload knowledge at up to 100 kB/s and begin the next run with it.
 
-        `content` is an archive of `export` or a knowledge file.
+        `content` is an archive of `export` or a knowledge file. Raises NoAnswerError.
         """
         upload = secrets.token_bytes(UPLOAD_ID_BYTES)
         try:
@@ -341,7 +403,10 @@ class TeacherClient(ObserverClient):
         return await self.load_upload(upload, hashlib.sha256(content).digest())
 
     async def upload(self, upload: bytes, content: bytes) -> None:
-        """Upload a file into the robot's memory under the random id `upload`. Raises RefusedError, NoAnswerError."""
+        """Upload a file into the robot's memory under the random id `upload`, for `load_upload`.
+
+        Raises RefusedError if the robot refuses a part, NoAnswerError.
+        """
         sender = self._open.sender
         state = await sender.state()
         for offset in range(0, len(content), UPLOAD_PART_BYTES):
@@ -354,7 +419,7 @@ class TeacherClient(ObserverClient):
             await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))
 
     async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
-        """Begin the next run with an uploaded file."""
+        """Begin the next run with an uploaded file; `sha256` is the hash of its content. Raises NoAnswerError."""
         return await self._command(requests.LoadRequest, upload=upload, sha256=sha256)
 
     # Sending

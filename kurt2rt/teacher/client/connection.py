@@ -35,7 +35,7 @@ class Connection:
     drive: ManualDrive
 
     async def end_press(self, press_id: int | None) -> Answer | None:
-        """End a press with a stop that ends no later press; return None if that press is not on.
+        """End a press with a stop that ends no later press, and return the answer; None if that press is not on.
 
         Raises NoAnswerError.
         """
@@ -76,7 +76,7 @@ async def open_connection(
 ) -> AsyncIterator[Connection]:
     """Open a pairing and subscribe to its robot, which need not be there yet; at the end stop a press that is on.
 
-    Raises CredentialsError.
+    Raises ChannelError if no socket can be opened, and CredentialsError if the pairing is the cause.
     """
     device = await anyio.to_thread.run_sync(_read_device, folder)
     requests = await open_requests(folder, host or device.host, port or device.port)

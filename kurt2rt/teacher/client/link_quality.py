@@ -37,7 +37,7 @@ class LinkMeter:
         self._answered.append(False)
 
     def link(self, states_per_s: float) -> LinkQuality:
-        """Return the measurement so far."""
+        """Return the quality of the link so far, with `states_per_s`, the states that came in the last second."""
         return LinkQuality(
             rtt_ms=statistics.median(self._round_trips_s) * 1000.0 if self._round_trips_s else None,
             answered=sum(self._answered) / len(self._answered) if self._answered else None,

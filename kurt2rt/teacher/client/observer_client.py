@@ -127,37 +127,40 @@ class ObserverClient:
     # Queries
 
     async def hello(self) -> Hello:
-        """Return the robot's description: its task, actions, sensors and size."""
+        """Return the robot's description: its task, actions, sensors and size. Raises NoAnswerError."""
         hello = await self._open.sender.query(requests.HelloRequest(), hello_of)
         self._stream.on_answer(hello.boot, hello.tick)
         return hello
 
     async def health(self) -> HealthReport | None:
-        """Return the health of the robot's program; None in its first second."""
+        """Return the health of the robot's program; None in its first second. Raises NoAnswerError."""
         return await self._open.sender.query(
             requests.HealthRequest(), lambda body: None if body.get("health") is None else report_of(body["health"])
         )
 
     async def why(self) -> DecisionFacts | None:
-        """Return the facts behind the robot's newest decision; None before its first tick."""
+        """Return the facts behind the robot's newest decision; None before its first tick. Raises NoAnswerError."""
         return await self._open.sender.query(
             requests.WhyRequest(), lambda body: None if body.get("why") is None else facts_of_plain(body["why"])
         )
 
     async def world(self) -> WorldView | None:
-        """Return the simulated world; None for a real robot."""
+        """Return the simulated world; None for a real robot. Raises NoAnswerError."""
         return await self._open.sender.query_simulated(requests.WorldRequest(), world_of)
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
-        """Return the newest lessons, newest first; `count` is at most 20."""
+        """Return the newest lessons, newest first; `count` is at most 20. Raises NoAnswerError."""
         return await self._open.sender.query(requests.LessonsRequest(count), lesson_lines_of)
 
     async def situations(self) -> tuple[str, ...]:
-        """Return the names of the situations that have one."""
+        """Return the names that situations of the mid level have, sorted. Raises NoAnswerError."""
         return await self._open.sender.query(requests.SituationsRequest(), situations_of)
 
     async def exam(self) -> ExamStatus | None:
-        """Return the status of the newest exam; None for a robot that is not simulated in its own program."""
+        """Return the status of the newest exam; None for a robot that is not simulated in its own program.
+
+        Raises NoAnswerError.
+        """
         return await self._open.sender.query_simulated(
             requests.ExamStatusRequest(), lambda body: EXAM.read(body.get("exam"))
         )
@@ -176,7 +179,10 @@ class ObserverClient:
                 return
 
     async def simulation(self) -> SimulationView | None:
-        """Return the simulated world and task; None for a robot that is not simulated in its own program."""
+        """Return the simulated world and task, and those to choose from. Raises NoAnswerError.
+
+        Returns None for a robot that is not simulated in its own program.
+        """
         return await self._open.sender.query_simulated(
             requests.SimulationRequest(), lambda body: SIMULATION.read(body.get("simulation"))
         )

@@ -42,7 +42,15 @@ class RequestSender:
         return self._requests.trouble
 
     async def command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
-        """Send a command for the newest state; `moves` tells that it may set the robot in motion."""
+        """Send a command for the newest state; `moves` tells that it may set the robot in motion.
+
+        Args:
+            kind: class of the request.
+            fields: its fields, except boot, command id and seen tick.
+
+        Raises:
+            NoAnswerError: no state or no answer comes in time.
+        """
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
         state = await self.state()
         seen = self._stream.displayed_tick if moves else self._stream.newest_tick
@@ -58,7 +66,10 @@ class RequestSender:
         return state
 
     async def send(self, request: Request, patience_s: float | None = None) -> Answer:
-        """Send a request until it is answered, for `patience_s` seconds (None: the usual time; inf: without end)."""
+        """Send a request until it is answered, for `patience_s` seconds (None: the usual time; inf: without end).
+
+        A request that cannot be encoded is answered by a local refusal. Raises NoAnswerError.
+        """
         try:
             payload = encode_request(request)
         except WireError as error:
@@ -76,17 +87,26 @@ class RequestSender:
         return answer
 
     async def query(self, request: Request, read: Callable[[dict[str, Any]], _Read]) -> _Read:
-        """Send a query and return what `read` makes of the answer's body; `read` may raise WireError."""
+        """Send a query and return the result of `read` for the answer's body; `read` may raise WireError.
+
+        Raises NoAnswerError, also for an answer that cannot be read.
+        """
         return await self._query(request, lambda response: read(_body_of(response)))
 
     async def query_simulated(self, request: Request, read: Callable[[dict[str, Any]], _Read]) -> _Read | None:
-        """Send a query that only a simulated robot answers; return None for any other robot."""
+        """Send a query that only a simulated robot answers; return None for any other robot.
+
+        `read` returns the result from the answer's body and may raise WireError. Raises NoAnswerError.
+        """
         return await self._query(
             request, lambda response: None if response.code.startswith("4.04") else read(_body_of(response))
         )
 
     async def file_part(self, request: Request) -> FilePart:
-        """Return one part of a file of the robot. Raises RefusedError if the robot refuses it."""
+        """Return one part of a file of the robot.
+
+        Raises RefusedError if the robot refuses it, NoAnswerError.
+        """
         return await self._query(request, _file_part_in)
 
     async def _query(self, request: Request, read: Callable[[Response], _Read]) -> _Read:

@@ -50,7 +50,10 @@ class StopSender:
         return answer
 
     async def move(self, name: str, send: Callable[[], Awaitable[Answer]]) -> Answer:
-        """Return the answer to a command that may set the robot in motion, or its refusal if a stop came first."""
+        """Return the answer to a command that may set the robot in motion, or its refusal if a stop came first.
+
+        `name`: of the command, for the refusal. Raises the errors of `send`.
+        """
         with anyio.CancelScope() as scope:
             self._moving.add(scope)
             try:

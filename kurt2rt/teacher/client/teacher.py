@@ -134,7 +134,7 @@ class Teacher:
 
     @property
     def state(self) -> State:
-        """The newest state of the robot, which sends 20 a second."""
+        """Newest state of the robot, which sends 20 a second."""
         return self._call(self._newest)
 
     @property
@@ -170,7 +170,12 @@ class Teacher:
         return state
 
     def wait_for_question(self, timeout_s: float = 60.0) -> State:
-        """Return the next state in which an answer lets the robot drive on. Raises as `wait_until` does."""
+        """Return the next state in which an answer lets the robot drive on.
+
+        Raises:
+            TimeoutError: No such state within `timeout_s`.
+            NoAnswerError: No state came for `patience_s`.
+        """
         return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_resume, timeout_s)
 
     hello = _blocking(TeacherClient.hello)

@@ -73,7 +73,7 @@ class Exchange:
         self._stop: Callable[[], object] | None = None
 
     def end(self) -> None:
-        """End it and drop later answers. Ending twice does nothing."""
+        """End the exchange and drop later answers. Ending twice does nothing."""
         self.ended = True
         stop, self._stop = self._stop, None
         if stop is not None:

@@ -44,7 +44,7 @@ class Access:
 
     @classmethod
     def without_device(cls, names: Collection[str]) -> Self:
-        """Return rules that refuse all visitors; `names` as for a device."""
+        """Return rules that refuse all visitors; `names` are this machine's names in Host headers."""
         return cls("", secrets.token_urlsafe(), names, address_command="kurt2rt run --phone")
 
     def accepts_token(self, token: str) -> bool:

@@ -65,7 +65,7 @@ class Bridge:
         self._slow = SlowState(robot, self._send_to_all, lambda: self._answered)
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
-        """Serve until cancelled."""
+        """Follow the robot's states and poll the pages until cancelled; call it before pages connect."""
         async with anyio.create_task_group() as tasks:
             self._tasks = tasks
             self._slow.start(tasks)
@@ -74,7 +74,7 @@ class Bridge:
             task_status.started()
 
     async def end(self) -> None:
-        """End all presses before the program ends. Raises NoAnswerError."""
+        """End all presses before the program ends. Raises NoAnswerError if the robot does not answer the stop."""
         self._robot.watching = False
         held = [each for each in self._connections.values() if each.deadman.held]
         for connection in held:
@@ -96,7 +96,7 @@ class Bridge:
             connection.wake()
 
     def connect(self) -> PageConnection:
-        """Add a page that was opened."""
+        """Add a page that was opened; return its connection, from which the server sends."""
         self._opened += 1
         connection = PageConnection(self._opened)
         before = self._lease.holder
@@ -116,7 +116,7 @@ class Bridge:
         del self._connections[connection.number]
 
     def on_message(self, connection: PageConnection, message: PageMessage) -> None:
-        """Handle a message of a page."""
+        """Handle a parsed message of a page: heartbeats, presses, stops and commands. Never waits."""
         match message:
             case PageHeartbeat():
                 self._on_heartbeat(connection, message)

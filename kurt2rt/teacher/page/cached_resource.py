@@ -32,7 +32,7 @@ class CachedResource:
             self._due.set()
 
     async def run(self) -> None:
-        """Keep the copy up to date until cancelled."""
+        """Fetch the resource after each `refresh` to another version, until cancelled; retry without an answer."""
         while True:
             await self._due.wait()
             self._due = anyio.Event()

@@ -27,7 +27,7 @@ class Pairings:
 
 
 def local_devices(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
-    """Return the devices whose pages this machine can serve, and the faults of others in a line.
+    """Return the devices whose pages this machine can serve, and the faults of others in a line (or empty).
 
     This machine's own comes first, then those that were paired and whose folder was not moved away, the newest first.
     Raises CredentialsError if the folder of pairings cannot be read.

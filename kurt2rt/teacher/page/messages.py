@@ -95,7 +95,7 @@ _TYPES: Mapping[str, type[PageHeartbeat | Hidden | Release | StopNow | Why]] = {
 
 
 def parse(text: str) -> PageMessage:
-    """Parse one message of a page. Raises WireError."""
+    """Parse one JSON message of a page. Raises WireError for anything but a known message with valid fields."""
     if len(text) > LONGEST_MESSAGE:
         raise WireError(f"message: too long (got {len(text)} characters, at most {LONGEST_MESSAGE})")
     try:

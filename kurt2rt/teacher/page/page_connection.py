@@ -46,11 +46,11 @@ class PageConnection:
         self.wake()
 
     def wake(self) -> None:
-        """Wake the sender."""
+        """Wake the task that waits in `wait`, to look for messages to send."""
         self._wakeup.set()
 
     async def wait(self) -> None:
-        """Wait until there may be something to send."""
+        """Wait until a message or a state was queued, or `wake` was called; then `pop` may have one."""
         await self._wakeup.wait()
         self._wakeup = anyio.Event()
 

@@ -21,12 +21,12 @@ class PublicAddress:
 
     @property
     def origin(self) -> str:
-        """Value of a browser's Origin header."""
+        """Value of a browser's Origin header, such as https://robot.example."""
         return f"https://{self.place}"
 
 
 def public_address(text: str) -> PublicAddress:
-    """Parse an address such as https://robot.example. Raises PageError."""
+    """Parse an address such as https://robot.example. Raises PageError for any other form."""
     wrong = PageError(f"--public-address {text!r}: give https:// and a name, with a port if need be, and nothing more")
     try:
         parts = urlsplit(text.strip().lower())

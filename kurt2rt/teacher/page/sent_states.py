@@ -41,7 +41,7 @@ class SentStates:
         return self._newest
 
     def acknowledge(self, number: int) -> None:
-        """Note that the page shows a state."""
+        """Note that the page shows the state of a number."""
         if self._acknowledged < number <= self._newest:
             self._acknowledged = number
 

@@ -56,7 +56,7 @@ class SlowState:
         }
 
     def start(self, tasks: anyio.abc.TaskGroup) -> None:
-        """Start to fetch, for as long as the task group lives."""
+        """Start to fetch all resources in tasks of the group, which must outlive this object."""
         for resource in self._resources.values():
             tasks.start_soon(resource.run)
         self._resources["hello"].refresh(b"")

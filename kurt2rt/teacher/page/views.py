@@ -106,12 +106,12 @@ def hello_view(hello: Hello) -> dict[str, Any]:
 
 
 def world_view(world: WorldView) -> dict[str, Any]:
-    """Return the message with the simulated world."""
+    """Return the message with the simulated world from above."""
     return {"kind": "world", **plain(world)}
 
 
 def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
-    """Return the message with the newest lessons."""
+    """Return the message with the newest lessons, newest first."""
     return {"kind": "lessons", "lessons": [each._asdict() for each in lessons]}
 
 

@@ -36,7 +36,7 @@ class RewardSource(Protocol):
     """Source of a teacher's signals."""
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
-        """Return value and tick of a signal, if there is one; call this on every tick."""
+        """Return the value, -1, 0 or +1, and the tick of a signal; None without one. Call this on every tick."""
         ...
 
 
@@ -50,7 +50,11 @@ class JudgeReward:
         self._bad = 0
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
-        """Return the judge's value of this tick."""
+        """Return the judge's value, -1, 0 or +1, and this tick; None if there is no signal.
+
+        There is none while no action drives, and while a value of -1 has not lasted for the patience. Call this on
+        every tick.
+        """
         if record.appraisal_features is None or not record.decision.driving:
             self._bad = 0
             return None
@@ -66,7 +70,10 @@ class UnknownPenalty:
         self._drove = False
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
-        """Return -1 for the tick before the robot began to ask."""
+        """Return -1 and the tick before this one, if the robot drove there and asks now; otherwise None.
+
+        Call this on every tick.
+        """
         drove, self._drove = self._drove, record.decision.driving
         asking = record.decision.cause is DecisionCause.UNKNOWN and record.decision.asks_at == BASIC
         return (-1, record.tick - 1) if asking and drove else None
@@ -188,7 +195,7 @@ class ScriptedAppraiser:
         return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._demonstrated), ticks)]
 
     def on_tick(self, record: TickRecord) -> list[Command]:
-        """Return the teacher's commands in response to one tick; may be empty."""
+        """Return the teacher's commands in response to one tick, in order; may be empty. Call it on every tick."""
         if self.phase is Phase.AUTONOMOUS:
             return []
         commands: list[Command] = []

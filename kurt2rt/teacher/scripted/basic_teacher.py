@@ -69,7 +69,7 @@ class BasicTeacher(ABC):
 
     @abstractmethod
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
-        """Take a view that is `ticks` later than the last one; return the teacher's command, if any."""
+        """Process a view that is `ticks` later than the last one; return the teacher's command, None without one."""
 
     def begin_phase(self, phase: Phase) -> Command:
         """Enter a phase; return the command that the robot needs for it."""

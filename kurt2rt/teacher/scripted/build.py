@@ -22,7 +22,18 @@ from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
 def build_teacher(
     task: TaskSettings, robot: RobotSettings, actions: Sequence[str], *, seed: int, session: str
 ) -> BasicTeacher:
-    """Build the scripted teacher of a task, for a robot with these actions; `session` as in ScriptedTeacher."""
+    """Build the scripted teacher of a task, for a robot with these actions.
+
+    Args:
+        task: settings of the task and its teacher.
+        robot: settings of the robot.
+        actions: names of the robot's actions.
+        seed: random choices of the teacher.
+        session: prefix of its command ids.
+
+    Raises:
+        hal.settings.SettingsError: the repertoire of the task is missing or invalid.
+    """
     profile, period_s = task.teaching.profile, robot.can.cycle_s
     policy = task.policy.build(robot.infrared)
     person = profile.person

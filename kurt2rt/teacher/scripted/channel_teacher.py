@@ -35,9 +35,17 @@ async def teach_by_script(
     The behaviours of the task are selected in turn, and a robot without progress is put elsewhere. A robot that a
     person stopped stays where it is.
 
+    Args:
+        robot: connected client.
+        settings: of the robot.
+        task: to teach; the robot must run it.
+        say: gets lines for the user.
+        seed: random choices of the teacher.
+
     Raises:
         NoAnswerError: the robot is not there at the beginning.
         RefusedError: it is a real robot, runs another task, or refuses the teacher.
+        SettingsError: the repertoire of the task is missing or invalid.
     """
     if task.mid is not None:
         raise RefusedError(mid_level_refusal(task))

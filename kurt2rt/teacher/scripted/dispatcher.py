@@ -44,7 +44,10 @@ class ScriptedDispatcher:
         """Number of junctions that the robot did not notice."""
 
     def on_tick(self, record: TickRecord, ahead: WayAhead) -> Command | None:
-        """Return the teacher's command in response to one tick, if any."""
+        """Return the teacher's command in response to one tick, None without one.
+
+        `ahead`: position of the robot on its route.
+        """
         mid = record.decision.mid
         assert mid is not None
         self._track_junctions(ahead, noticed=mid.event is not None)

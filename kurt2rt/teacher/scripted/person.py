@@ -129,7 +129,10 @@ class ScriptedPerson(BasicTeacher):
         self._correction: _PlannedPress | None = None
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
-        """Take a view that is `ticks` later than the last one; return the command that reaches the robot, if any."""
+        """Process a view that is `ticks` later than the last one; return the command that reaches the robot.
+
+        None if none does.
+        """
         self._now += ticks
         self._presses.now = self._now
         if self._now >= self._next_picture:

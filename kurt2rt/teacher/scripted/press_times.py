@@ -42,19 +42,19 @@ class FixedTimes:
         self._patience_ticks = round(settings.patience_s / period_s)
 
     def question_ticks(self) -> int:
-        """Return the reaction time."""
+        """Return the reaction time in ticks."""
         return self._reaction_ticks
 
     def mistake_ticks(self) -> int:
-        """Return the patience."""
+        """Return the patience in ticks."""
         return self._patience_ticks
 
     def reward_ticks(self) -> int:
-        """Return the reaction time."""
+        """Return the reaction time in ticks."""
         return self._reaction_ticks
 
     def allows_press(self) -> bool:
-        """Return True."""
+        """Return True: there is no limit on presses."""
         return True
 
 
@@ -86,15 +86,15 @@ class HumanTimes:
         self._question, self._mistake, self._reward = sampler("question"), sampler("mistake"), sampler("reward")
 
     def question_ticks(self) -> int:
-        """Return a drawn reaction to a question."""
+        """Return a drawn reaction to a question, in ticks."""
         return self._question.draw(self._presses.now) + self._link_ticks
 
     def mistake_ticks(self) -> int:
-        """Return the time to notice a mistake, and a drawn reaction to it."""
+        """Return the time to notice a mistake, and a drawn reaction to it, together in ticks."""
         return self._notice_ticks + self._mistake.draw(self._presses.now) + self._link_ticks
 
     def reward_ticks(self) -> int:
-        """Return a drawn delay of a reward."""
+        """Return a drawn delay of a reward, in ticks."""
         return self._reward.draw(self._presses.now) + self._link_ticks
 
     def allows_press(self) -> bool:

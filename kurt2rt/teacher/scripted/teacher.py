@@ -62,7 +62,7 @@ class ScriptedTeacher(BasicTeacher):
         self._replaced: Counter[int] = Counter()
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
-        """Take a view that is `ticks` later than the last one; return the teacher's command, if any."""
+        """Process a view that is `ticks` later than the last one; return the teacher's command, None without one."""
         if view.behaviour != self._behaviour:  # questions and errors of the last behaviour are over
             self._behaviour = view.behaviour
             self._ticks_asked = self._ticks_wrong = 0

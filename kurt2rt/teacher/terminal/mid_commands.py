@@ -15,7 +15,10 @@ _MOST_DIGITS = 15
 def mid_command(
     robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None
 ) -> Awaitable[Answer] | None:
-    """Return the command of the mid level in a line, if it is one; `state` is the newest one when it was typed."""
+    """Return the sending of a mid-level command in a line of `words`; None if the line is no such command.
+
+    `state`: the newest one when the line was typed. Awaiting the result raises NoAnswerError.
+    """
     command = None if hello.mid is None else _lesson(robot, hello, words, state)
     return _goal(robot, words, state) if command is None and hello.seeks else command
 

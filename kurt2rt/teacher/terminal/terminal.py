@@ -78,7 +78,10 @@ class TerminalTeacher:
         self._last_stop.set()
 
     async def teach(self) -> None:
-        """Teach until the lines end or one of them is `quit`, then stop the robot. It may restart meanwhile."""
+        """Teach until the lines end or one of them is `quit`, then stop the robot. It may restart meanwhile.
+
+        Raises NoAnswerError if the robot does not answer the last stop.
+        """
         async with anyio.create_task_group() as tasks:
             typed, taken = anyio.create_memory_object_stream[_Line](math.inf)
             with typed, taken:

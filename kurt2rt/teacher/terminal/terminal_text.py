@@ -135,7 +135,7 @@ def format_mid_situation(mid: MidState, introduced: MidIntroduction) -> str:
 
 
 def format_surprise(surprise: SurpriseState) -> str:
-    """Return a surprise in words."""
+    """Return a line about a surprise: the RLA, its follow-up, and how far it was from its expectation."""
     after, came = (rla_title(each, "", surprise.level) for each in (surprise.rla, surprise.follow_up))
     new = ", which had never followed it" if surprise.new else ""
     return f"surprise: {surprise.times:.1f} times as far off as usual after {after}; {came} took over{new}"
@@ -191,7 +191,7 @@ def format_role(state: State) -> str:
 
 
 def format_critic_change(lesson: LessonLine | None) -> str:
-    """Return the last change of the critic."""
+    """Return a line about the last change of the critic; `lesson` is None if it is not known."""
     if lesson is None:
         return "critic: changed nothing lately"
     return f"critic: changed last: {lesson.text}{', undone' if lesson.undone else ''}"
