@@ -86,7 +86,7 @@ def test_taught_by_changes_the_teacher_alone() -> None:
 
 
 def test_load_teacher_unknown_name_lists_the_shipped_ones() -> None:
-    with pytest.raises(SettingsError, match=r"no such file in teachers.*did you mean ordinary"):
+    with pytest.raises(SettingsError, match=r"ordinari: .*\bordinary\b"):
         load_teacher("ordinari")
 
 

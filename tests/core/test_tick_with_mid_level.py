@@ -301,7 +301,7 @@ def test_mid_rla_is_replaced_deleted_and_undone(town: Town) -> None:
     record = town.run(DeleteRla("d", "Ann", 4))
     assert told(record) == Outcome.of(ResultCode.RLA_DELETED, rla=4, level=MID)
     assert (record.decision.wheel_speeds, record.decision.asks_at) == (STANDSTILL, MID)
-    assert told(town.run(Undo("u-1", "Ann"))) == Outcome.of(ResultCode.LESSON_UNDONE, says="mid-level RLA 4 deleted")
+    assert told(town.run(Undo("u-1", "Ann"))).code is ResultCode.LESSON_UNDONE
     assert town.run().behaviour == "turn_right"
     town.run(Undo("u-2", "Ann"))
     assert town.run().behaviour == "straight_on"

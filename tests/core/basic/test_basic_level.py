@@ -144,7 +144,7 @@ def test_neighbour_with_equal_action_continues_it() -> None:
 def test_rla_with_action_outside_the_repertoire_is_refused() -> None:
     system = RlaSystem(1, 10.0)
     system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
-    with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
+    with pytest.raises(UnknownActionError, match=r"RLA 2 .*\bfly\b.*: a, b$"):
         BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, ActiveBehaviour())
 
 
@@ -195,15 +195,14 @@ def test_to_want_the_same_again_does_not_cut_an_action_short() -> None:
         (
             (A_AT_0,),
             TURNS,
-            "RLA 1 belongs to a behaviour without a name, the only one of its task, and this task teaches straight_on, "
-            "turn_left; give the task that this knowledge was taught with$",
+            "RLA 1 .* straight_on, turn_left;",
         ),
         (
             (STRAIGHT_AT_0, LEFT_AT_1),
             ("straight_on",),
-            "RLA 2 belongs to the behaviour turn_left, and this task teaches straight_on; give the task",
+            "RLA 2 .* turn_left, .* straight_on;",
         ),
-        ((LEFT_AT_1,), ("",), "RLA 2 belongs to the behaviour turn_left, and this task teaches one without a name; "),
+        ((LEFT_AT_1,), ("",), "RLA 2 .* turn_left, .* without a name;"),
     ],
 )
 def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(

@@ -68,13 +68,12 @@ def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> Non
 
 
 def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
-    told = r"\(patrol\): the task patrol has no mid level"
-    with pytest.raises(SettingsError, match=told):
+    with pytest.raises(SettingsError, match=r"\(patrol\): .*\bmid level"):
         repertoire(tmp_path, patrol(tmp_path, mid=None))
 
 
 def test_task_with_places_is_refused_as_an_action(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="mid level of the task patrol goes by places"):
+    with pytest.raises(SettingsError, match=r"\bpatrol\b.*\bplaces\b"):
         repertoire(tmp_path, patrol(tmp_path, mid="places"))
 
 
@@ -88,5 +87,5 @@ def test_mid_level_knowledge_of_other_junctions_is_refused(tmp_path: Path) -> No
     content["mid"] = mid
     (tmp_path / "patrol.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
     assert load_task(str(tmp_path / "patrol.yaml")) != task
-    with pytest.raises(SettingsError, match="its level mid was taught with other features"):
+    with pytest.raises(SettingsError, match="level mid "):
         repertoire(tmp_path, action)

@@ -119,23 +119,23 @@ def test_a_repertoire_that_is_a_part_of_itself_is_refused(folder: Path) -> None:
     itself = f"kind: taught, name: again, task: {folder / 'loop.yaml'}, knowledge: loop.knowledge"
     task = with_repertoire(WALL_FOLLOWING, folder, itself).model_copy(update={"name": "loop"})
     (folder / "loop.yaml").write_text(task.model_dump_json(exclude_unset=True))
-    with pytest.raises(SettingsError, match=r"a part of itself: repertoire\.yaml -> repertoire\.yaml; give that task "):
+    with pytest.raises(SettingsError, match=r"repertoire\.yaml -> repertoire\.yaml;"):
         repertoire(folder, itself)
 
 
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (("taught.knowledge", "gone.knowledge"), r"gone\.knowledge: there is no such file; teach the task wall_foll"),
-        (("taught.knowledge", "other.knowledge"), r"other\.knowledge: taught with other features: .*history"),
-        (("taught.knowledge", "repertoire.yaml"), r"repertoire\.yaml: .*no knowledge file|damaged"),
-        (("task: wall_following", "task: fleeing"), r"taught for the task 'wall_following', not for 'fleeing'"),
-        (("task: wall_following", "task: flying"), r"flying: no such file in tasks; give a path .* or one of: "),
+        (("taught.knowledge", "gone.knowledge"), r"gone\.knowledge: .* wall_following"),
+        (("taught.knowledge", "other.knowledge"), r"other\.knowledge: .*history"),
+        (("taught.knowledge", "repertoire.yaml"), r"follow_wall\): .*repertoire\.yaml: "),
+        (("task: wall_following", "task: fleeing"), r"'wall_following', .*'fleeing'"),
+        (("task: wall_following", "task: flying"), r"flying: .*\bwall_following\b"),
         (
             ("name: follow_wall", "name: f, behaviour: turn"),
-            "no taught behaviour 'turn'; this task has: one, without a name",
+            "'turn'; .* without a name",
         ),
-        (("task: wall_following", "task: streets"), "no taught behaviour ''; this task has: straight_on, turn_left, "),
+        (("task: wall_following", "task: streets"), "''; .*: straight_on, turn_left, "),
     ],
 )
 def test_taught_action_that_cannot_act_is_refused(change: tuple[str, str], told: str, folder: Path) -> None:
@@ -149,13 +149,11 @@ def test_taught_action_that_cannot_act_is_refused(change: tuple[str, str], told:
 
 def test_knowledge_of_an_action_that_its_task_lacks_is_refused(tmp_path: Path) -> None:
     keep(tmp_path / "taught.knowledge", WALL_FOLLOWING, created(1, condition_at(WALL), "fly"))
-    with pytest.raises(SettingsError, match=r"\(follow_wall\): RLA 1 has the action fly, which the repertoire lacks"):
+    with pytest.raises(SettingsError, match=r"\(follow_wall\): RLA 1 .*\bfly\b"):
         repertoire(tmp_path, FOLLOW)
 
 
 def test_repertoire_without_rla_systems_refuses_taught_actions(folder: Path) -> None:
     path = with_repertoire(WALL_FOLLOWING, folder, FOLLOW).repertoire
-    with pytest.raises(
-        SettingsError, match=r"actions\.0 \(follow_wall\): is of kind taught, and nothing taught can act"
-    ):
+    with pytest.raises(SettingsError, match=r"actions\.0 \(follow_wall\): .*\btaught\b"):
         load_repertoire(path, ROBOT)

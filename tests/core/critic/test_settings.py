@@ -35,9 +35,7 @@ def test_builtin_critics_differ_in_weights_only(name: str) -> None:
 
 
 def test_load_critic_unknown_name_is_refused() -> None:
-    with pytest.raises(
-        SettingsError, match=r"no such file in critics; give a path to a \.yaml file or one of: basic, eight"
-    ):
+    with pytest.raises(SettingsError, match=r"stern: .* critics.*: basic, eight"):
         load_critic("stern")
 
 
@@ -54,10 +52,10 @@ def test_feature_hash_depends_on_features_only() -> None:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (changed("learning", weights={"left_m": 0.0}), "every circumstance weighs 0; give one more"),
-        (changed("agreement", least=31), r"least is 31, allowed is at most window \(30\)"),
-        (CONTENT | {"appraisals": CONTENT["appraisals"][:2]}, "one of value -1 and one of value 1"),
-        (CONTENT | {"appraisals": CONTENT["appraisals"] * 2}, "bad, good, neutral stands twice"),
+        (changed("learning", weights={"left_m": 0.0}), "weighs 0"),
+        (changed("agreement", least=31), r"\bleast\b.* 31, .*window \(30\)"),
+        (CONTENT | {"appraisals": CONTENT["appraisals"][:2]}, r"-1 .*\b1\b"),
+        (CONTENT | {"appraisals": CONTENT["appraisals"] * 2}, "bad, good, neutral"),
     ],
 )
 def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], told: str) -> None:
@@ -69,7 +67,7 @@ def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
     assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
-    with pytest.raises(SettingsError, match=r"weights.lift_m: no such key; allowed here: left_m, front_m, right_m"):
+    with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):
         load_critic(str(wrong))
 
 
@@ -91,5 +89,5 @@ def test_surprised_feature_needs_its_duration() -> None:
     assert surprised.weight_vector.tolist() == [*shipped.weight_vector.tolist(), 2.0]
     assert surprised.feature_hash != shipped.feature_hash
     del content["perception"]["surprise_held_s"]
-    with pytest.raises(ValueError, match=r"weights\.surprised weighs nothing; say perception\.surprise_held_s, too"):
+    with pytest.raises(ValueError, match=r"weights\.surprised .*perception\.surprise_held_s"):
         CriticSettings.model_validate_json(json.dumps(content))

@@ -120,8 +120,8 @@ def test_detector_tolerates_ten_percent_turn_error() -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"left": ["s1", "s99"]}, "the robot has no sensor s99; allowed: s1, s2"),
-        ({"right": ["s6", "s5"]}, "s6 does not sit ahead of s5; give a side's sensors from front to back"),
+        ({"left": ["s1", "s99"]}, "junctions: .* s99;"),
+        ({"right": ["s6", "s5"]}, "junctions: s6 .*s5;"),
     ],
 )
 def test_detector_unknown_sensors_are_refused(changes: dict[str, object], told: str) -> None:

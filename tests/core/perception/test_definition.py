@@ -69,7 +69,5 @@ def test_definition_names_follow_the_vector() -> None:
 
 
 def test_load_situation_unknown_sensor_is_refused() -> None:
-    with pytest.raises(
-        SettingsError, match=r"basic\.yaml: features: the robot has no sensor s17, s18; allowed: s1, s2"
-    ):
+    with pytest.raises(SettingsError, match=r"basic\.yaml: features: .* s17, s18;"):
         load_situation("basic", ROBOT_SENSORS[:16])

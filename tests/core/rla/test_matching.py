@@ -167,7 +167,7 @@ def test_condition_index_nan_situation_has_nan_distance() -> None:
 
 @pytest.mark.parametrize(
     ("condition", "problem"),
-    [((1.0,), "has 1 values, this system matches 2"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
+    [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
 )
 def test_condition_index_unfit_condition_is_refused(condition: Point, problem: str) -> None:
     index = index_of([(1.0, 2.0)])

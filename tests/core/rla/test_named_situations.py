@@ -4,6 +4,7 @@ import math
 
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.rla.event_error import EventFault
+from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -19,7 +20,7 @@ def test_named_situation_belongs_to_its_level() -> None:
     knows.apply_all([named("door", (1.0, 2.0, 0.0), MID), named("post", (7.0, 8.0))])
     assert knows.named_situations(MID) == {"door": (1.0, 2.0, 0.0)}
     assert knows.named_situations(BASIC) == {"post": (7.0, 8.0)}
-    assert [record.text for record in knows.lessons] == ["situation named: door", "situation named: post"]
+    assert [lesson_stack(record.event) for record in knows.lessons] == [(MID, "door"), (BASIC, "post")]
 
 
 def test_named_situation_newer_one_counts_until_undone() -> None:

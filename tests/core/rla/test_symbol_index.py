@@ -92,7 +92,7 @@ def test_symbol_index_insert_and_remove_keep_order() -> None:
     assert SymbolIndex(2, edits=False).nearest(here) is None
 
 
-@pytest.mark.parametrize(("condition", "told"), [((1.0,), "1 values, this system matches 2"), ((1.0, math.nan), "fin")])
+@pytest.mark.parametrize(("condition", "told"), [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "fin")])
 def test_symbol_index_unfit_condition_is_refused(condition: Symbols, told: str) -> None:
     index = index_of([(1.0, 1.0)])
     with pytest.raises(ValueError, match=told):
@@ -127,7 +127,7 @@ def test_rla_system_symbol_level_takes_all_events() -> None:
     system.apply(undone("deletion-2"))
     assert matched(system, 3.0, 2.0, 1.0, 0.0) == (2, 0.0, True)
     assert system.rlas == ()
-    assert [rla.title for rla in system.rlas_at(MID)] == ["mid-level RLA 1", "mid-level RLA 2"]
+    assert [rla.rla_id for rla in system.rlas_at(MID)] == [1, 2]
 
 
 def test_rla_system_edit_metric_matches_shifted_history() -> None:
@@ -147,5 +147,5 @@ def test_rla_system_changes_count_applied_events() -> None:
 
 def test_candidate_index_symbols_with_weights_are_refused() -> None:
     system = RlaSystem(2, 5.0, others={MID: Space(2, 1.0, np.ones(2), "hamming")})
-    with pytest.raises(ValueError, match="a space of metric hamming takes no weights"):
+    with pytest.raises(ValueError, match=r"hamming .*weights"):
         system.apply(created(1, (1.0, 1.0), level=MID))
