@@ -45,8 +45,9 @@ class InfraredWatch:
         looked_at_s, self._looked_at_s = self._looked_at_s, now_s
         if not driving:
             return ""
+        elapsed_s = max(0.0, now_s - looked_at_s)
         for board in self._boards.values():
-            board.still_s += max(0.0, now_s - looked_at_s)
+            board.still_s += elapsed_s
         for board in self._boards.values():
             if board.still_s >= self._frozen_s:
                 return f"the {board} repeated themselves for {self._frozen_s:g} s; switch the robot off and on"

@@ -43,12 +43,13 @@ class BrokenSensor(NamedTuple):
         return f"{self.label} ({self.name})"
 
 
-TURNS = 4
-"""Each tick looks at every fourth sensor: a sensor measures every 38 ms (docs/the-robot.md#noise-and-timing)."""
+LOOK_TICKS = 5
+"""Ticks between two looks at all sensors: each look meets new measurements, because a sensor measures every 29 to 48 ms
+(docs/the-robot.md#noise-and-timing). A few sensors in each tick would take longer on average: cold caches count more."""
 STUCK_TIMES = 4
-"""Times `frozen_infrared_s`, of driving within STUCK_BAND, until a sensor is stuck: 4 s are 83 measurements or more.
+"""Times `frozen_infrared_s`, of driving within STUCK_BAND, until a sensor is stuck: 4 s are 80 measurements.
 
-A working sensor takes 68 % of its measurements there with nothing in view; healthy drives had at most 1.2 s.
+A working sensor takes 68 % of its measurements there with nothing in view; healthy drives had at most 1.4 s.
 """
 STUCK_BAND = 2
 """Width in counts: a converter's last bit flickers also with a constant voltage."""
@@ -83,7 +84,6 @@ class SensorWatch:
             _SensorState(place, near, lowest, highest, stuck_ticks)
             for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
-        self._by_turn = [self._states[turn::TURNS] for turn in range(TURNS)]
         self._ticks = self._driven = 0
         self._broken: dict[int, BrokenSensor] = {}
         self.broken: tuple[BrokenSensor, ...] = ()
@@ -98,8 +98,10 @@ class SensorWatch:
         """
         self._ticks += 1
         self._driven += driving
+        if self._ticks % LOOK_TICKS:
+            return ()
         driven, broken, signs = self._driven, self._broken, None
-        for state in self._by_turn[self._ticks % TURNS]:
+        for state in self._states:
             state.update(counts, driven)
             if state.suspect and state.place not in broken and (fault := state.fault(driven)) is not None:
                 signs = (*(signs or ()), (state.place, fault))
@@ -192,7 +194,7 @@ class _SensorState:
         """Look at all readings, in counts; `driven`: ticks that the robot has driven."""
         value = counts[self.place]
         drove, self._driven = driven - self._driven, driven
-        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + TURNS, RANGE_TICKS)
+        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + LOOK_TICKS, RANGE_TICKS)
         if value < self._low:
             self._low = value
         elif value > self._high:

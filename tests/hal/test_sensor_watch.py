@@ -7,10 +7,10 @@ import pytest
 
 from hal.robot_settings import RobotSettings, load_robot
 from hal.sensor_watch import (
+    LOOK_TICKS,
     RANGE_TICKS,
     SEES_NOTHING_TICKS,
     STUCK_TIMES,
-    TURNS,
     BrokenSensor,
     SensorFault,
     SensorWatch,
@@ -74,7 +74,7 @@ def test_watch_finds_a_stuck_sensor_in_four_seconds(drive: Drive, name: str, cou
     drive.run(200)
     drive.faults[name] = lambda _: counts
     assert drive.run(STUCK_TICKS // 2) == ()
-    (found,) = drive.run(STUCK_TICKS // 2 + 3 * TURNS)
+    (found,) = drive.run(STUCK_TICKS // 2 + 3 * LOOK_TICKS)
     assert (found.name, found.fault, found.counts) == (name, SensorFault.STUCK, counts)
     assert found == drive.watch.broken[0]
     assert drive.watch.places == (PLACES[name],)
@@ -82,28 +82,28 @@ def test_watch_finds_a_stuck_sensor_in_four_seconds(drive: Drive, name: str, cou
 
 def test_watch_finds_a_stuck_sensor_whose_last_bit_flickers(drive: Drive) -> None:
     drive.faults["s9"] = lambda tick: 212 + tick // 4 % 3
-    assert [each.title for each in drive.run(STUCK_TICKS + 3 * TURNS)] == ["front left (s9)"]
+    assert [each.title for each in drive.run(STUCK_TICKS + 3 * LOOK_TICKS)] == ["front left (s9)"]
 
 
 def test_watch_waits_longer_for_robots_with_quiet_sensors() -> None:
     guard = ROBOT.guard.model_copy(update={"frozen_infrared_s": 2.0})
     drive = Drive(ROBOT.model_copy(update={"guard": guard}))
     drive.faults["s9"] = lambda _: 212
-    assert drive.run(2 * STUCK_TICKS - TURNS) == ()
-    assert len(drive.run(3 * TURNS)) == 1
+    assert drive.run(2 * STUCK_TICKS - LOOK_TICKS) == ()
+    assert len(drive.run(3 * LOOK_TICKS)) == 1
 
 
 def test_watch_does_not_count_time_in_which_the_robot_stands(drive: Drive) -> None:
     drive.faults["s9"] = lambda _: 212
     assert drive.run(10 * STUCK_TICKS, driving=False) == ()
-    assert drive.run(STUCK_TICKS - TURNS) == ()
-    assert len(drive.run(3 * TURNS)) == 1
+    assert drive.run(STUCK_TICKS - LOOK_TICKS) == ()
+    assert len(drive.run(3 * LOOK_TICKS)) == 1
 
 
 @pytest.mark.parametrize("counts", [0, 40, 700, 1023])
 def test_watch_finds_readings_out_of_range_at_standstill(drive: Drive, counts: int) -> None:
     drive.faults["s3"] = lambda _: counts
-    (found,) = drive.run(RANGE_TICKS + 3 * TURNS, driving=False)
+    (found,) = drive.run(RANGE_TICKS + 3 * LOOK_TICKS, driving=False)
     assert (found.name, found.fault) == ("s3", SensorFault.OUT_OF_RANGE)
 
 
@@ -152,7 +152,7 @@ def test_watch_leaves_a_board_without_change_to_others(drive: Drive) -> None:
 
 def test_readmit_trusts_a_sensor_that_changes_again(drive: Drive) -> None:
     drive.faults["s9"] = lambda _: 70
-    drive.run(STUCK_TICKS + 3 * TURNS)
+    drive.run(STUCK_TICKS + 3 * LOOK_TICKS)
     drive.watch.readmit()
     assert drive.watch.places == (PLACES["s9"],)
     drive.near = ("s9",)
@@ -169,7 +169,7 @@ def test_readmitted_sensor_that_is_stuck_is_found_again(drive: Drive) -> None:
     drive.run(700)
     drive.watch.readmit()
     assert drive.watch.places == ()
-    assert [each.name for each in drive.run(STUCK_TICKS + 3 * TURNS)] == ["s9"]
+    assert [each.name for each in drive.run(STUCK_TICKS + 3 * LOOK_TICKS)] == ["s9"]
 
 
 def test_watch_is_a_function_of_readings_and_driving() -> None:
