@@ -35,7 +35,7 @@ class Browser:
         self._news = anyio.Event()
 
     async def listen(self) -> None:
-        """Receive state updates."""
+        """Receive state updates until the connection ends; run it as a task, for `take` and `press` need it."""
         async for text in self._page:
             told = json.loads(text)
             if told["kind"] == "state":
@@ -44,20 +44,20 @@ class Browser:
                 self._news = anyio.Event()
 
     async def beat(self) -> None:
-        """Report periodically that the page is open and visible."""
+        """Report periodically that the page is open and visible, until cancelled."""
         while True:
             await self._say("beat", picture=self._picture, at_ms=time.monotonic() * 1000)
             await anyio.sleep(_BEAT_S)
 
     async def take(self) -> dict[str, Any]:
-        """Take control of the robot."""
+        """Take control of the robot and wait until a state says so; return {}."""
         await self._see(lambda: self._picture is not None)
         await self._say("order", number=next(self._numbers), name="take", arguments={}, picture=self._picture)
         await self._see(lambda: self._teacher is not None)
         return {}
 
     async def press(self, presses: int) -> dict[str, Any]:
-        """Press alternately forward and backward; return the times on the monotonic clock."""
+        """Press alternately forward and backward; return {"presses": [(ns on the monotonic clock, forward)]}."""
         made = []
         for _ in range(presses):
             schedule = next(self._schedules)

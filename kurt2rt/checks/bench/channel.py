@@ -29,7 +29,7 @@ async def measure_channel(
     """Measure presses with and without the page, the loop with a teacher, and lessons.
 
     Files go to folders in `folder`. The page is left out if its optional packages are missing. Raises LessonLostError,
-    KnowledgeError, ChannelError, HelperLostError, OSError without a timerfd.
+    KnowledgeError, ChannelError, CredentialsError, HelperLostError, OSError without a timerfd.
     """
     results = [
         await measure_presses(fixture, folder / "press", lengths.presses, start_job("pressing, in a teacher's program"))

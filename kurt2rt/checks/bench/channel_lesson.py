@@ -26,8 +26,8 @@ async def measure_channel_lessons(
 ) -> BenchResult:
     """Measure the time from a device's answer to its acknowledgement; files go to `folder`.
 
-    Alternates with lessons inside the robot's program. Raises LessonLostError, KnowledgeError, HelperLostError, OSError
-    without a timerfd.
+    Alternates with lessons inside the robot's program. Raises LessonLostError, KnowledgeError, ChannelError,
+    CredentialsError, HelperLostError, OSError without a timerfd.
     """
     took_ns: list[int] = []
     inside_ns: list[int] = []

@@ -50,12 +50,12 @@ class LoadPhase:
 
     @property
     def work_us(self) -> float:
-        """Return the processor time per second."""
+        """Processor time per second, in µs."""
         return self.processor_us / self.seconds
 
     @property
     def messages_per_s(self) -> float:
-        """Return the received messages per second."""
+        """Received messages per second."""
         return self.messages / self.seconds
 
 
@@ -68,7 +68,7 @@ class LoadPhases:
 
     @property
     def missed_ticks(self) -> int:
-        """Return the missed ticks of all phases."""
+        """Missed ticks of all phases together."""
         return sum(phase.missed_ticks for phase in self.each)
 
 
@@ -77,7 +77,7 @@ async def measure_load(
 ) -> tuple[BenchResult, ...]:
     """Measure lateness and processor time of an autonomous robot under each load; files go to `folder`.
 
-    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
+    Raises KnowledgeError, ChannelError, CredentialsError, HelperLostError, OSError without a timerfd.
     """
     ledgers = {load: TickTimer(shifts.rounds * shifts.ticks) for load in Load}
     phases: dict[Load, list[LoadPhase]] = {load: [] for load in Load}

@@ -19,9 +19,10 @@ TIMES_REAL_TIME = 60.0
 async def measure_closed_loop(
     fixture: BenchFixture, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
-    """Time per tick of a lesson that goes on from the subject's knowledge, and the runtime's share of it.
+    """Return the time per tick of a lesson that goes on from the fixture's knowledge, and the runtime's share of it.
 
-    Timed by blocks of whole simulated seconds. The journal goes to `folder`. Raises KnowledgeError.
+    Timed by `blocks` of `seconds_per_block` whole simulated seconds. The journal goes to `folder`. Raises
+    KnowledgeError.
     """
     period_s = fixture.settings.can.cycle_s
     ticks_per_block = round(seconds_per_block / period_s)

@@ -33,22 +33,33 @@ class BenchDevice:
         self._client: TeacherClient | None = None
 
     async def look(self) -> dict[str, Any]:
-        """Get the pictures, and nothing else."""
+        """Connect and receive the robot's states without being its teacher; return {}.
+
+        Ends the connection before. Raises CredentialsError, ChannelError.
+        """
         await self._join(watching=False)
         return {}
 
     async def watch(self) -> dict[str, Any]:
-        """Get the pictures and say many times a second that the teacher is there."""
+        """Connect, take the robot and renew the teacher's presence many times a second; return {}.
+
+        Ends the connection before. Raises BenchmarkRefusedError if the robot refuses, CredentialsError, ChannelError,
+        NoAnswerError.
+        """
         await self._join(watching=True)
         return {}
 
     async def leave(self) -> dict[str, Any]:
-        """Be gone."""
+        """Close the connection; return {}. `look` or `watch` opens another one."""
         await self._opened.aclose()
         return {}
 
     async def press(self, presses: int) -> dict[str, Any]:
-        """Press so many times, forward and backward in turns; when, on the monotonic clock."""
+        """Press so many times, alternately forward and backward; call it after `look` or `watch`.
+
+        Returns {"presses": [(ns on the monotonic clock, forward)]}. Raises BenchmarkRefusedError without a connection,
+        NoAnswerError.
+        """
         robot, made = self._robot, []
         for _ in range(presses):
             schedule = next(self._schedules)
@@ -63,7 +74,11 @@ class BenchDevice:
         return {"presses": made}
 
     async def teach(self, lessons: int) -> dict[str, Any]:
-        """Answer so many situations, each in the middle of nothing; how long until it was known to be durable."""
+        """Answer so many situations, each between two ticks; call it after `watch`.
+
+        Returns {"took_ns": [ns until each lesson was known to be durable]}. Raises BenchmarkRefusedError if the robot
+        refuses or there is no connection, NoAnswerError.
+        """
         took_ns = []
         for _ in range(lessons):
             await anyio.sleep(next(self._schedules).held_s / 2)  # the teacher does not know when ticks begin
@@ -74,7 +89,7 @@ class BenchDevice:
         return {"took_ns": took_ns}
 
     async def close(self) -> None:
-        """Be gone for good."""
+        """Close the connection at the end of the process."""
         await self._opened.aclose()
 
     @property

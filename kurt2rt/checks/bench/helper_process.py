@@ -33,7 +33,10 @@ class HelperProcess:
         self._answers = BufferedByteReceiveStream(process.stdout)
 
     async def ask(self, job: str, *, patience_s: float = 30.0, **fields: Any) -> dict[str, Any]:
-        """Run a job and return its answer. Raises HelperLostError."""
+        """Run a job with these fields and return its answer.
+
+        Raises HelperLostError if the process ends, or does not answer within `patience_s`.
+        """
         try:
             with anyio.fail_after(patience_s):
                 await self._stdin.send(json.dumps({"job": job, **fields}).encode() + b"\n")
@@ -48,7 +51,10 @@ class HelperProcess:
 
 @asynccontextmanager
 async def helper_process(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
-    """Run `python -m module ARGUMENTS` as a process that answers `HelperProcess.ask`; end it with the context."""
+    """Run `python -m module ARGUMENTS` as a process that answers `HelperProcess.ask`; end it with the context.
+
+    Raises OSError if it cannot be started.
+    """
     # In a session of its own, so that Ctrl-C reaches the robot first. Its input ends when we do, and so does it.
     process = await anyio.open_process(
         [sys.executable, "-m", module, *arguments],

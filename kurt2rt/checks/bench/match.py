@@ -34,7 +34,10 @@ class WrongWinnerError(RuntimeError):
 
 
 def measure_match(sizes: tuple[Size, ...], on_progress: OnProgress) -> tuple[BenchResult, ...]:
-    """Measure the match for each number of RLAs, alternating with a float64 brute force. Raises WrongWinnerError."""
+    """Measure the match for each number of RLAs, alternating with a float64 brute force.
+
+    Raises WrongWinnerError if the two find different RLAs.
+    """
     results = []
     for number, size in enumerate(sizes, start=1):
         results.append(_measure(size))

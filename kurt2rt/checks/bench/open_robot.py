@@ -60,7 +60,7 @@ class PauseGate:
             await self._noticed.wait()
 
     async def run_ticks(self, ticks: int) -> None:
-        """Wait for a number of ticks."""
+        """Wait until the robot has run this number of ticks. Raises TimeoutError after 30 s."""
         last = self.ticks + ticks
         await self.until(lambda: self.ticks >= last)
 
@@ -81,7 +81,7 @@ class OpenRobot:
 
     @property
     def address(self) -> tuple[str, ...]:
-        """Return the folder of the pairing and the port for a helper process."""
+        """Arguments for a helper process: folder of the pairing, and UDP port."""
         return str(self.device.folder), str(self.channel.endpoint.port)
 
 
@@ -89,7 +89,7 @@ class OpenRobot:
 async def open_robot(fixture: BenchFixture, folder: Path) -> AsyncIterator[OpenRobot]:
     """Start a robot that stands and is open to teachers; knowledge and pairing go to a new `folder`.
 
-    Raises KnowledgeError, ChannelError, OSError without a timerfd, and errors of the block unwrapped.
+    Raises KnowledgeError, ChannelError, CredentialsError, OSError without a timerfd, and errors of the block unwrapped.
     """
     pairing = local_pairing(folder / "teachers", folder / "devices")
     service = load_service().model_copy(

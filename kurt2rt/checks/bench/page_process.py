@@ -14,7 +14,10 @@ from kurt2rt.teacher.page.server import listen, run_page
 
 
 async def main(folder: Path, port: int) -> None:
-    """Serve the page of the pairing in `folder` for the robot at the local `port` until the input ends."""
+    """Serve the page of the pairing in `folder` for the robot at the local `port` until the input ends.
+
+    Raises CredentialsError if the pairing cannot be read, PageError if no TCP port is free.
+    """
     device = read_device(folder)
     access = Access(device.name, device.token, ())
     with listen(0, everywhere=False) as listener:

@@ -67,7 +67,7 @@ class ObservedRobot(RobotProxy):
         self._stood = True
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Forward to the robot; afterwards the frame is on the bus."""
+        """Forward to the robot, speeds in m/s and times in s; afterwards the frame is on the bus."""
         grant = self._robot.drive(wanted, decided_at_s, now_s)
         stands = grant.wheel_speeds == STANDSTILL
         if self._stood and not stands:

@@ -23,7 +23,7 @@ _Ask = Callable[..., Awaitable[dict[str, Any]]]
 async def measure_presses(fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress) -> BenchResult:
     """Measure from a press in a teacher's program to the first moving CONTROL frame; files go to `folder`.
 
-    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
+    Raises KnowledgeError, ChannelError, CredentialsError, HelperLostError, OSError without a timerfd.
     """
     async with (
         open_robot(fixture, folder) as robot,
@@ -36,9 +36,9 @@ async def measure_presses(fixture: BenchFixture, folder: Path, presses: int, on_
 async def measure_presses_on_page(
     fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress
 ) -> BenchResult:
-    """Measure from a press on the teacher's page, over WebSocket and page server.
+    """Measure from a press on the teacher's page, over WebSocket and page server; files go to `folder`.
 
-    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
+    Raises KnowledgeError, ChannelError, CredentialsError, HelperLostError, OSError without a timerfd.
     """
     async with open_robot(fixture, folder) as robot, AsyncExitStack() as ending:
         page = await ending.enter_async_context(helper_process("kurt2rt.checks.bench.page_process", *robot.address))

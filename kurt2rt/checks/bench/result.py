@@ -16,7 +16,7 @@ class Reference:
 
     @property
     def ratio(self) -> float:
-        """Return how many times longer the reference took."""
+        """Ratio of the reference's time to the measured time."""
         return self.took_us / max(self.result_us, 1e-3)
 
 

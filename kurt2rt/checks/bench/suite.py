@@ -77,6 +77,13 @@ async def run_suite(
     """Run the named benchmarks; files go to the empty `folder`.
 
     `start_job`: called with the name of a job, returns its progress callback.
+
+    Raises:
+        KnowledgeError, ChannelError, CredentialsError: the robot of a benchmark cannot be opened.
+        LessonLostError: a lesson did not become durable.
+        WrongWinnerError: the match differs from a brute force.
+        HelperLostError: a helper process ended or did not answer.
+        OSError: this machine has no timerfd, or the disk fails.
     """
     results: list[BenchResult] = []
     if any(bench is not BenchName.MATCH for bench in benches):

@@ -25,7 +25,10 @@ class BumpersStep:
     blocks_driving = False
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask for each bumper of the table."""
+        """Ask the operator to press each bumper of the table; return the found bits and the faults.
+
+        Raises AbortedError if the operator leaves, BusError.
+        """
         bumpers = stand.settings.bumpers
         result = StepResult(findings.model_copy(update={"bumper_bits": {}}))
         if not bumpers:

@@ -52,7 +52,8 @@ class Checklist:
     async def run(self, chosen: Sequence[CommissionStep], skipped: Sequence[CommissionStep] = ()) -> None:
         """Run the chosen steps in order and record the skipped ones.
 
-        Raises AbortedError, BusError, OSError, and SettingsError if the findings belong to another robot.
+        Raises AbortedError if the operator leaves, BusError if the bus is lost, OSError if the progress cannot be
+        saved, and SettingsError if the findings belong to another robot.
         """
         await self._require_same_robot()
         for step in skipped:
@@ -187,5 +188,5 @@ def blocking_failures(progress: Progress) -> list[CommissionStep]:
 
 
 def step_named(name: str) -> CommissionStep:
-    """Return the step of a name. Raises KeyError."""
+    """Return the step of a name. Raises KeyError for an unknown name."""
     return {step.name: step for step in STEPS}[name]

@@ -87,7 +87,7 @@ class StepFault:
 
     @classmethod
     def of(cls, code: FaultCode, **fields: Field) -> Self:
-        """Return the fault of a code with these fields."""
+        """Return the fault of a code; `fields` fill the gaps in the code's text."""
         return cls(code, fields)
 
 

@@ -83,7 +83,7 @@ def fault_text(fault: StepFault) -> str:
 
 
 def skip_text(code: SkipCode) -> str:
-    """Return why a step was skipped."""
+    """Return the reason that a step was skipped, for the report."""
     return _SKIPPED[code]
 
 

@@ -44,7 +44,7 @@ class FrameStatistics:
     """CONTROL frames, including our own."""
 
     def period_s(self, frame_id: int) -> float | None:
-        """Return the mean period of a frame; None if it came less than twice."""
+        """Return the mean period of a frame in s; None if it came less than twice."""
         times_s = self.arrivals_s.get(frame_id, [])
         if len(times_s) < 2 or times_s[-1] <= times_s[0]:
             return None
@@ -56,7 +56,7 @@ class FrameStatistics:
         return statistics.median(counts) if counts else None
 
     def wheel_speeds(self, robot: RobotSettings, last_frames: int) -> WheelSpeeds:
-        """Return the mean speeds over the last ENCODER frames, one per controller cycle; 0 without frames."""
+        """Return the mean speeds in m/s over the last ENCODER frames, one per controller cycle; 0 without frames."""
         frames = self.encoder[-last_frames:]
         if not frames:
             return WheelSpeeds(0.0, 0.0)
@@ -64,7 +64,7 @@ class FrameStatistics:
         return WheelSpeeds(sum(each.left for each in frames) * metres_s, sum(each.right for each in frames) * metres_s)
 
     def rest_began_s(self) -> float | None:
-        """Return the time of the first ENCODER frame of the final rest; None while turning or without frames."""
+        """Return the time in s of the first ENCODER frame of the final rest; None while turning or without frames."""
         rested_s = None
         for frame in reversed(self.encoder):
             if abs(frame.left) > _REST_TICKS or abs(frame.right) > _REST_TICKS:

@@ -27,7 +27,7 @@ class IdentityStep:
         """Listen to the CAN bus for 2 s; judge the controller's identity, the frames' periods, and junk.
 
         Periods are compared with `can.cycle_s` of the settings. Returns the findings with hardware id and firmware from
-        INFO_1, and the faults. Silence is a fault and raises nothing.
+        INFO_1, and the faults. Silence is a fault and raises nothing; a lost bus raises BusError.
         """
         heard = await stand.listen(_LISTEN_S)
         result = StepResult(findings)

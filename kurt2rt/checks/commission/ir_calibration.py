@@ -50,11 +50,11 @@ class IrLaw:
     bias_counts: float
 
     def counts_at(self, distance_m: float) -> float:
-        """Return the counts at a distance."""
+        """Return the reading in counts at a distance in m from the sensor's face."""
         return self.numerator_counts_m / (distance_m + self.offset_m) - self.bias_counts
 
     def distance_m(self, counts: float) -> float:
-        """Return the distance of counts."""
+        """Return the distance in m of a reading in counts."""
         return self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m
 
 
@@ -72,7 +72,10 @@ class IrFit:
 
 
 def fit_law(readings: Sequence[IrReading]) -> IrFit:
-    """Fit by least squares without single outliers. Raises IrCalibrationError."""
+    """Return the fit of the law to readings by least squares, without single outliers.
+
+    Raises IrCalibrationError if there are too few readings, or no law fits them.
+    """
     _require_range(readings)
     kept = list(range(len(readings)))
     fit = _fit(readings, kept)

@@ -31,7 +31,10 @@ class IrCalibrationStep:
     blocks_driving = False
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask for the sensors, then for the board at each distance."""
+        """Ask for the sensors, then for the board at each distance; return the fitted law and the faults.
+
+        Raises SkippedError if no sensor is chosen, AbortedError if the operator leaves, BusError.
+        """
         result = StepResult(findings.model_copy(update={"law": None}))
         chosen = await _choose(stand, findings)
         await stand.ask(

@@ -16,7 +16,10 @@ STEADY_FRAMES = 30
 
 
 async def confirm_motion(stand: TestStand, text: str) -> None:
-    """Ask before the wheels turn. Raises SkippedError."""
+    """Ask the operator before the wheels turn; `text` tells the motion.
+
+    Raises SkippedError if the operator refuses the motion, AbortedError if the operator leaves, BusError.
+    """
     question = OperatorQuestion(
         QuestionKind.MOVE, text, (AnswerChoice("", "turn them"), AnswerChoice(SKIP, "do not turn them"))
     )
@@ -25,7 +28,7 @@ async def confirm_motion(stand: TestStand, text: str) -> None:
 
 
 def required_speed_mode(findings: Findings) -> SpeedMode:
-    """Return the speed mode that answered. Raises SkippedError if none is known."""
+    """Return the speed mode that answered in an earlier step. Raises SkippedError if none is known."""
     if findings.speed_mode is None:
         raise SkippedError(SkipCode.NO_SPEED_MODE)
     return findings.speed_mode
@@ -37,7 +40,7 @@ def steady_speeds(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
 
 
 def standstill_cause(drive: TestDrive) -> str | None:
-    """Return why the guard kept the wheels from turning; None if they could turn."""
+    """Return the reason that the guard kept the wheels from turning; None if they could turn."""
     if drive.stopped_by is not None:
         return drive.stopped_by
     if drive.applied == WheelSpeeds(0.0, 0.0):

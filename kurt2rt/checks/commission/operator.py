@@ -75,7 +75,10 @@ class Operator(Protocol):
     """Person at the robot."""
 
     async def answer(self, question: OperatorQuestion) -> str:
-        """Return a choice's key or free text. Raises AbortedError without an answer."""
+        """Return the key of a choice, or free text if the question has no choices.
+
+        Raises AbortedError if no answer can come.
+        """
         ...
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:

@@ -40,16 +40,16 @@ class Progress(Settings):
     """Records by step name."""
 
     def with_step(self, name: str, record: StepRecord, findings: Findings) -> Self:
-        """Return the progress with the result of a step."""
+        """Return a copy of the progress with the record of a step, and with its findings."""
         return self.model_copy(update={"steps": {**self.steps, name: record}, "findings": findings})
 
     def save(self, path: Path) -> None:
-        """Write the file atomically and durably. Raises OSError."""
+        """Write the progress to a file, atomically and durably. Raises OSError."""
         write_durably(path, self.model_dump_json(indent=2) + "\n")
 
 
 def load_progress(path: Path) -> Progress:
-    """Load a file of `save`. Raises SettingsError, OSError."""
+    """Load a file of `Progress.save`. Raises SettingsError if it is damaged, OSError if it cannot be read."""
     try:
         return Progress.model_validate_json(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, ValidationError) as error:

@@ -20,7 +20,10 @@ from kurt2rt.platform.durable_files import write_durably
 
 
 def commissioned_settings(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
-    """Return the settings with all findings. Raises SettingsError for contradictory findings."""
+    """Return the settings of `base` under a new name, with all findings.
+
+    Raises SettingsError for contradictory findings.
+    """
     content = base.model_dump(mode="json")
     content["name"] = name
     if findings.speed_mode is not None:
@@ -48,7 +51,10 @@ def commissioned_settings(base: RobotSettings, name: str, findings: Findings) ->
 
 
 def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
-    """Return the text of the file. Raises SettingsError for contradictory findings."""
+    """Return the text (YAML) of the robot's settings file, with the steps as comments.
+
+    Raises SettingsError for contradictory findings.
+    """
     settings = commissioned_settings(base, progress.name, progress.findings)
     verdict = "PASSED" if passed(progress, steps) else "NOT PASSED"
     head = [
@@ -68,7 +74,10 @@ def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Commissi
 def write_robot_file(
     path: Path, base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]
 ) -> RobotSettings:
-    """Write the file and load it like the robot's program. Raises SettingsError, OSError."""
+    """Write the robot's settings file and return its content, loaded as the robot's program loads it.
+
+    Raises SettingsError for contradictory findings, OSError if it cannot be written.
+    """
     text = robot_file(base, progress, steps)
     write_durably(path, text)
     return load_robot(str(path))

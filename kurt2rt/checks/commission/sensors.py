@@ -35,7 +35,10 @@ class SensorsStep:
     blocks_driving = False
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask for a hand in front of each sensor of the table."""
+        """Ask the operator for a hand in front of each sensor; return the found channels and the faults.
+
+        Raises AbortedError if the operator leaves, BusError.
+        """
         sensors = stand.settings.infrared.sensors
         found = await _kept(stand, findings, sensors)
         await stand.ask(

@@ -36,7 +36,10 @@ class SpeedModesStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Try all modes; the first of PREFERENCE that answers is taken."""
+        """Try all speed modes; the first of PREFERENCE that answers is the finding.
+
+        Raises SkippedError if the operator refuses the motion, AbortedError if the operator leaves, BusError.
+        """
         robot = stand.settings
         result = StepResult(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         trials: list[_Trial] = []

@@ -29,7 +29,7 @@ class StepResult:
     """Measured lines that were not shown yet."""
 
     def fail(self, code: FaultCode, **fields: Field) -> None:
-        """Add a fault."""
+        """Add a fault of a code; `fields` fill the gaps in the code's text."""
         self.faults.append(StepFault(code, fields))
 
     def note(self, line: str) -> None:
@@ -44,7 +44,7 @@ class StepResult:
 
     @property
     def outcome(self) -> StepOutcome:
-        """Return passed or failed."""
+        """PASSED without a fault, else FAILED."""
         return StepOutcome.FAILED if self.faults else StepOutcome.PASSED
 
 
@@ -62,5 +62,8 @@ class CommissionStep(Protocol):
     """True if a failure forbids driving, so that no settings file is written."""
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Run the step with the findings so far. Raises SkippedError, AbortedError, BusError."""
+        """Run the step with the findings so far; return its measurements, findings and faults.
+
+        Raises SkippedError if the step cannot or shall not run, AbortedError if the operator leaves, BusError.
+        """
         ...

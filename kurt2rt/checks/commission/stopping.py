@@ -34,7 +34,11 @@ class StoppingStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Brake while driving, then stop sending while driving."""
+        """Brake while driving, then stop sending while driving; return the measured times and faults.
+
+        Raises SkippedError without a speed mode or if the operator refuses, AbortedError if the operator leaves,
+        BusError.
+        """
         mode = required_speed_mode(findings)
         result = StepResult(findings.model_copy(update={"controller_watchdog_s": None}))
         await confirm_motion(stand, "All wheels turn forward; then the brake.")

@@ -99,7 +99,10 @@ class TestStand:
         self._operator.tell(text, tone)
 
     async def ask(self, question: OperatorQuestion) -> str:
-        """Return the operator's answer; the robot stands meanwhile. Raises AbortedError, also for LEAVE."""
+        """Return the operator's answer; the robot stands meanwhile.
+
+        Raises AbortedError if the operator leaves or can give no answer, BusError.
+        """
         answers: list[str] = []
         gone = False
 
@@ -120,22 +123,29 @@ class TestStand:
         return answers[0]
 
     async def listen(self, seconds: float) -> FrameStatistics:
-        """Return the frames of a time span at standstill; nothing is sent before the first motion."""
+        """Return the frames of a time span at standstill; nothing is sent before the first motion.
+
+        `seconds` in s. Raises BusError.
+        """
         heard = FrameStatistics()
         for _ in range(self._ticks(seconds)):
             await self._tick(heard, STANDSTILL)
         return heard
 
     async def hardware_id(self) -> int | None:
-        """Return the hardware id of INFO_1, waiting for it at standstill; None if it does not come."""
+        """Return the hardware id of INFO_1, waiting for it at standstill; None if it does not come.
+
+        Raises BusError.
+        """
         if self._listener.hardware_id is None:
             await self.listen(_IDENTITY_S)
         return self._listener.hardware_id
 
     async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> TestDrive:
-        """Turn the wheels in a speed mode, then brake.
+        """Turn the wheels in a speed mode for `seconds`, then brake; return the measurements.
 
-        Brakes early if the guard stops them, if they run away, or if a driven side counts no ticks.
+        Brakes early if the guard stops them, if they run away, or if a driven side counts no ticks. `wanted` in m/s.
+        Raises BusError.
         """
         robot = await self._prepared_robot(mode)
         return await self._brake(robot, await self._drive_steadily(robot, wanted, seconds))
@@ -143,7 +153,8 @@ class TestStand:
     async def stop_sending(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> TestDrive:
         """Drive, then send no CONTROL for at most `silent_s`, until the wheels rest by themselves.
 
-        `rested_after_s` counts from the last CONTROL frame, and is None if the wheels had to be braked.
+        `rested_after_s` of the result counts from the last CONTROL frame, and is None if the wheels had to be braked.
+        `wanted` in m/s, times in s. Raises BusError.
         """
         robot = await self._prepared_robot(mode)
         drive = await self._drive_steadily(robot, wanted, seconds)

@@ -33,7 +33,11 @@ class WheelsStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Drive each side both ways and ask for the observation."""
+        """Drive each side both ways and ask for the observation; return the wiring and its faults.
+
+        Raises SkippedError without a speed mode or if the operator refuses, AbortedError if the operator leaves,
+        BusError.
+        """
         mode = required_speed_mode(findings)
         result = StepResult(findings)
         trials: list[WheelTrial] = []

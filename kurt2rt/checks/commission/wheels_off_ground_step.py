@@ -20,7 +20,10 @@ class WheelsOffGroundStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask until the words are typed. Raises SkippedError."""
+        """Ask until the operator has typed that the wheels are off the ground.
+
+        Raises SkippedError if the operator skips it, AbortedError if the operator leaves, BusError.
+        """
         question = OperatorQuestion(
             QuestionKind.LIFTED,
             f"When no wheel touches anything, type: {WORDS}",

@@ -14,7 +14,7 @@ class WheelSide(IntEnum):
 
     @property
     def word(self) -> str:
-        """Return the side in lower case."""
+        """Name of the side: left or right."""
         return self.name.lower()
 
 
@@ -26,7 +26,7 @@ class Motion(NamedTuple):
 
     @property
     def only(self) -> tuple[WheelSide, int] | None:
-        """Return the one turning side and its sign; None if none or both turn."""
+        """Turning side and its sign (1 forward, -1 back); None if no side or both turn."""
         if bool(self.left) == bool(self.right):
             return None
         return (WheelSide.LEFT, self.left) if self.left else (WheelSide.RIGHT, self.right)
@@ -57,7 +57,7 @@ class WheelTrial(NamedTuple):
 
 
 def parse_seen(answer: str) -> Motion | None:
-    """Parse the operator's words; None if they cannot be understood.
+    """Return the motion that the operator's words name; None if they cannot be understood.
 
     Valid are none, or left, right or both with forward or back. Each word may be cut short.
     """

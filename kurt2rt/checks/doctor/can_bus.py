@@ -24,7 +24,10 @@ def _open_can_socket() -> socket.socket:
 def check_can_kernel(
     open_socket: Callable[[], socket.socket] = _open_can_socket, modules: Path = MODULES_FOLDER
 ) -> CheckResult:
-    """Check that a CAN socket can be opened."""
+    """Check that a CAN socket can be opened; raises nothing.
+
+    `modules`: folder of the kernel's modules, for the advice.
+    """
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
@@ -34,7 +37,10 @@ def check_can_kernel(
 
 
 def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
-    """Check each CAN interface with hardware; one finding if there is none."""
+    """Check each CAN interface with hardware; return one result each, or a single one if there is none.
+
+    `net`: folder of the kernel's interfaces.
+    """
     interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
     if not interfaces:
         values = {"folder": str(net), "up": _up_command("can0")}
@@ -43,7 +49,10 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
 
 
 def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> CheckResult:
-    """Check for a virtual CAN interface, which only tests need."""
+    """Check for a virtual CAN interface, which tests need and a robot does not.
+
+    `net`, `modules`: folders of the kernel.
+    """
     interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
     for each in interfaces:
         if _is_up(each):

@@ -130,5 +130,5 @@ _TEXTS: Mapping[Code, FindingText] = {
 
 
 def text_of(finding: CheckResult) -> FindingText:
-    """Return the words of a finding."""
+    """Return the texts of a finding: what was looked at, what was found, and what to do."""
     return FindingText(*(text.format(**finding.values) for text in _TEXTS[finding.code]))

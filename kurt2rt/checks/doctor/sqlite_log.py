@@ -37,7 +37,7 @@ def _connect(path: Path) -> sqlite3.Connection:
 
 
 def log_fault(writer: sqlite3.Connection, reader: sqlite3.Connection) -> str:
-    """Return the fault of a write during another program's read; empty without one."""
+    """Return the fault of a write during another program's read, in words; empty without a fault."""
     (mode,) = writer.execute("PRAGMA journal_mode = WAL").fetchone()
     if mode != "wal":
         return f"journal mode stays {mode}"

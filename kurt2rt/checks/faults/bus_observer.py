@@ -18,11 +18,11 @@ class BusObserver(RobotProxy):
         rig.on_sent = self._on_sent
 
     def attach(self, robot: Robot) -> None:
-        """Observe another driver."""
+        """Observe `robot`, a new driver, in place of the one before."""
         self._robot = robot
 
     def sense(self, now_s: float) -> SensorReadings:
-        """Read the sensors; the age of the next decision counts from now."""
+        """Return the driver's readings at `now_s`, in s; the age of the next decision counts from this call."""
         self._sensed_at_s = self._time.now_s()
         return super().sense(now_s)
 

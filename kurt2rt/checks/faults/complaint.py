@@ -54,7 +54,7 @@ class Complaint(NamedTuple):
 
 
 def complaint(code: ComplaintCode, at_s: float | None = None, **values: Value) -> Complaint:
-    """Return a complaint with its values."""
+    """Return a complaint of a code at a simulated time in s (None: of no moment), with the values of its text."""
     return Complaint(code, values, at_s)
 
 

@@ -103,7 +103,11 @@ class Envelope:
         self._arrived_number = 0
 
     def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
-        """Check a frame that the driver hands to its bus. `age_s`: time since its decision began."""
+        """Check a frame that the driver hands to its bus; a violation is appended to `violations`.
+
+        `number`: of the frame, in order. `at_s`: simulated time in s. `age_s`: time in s since its decision began.
+        `latched`: whether the guard keeps the robot stopped.
+        """
         self.frames += 1
         told = decode_command(payload)
         put = _SentFrame(at_s, age_s, told, self.bumper_pressed)
@@ -126,7 +130,10 @@ class Envelope:
         self._last_put = put
 
     def on_arrived(self, number: int, at_s: float, payload: bytes) -> WheelCommand | None:
-        """Check a frame that arrives at the robot; return its command, None for an unknown payload."""
+        """Check a frame that arrives at the robot; return its command, None for an unknown payload.
+
+        `number`: as in `on_sent`. `at_s`: simulated time in s.
+        """
         told = decode_command(payload)
         if told is None:
             self.unintelligible += 1

@@ -48,7 +48,10 @@ class FaultyClock:
         self._sound = RigClock(time)
 
     def now_s(self) -> float:
-        """Return the faulty time. Raises BrokenClockError for kind off."""
+        """Return the time that the faulty clock shows, in s; NaN for kind garbage.
+
+        Raises BrokenClockError for kind off.
+        """
         disturbance, true_s = self._disturbance, self._time.now_s()
         if disturbance.kind == "garbage" and disturbance.acts(true_s):
             return math.nan
@@ -93,7 +96,7 @@ class SoakClock:
         self._behind_s = 0.0
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """Start a fault."""
+        """Let the clock show the faulty time of a disturbance, until `clear`."""
         self._inner = FaultyClock(self._time, disturbance)
 
     def clear(self) -> None:
@@ -102,7 +105,7 @@ class SoakClock:
         self._inner = self._sound
 
     def now_s(self) -> float:
-        """Return the time under the fault. Raises BrokenClockError for kind off."""
+        """Return the time in s that the clock shows under its fault. Raises BrokenClockError for kind off."""
         return self._inner.now_s() - self._behind_s
 
     async def wait_until(self, deadline_s: float) -> None:

@@ -37,7 +37,10 @@ class FaultyJournal(Journal):
     """True at the end of the scenario: writes neither fail nor block any more."""
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        """Write the entries under the fault. Raises KnowledgeError."""
+        """Write the entries under the fault and return a receipt for each.
+
+        Raises KnowledgeError if the fault refuses the write.
+        """
         now_s = self.simulated.now_s()
         disturbance = self.disturbance
         if self.is_over or disturbance is None or not disturbance.acts(now_s):
@@ -100,11 +103,11 @@ class FailingDisk:
 
     @property
     def saving_error(self) -> str | None:
-        """Return the writer's error."""
+        """Error of the writer in one line; None if lessons can be saved."""
         return self._writer.saving_error
 
     def submit(self, event: TeachingEvent) -> None:
-        """Submit a lesson to the writer."""
+        """Queue a lesson for the writer thread. Raises KnowledgeError after `close`."""
         self.submitted.append(event.origin.command_id)
         self._writer.submit(event)
 
@@ -121,12 +124,15 @@ class FailingDisk:
         self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
 
     def close(self) -> None:
-        """Write the rest and close the file; idempotent. Raises KnowledgeError."""
+        """Write the rest and close the file; idempotent. Raises KnowledgeError if lessons were not written."""
         self._journal.is_over = True
         self._writer.close()
 
     def lost_lessons(self) -> Complaint | None:
-        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order.
+
+        Raises KnowledgeError if the file cannot be read.
+        """
         kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
         if kept != self.submitted:
             taught, names = len(self.submitted), f": {kept}"
@@ -148,7 +154,10 @@ class FailingDisk:
 
 
 def schedule_file_swap(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:
-    """Replace the file by another one for the span of the disturbance."""
+    """Schedule that another file replaces the one at `path` during the disturbance.
+
+    `simulated`: time that the two changes happen in.
+    """
     away = path.with_name(f"{path.name}.away")
     simulated.at(disturbance.begin_s, lambda: _swap_out(path, away))
     simulated.at(disturbance.end_s, lambda: _swap_back(away, path))

@@ -32,7 +32,7 @@ class FaultyLevel:
         """Deciding layer; set before the first tick."""
 
     def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
-        """Return the decision under the fault. Raises BrokenTickError."""
+        """Return the inner level's decision, changed by the fault. Raises BrokenTickError for kind off."""
         assert self.inner is not None
         decision = self.inner.decide(situation, readings, stand_because)
         disturbance, now_s = self._disturbance, self._time.now_s()
@@ -77,16 +77,19 @@ class SoakLevel:
         """Deciding layer; set before the first tick."""
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """Start a fault."""
+        """Let decisions be changed by this fault, until `clear`."""
         self._disturbed = FaultyLevel(self._time, disturbance)
         self._disturbed.inner = self.inner
 
     def clear(self) -> None:
-        """End the fault."""
+        """End the fault: decisions are those of the inner level again."""
         self._disturbed = None
 
     def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
-        """Return the decision under the fault. Raises BrokenTickError."""
+        """Return the inner level's decision, changed by the fault if one is active.
+
+        Raises BrokenTickError for kind off.
+        """
         level = self._disturbed or self.inner
         assert level is not None
         return level.decide(situation, readings, stand_because)

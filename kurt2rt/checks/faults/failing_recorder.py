@@ -68,18 +68,18 @@ class FailingRecorder:
         self._plan()
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
-        """Note a received frame of age `age_s`."""
+        """Note a received frame that the bus carried `age_s` seconds ago."""
         self._noted += 1
         self._log.on_rx(frame, age_s)
 
     def on_tx(self, frame: can.Message) -> None:
-        """Note a sent frame."""
+        """Note a frame that the driver sent."""
         self._noted += 1
         self._log.on_tx(frame)
 
     @property
     def lost(self) -> int:
-        """Return the log's own count of lost frames."""
+        """Number of lost frames by the log's own count."""
         return self._log.lost
 
     def close(self) -> None:
@@ -90,7 +90,7 @@ class FailingRecorder:
         self._log.write_waiting()
 
     def uncounted_frames(self) -> Complaint | None:
-        """Compare the closed log's own count with the frames; None if it adds up."""
+        """Compare the closed log's own count with the frames that passed; return None if it adds up."""
         if self._log.written + self._log.lost != self._noted:
             noted, written, lost = self._noted, self._log.written, self._log.lost
             return complaint(ComplaintCode.LOG_MISCOUNTED, noted=noted, written=written, lost=lost)

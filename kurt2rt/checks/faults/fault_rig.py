@@ -12,15 +12,15 @@ class SimulatedTime(Protocol):
     """Simulated time that advances on request, with scheduled events."""
 
     def now_s(self) -> float:
-        """Return the present in seconds."""
+        """Return the present simulated time in s."""
         ...
 
     def at(self, time_s: float, act: Callable[[], None]) -> None:
-        """Schedule a call at a time in s."""
+        """Call `act` once, when simulated time reaches `time_s`, in s."""
         ...
 
     def every(self, period_s: float, first_s: float, act: Callable[[], None]) -> None:
-        """Schedule a periodic call, times in s."""
+        """Call `act` at `first_s` and then each `period_s`, both in s of simulated time, without end."""
         ...
 
     def run_until(self, time_s: float) -> None:
@@ -33,31 +33,31 @@ class RigDisturbance(Protocol):
 
     @property
     def kind(self) -> Kind:
-        """Return the kind of fault."""
+        """Kind of the fault."""
         ...
 
     @property
     def begin_s(self) -> float:
-        """Return the start."""
+        """Begin of the fault, in s of simulated time."""
         ...
 
     @property
     def end_s(self) -> float:
-        """Return the end."""
+        """End of the fault, in s of simulated time."""
         ...
 
     @property
     def period_s(self) -> float:
-        """Return the period of CaseSettings."""
+        """Interval between two outputs (kind slow), or span of each failure and recovery (intermittent), in s."""
         ...
 
     @property
     def delay_s(self) -> float:
-        """Return the delay of CaseSettings."""
+        """Delay that the fault adds, or duration of each blocking call, in s."""
         ...
 
     def acts(self, now_s: float) -> bool:
-        """Return whether the fault is active at this time in s."""
+        """Return whether the fault is active at `now_s`, in s of simulated time."""
         ...
 
 
@@ -69,12 +69,12 @@ class BusRig(Protocol):
 
     @property
     def time(self) -> SimulatedTime:
-        """Return the simulated time."""
+        """Simulated time of robot, bus and driver."""
         ...
 
     @property
     def robot(self) -> Kurt2 | None:
-        """Return the present driver; None between two drivers."""
+        """Present driver; None between two drivers."""
         ...
 
     def close(self) -> None:
@@ -90,20 +90,20 @@ class FaultRig(BusRig, Protocol):
 
     @property
     def disturbance(self) -> RigDisturbance:
-        """Return the fault."""
+        """Fault of this rig."""
         ...
 
     @property
     def robot(self) -> Kurt2:
-        """Return the present driver."""
+        """Present driver."""
         ...
 
     def restart_driver(self) -> Kurt2:
-        """Replace the driver by a new one, like a restart of its process."""
+        """Replace the driver by a new one, like a restart of its process; return the new driver."""
         ...
 
     def attach_tap(self, tap: Tap) -> None:
-        """Attach a tap to the driver's interface."""
+        """Let `tap` see each frame that passes the driver's interface."""
         ...
 
 
@@ -115,6 +115,7 @@ class RigFactory(Protocol):
     ) -> FaultRig:
         """Return a rig in which `target` has a fault from `begin_s` to `end_s`.
 
-        A target that is no part of robot or bus is left to the caller.
+        A target that is no part of robot or bus is left to the caller. Times in s; `period_s` and `delay_s` are those
+        of the fault's kind. `seed`: noise and phases.
         """
         ...

@@ -19,7 +19,7 @@ class FaultVerdict(NamedTuple):
 
 
 def judge(must: CaseSettings, outcome: FaultOutcome) -> FaultVerdict:
-    """Judge an outcome.
+    """Return the verdict on an outcome by the required reaction `must`.
 
     A known gap passes while it exists, and excuses no violation of the envelope.
     """

@@ -34,7 +34,7 @@ class WheelObserver(BusObserver):
         rig.on_control = self._on_arrival
 
     def on_tick(self, record: TickRecord) -> None:
-        """Record set points and causes of a tick."""
+        """Record the set points of a tick, or the causes of its standstill; call it after each tick."""
         now_s = self._time.now_s()
         if record.guard_result.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
@@ -47,7 +47,7 @@ class WheelObserver(BusObserver):
             self._causes.append((now_s, (*cause, *record.guard_result.reasons)))
 
     def standstills(self, begin_s: float, end_s: float) -> list[Stand]:
-        """Return the spans from `begin_s` to `end_s` in which the robot had to stand.
+        """Return the spans from `begin_s` to `end_s`, in s, in which the robot had to stand.
 
         It was commanded to, or its own watchdog had expired.
         """
@@ -69,7 +69,7 @@ class WheelObserver(BusObserver):
         return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
 
     def causes_from(self, time_s: float) -> tuple[str, ...]:
-        """Return the causes of the first standstill command from a time on."""
+        """Return the causes of the first standstill command from `time_s` on, in s; empty without one."""
         first_s = next((at_s for at_s, _ in self._causes if at_s >= time_s), None)
         return tuple(dict.fromkeys(word for at_s, words in self._causes if at_s == first_s for word in words))
 

@@ -181,7 +181,11 @@ async def run_scenario(
     seed: int,
     folder: Path,
 ) -> FaultOutcome:
-    """Run one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
+    """Run one case and return its outcome.
+
+    `folder`: empty, for a knowledge file. `seed`: noise. Raises DidNotDriveError if the robot does not drive before the
+    fault, KnowledgeError, SettingsError.
+    """
     schedule = table.schedule
     rig = rigs.open(
         case.target,

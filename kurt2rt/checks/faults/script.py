@@ -32,7 +32,10 @@ class Script:
         self._link: TeacherLink | None = None
 
     def begin(self, runtime: Runtime, link: TeacherLink | None) -> None:
-        """Schedule the commands. `link`: of a teacher who drives manually."""
+        """Schedule the teacher's commands of the case; call it before the first tick.
+
+        `link`: of a teacher who drives manually; None: no such teacher.
+        """
         self._runtime, self._link = runtime, link
         at, must = self._time.at, self._case.must
         if link is not None:
@@ -53,17 +56,17 @@ class Script:
                 at(self._begin_s + number * _LESSON_EVERY_S, self._command_sender(lesson))
 
     def restart(self, runtime: Runtime) -> None:
-        """Stop and resume the restarted program."""
+        """Continue on the runtime of a restarted program: stop it and send the command to resume."""
         self._runtime, self._link = runtime, None
         runtime.handler.stop(STARTED)
         self.resume()
 
     def resume(self) -> None:
-        """Send the command to resume."""
+        """Put the command to resume into the robot's inbox."""
         self._send(Resume("resume", _TEACHER))
 
     def after_tick(self, record: TickRecord) -> None:
-        """Answer a question while no fault is active."""
+        """Answer a question while no fault is active; call it after each tick."""
         if self._link is not None:
             self._link.set_displayed_tick(record.tick)
         elif record.decision.asking and not self._begin_s <= self._time.now_s() < self.resume_at_s:

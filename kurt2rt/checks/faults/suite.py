@@ -25,9 +25,10 @@ class FaultTrial(NamedTuple):
 async def try_case(
     rigs: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
 ) -> FaultTrial:
-    """Run one case.
+    """Run one case in a temporary folder and return its outcome with the verdict.
 
-    The seed determines noise and the phases of fault, ticks and watchdog. Raises DidNotDriveError.
+    The seed determines noise and the phases of fault, ticks and watchdog. Raises DidNotDriveError if the robot does not
+    drive before the fault, KnowledgeError, SettingsError.
     """
     with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
         outcome = await run_scenario(rigs, case, table, settings, task, seed=seed, folder=Path(folder))
@@ -43,7 +44,10 @@ async def try_cases(
     seeds: Sequence[int],
     on_done: Callable[[FaultTrial], None],
 ) -> list[FaultTrial]:
-    """Run each case with each seed; `on_done` is called after each. Raises DidNotDriveError."""
+    """Run each case with each seed and return all trials; `on_done` is called after each.
+
+    Raises DidNotDriveError if a robot does not drive before its fault, KnowledgeError, SettingsError.
+    """
     trials = []
     for case in cases:
         for seed in seeds:

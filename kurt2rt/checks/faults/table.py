@@ -87,7 +87,7 @@ class CaseSettings(Settings):
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Return the accepted reasons of the standstill (`because`) as a tuple; empty for a robot that drives on."""
+        """Accepted reasons of the standstill (`because`) as a tuple; empty for a robot that drives on."""
         return (self.because,) if isinstance(self.because, str) else self.because
 
     @model_validator(mode="after")

@@ -47,7 +47,7 @@ class TeacherLink:
         self._passed_at_s = disturbance.begin_s
 
     def press(self) -> None:
-        """Begin a new press."""
+        """Begin a new press, whose id is larger than that of any press before."""
         self._press_id += 1
 
     def set_displayed_tick(self, tick: int) -> None:
@@ -55,7 +55,7 @@ class TeacherLink:
         self._handler.tick = tick
 
     def beat(self) -> None:
-        """Send the message that is due; call it every BEAT_S."""
+        """Send the message that is due through the fault of the link; call it every BEAT_S."""
         if not self._press_id:
             return
         disturbance, now_s = self._disturbance, self._time.now_s()
@@ -84,7 +84,7 @@ class TeacherLink:
                 self._time.at(now_s + disturbance.delay_s, lambda: self._arrive(*message))
 
     def start(self) -> None:
-        """Start to send periodically."""
+        """Schedule a call of `beat` every BEAT_S of simulated time, without end."""
         self._time.every(BEAT_S, self._time.now_s(), self.beat)
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:

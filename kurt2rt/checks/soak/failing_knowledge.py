@@ -20,7 +20,10 @@ _FAIL = ("off", "intermittent", "garbage", "wrong")
 
 
 def open_soak_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
-    """Return the file's content with its journal closed; SoakKnowledge opens a faulty one."""
+    """Return the file's content with its journal closed; SoakKnowledge opens a faulty one.
+
+    Raises KnowledgeError if the file is damaged or does not fit robot or task, SettingsError.
+    """
     opened = open_for_teaching(path, settings, task)
     opened.journal.close()
     return opened
@@ -48,18 +51,21 @@ class SoakKnowledge:
 
     @property
     def lessons(self) -> int:
-        """Return the number of lessons in the file so far."""
+        """Number of lessons in the file so far."""
         return len(self._before) + len(self.submitted)
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """Start a fault. Raises DiskOutOfStepError."""
+        """Let the disk fail as the disturbance says, until `clear`.
+
+        Raises DiskOutOfStepError if earlier lessons do not become durable.
+        """
         self.keep_in_step(with_statistics=True)
         self._disturbance = self._journal.disturbance = disturbance
         if disturbance.kind == "wrong":
             schedule_file_swap(self._simulated, disturbance, self._path)
 
     def clear(self) -> None:
-        """End the fault."""
+        """End the fault of the disk."""
         self._disturbance = self._journal.disturbance = None
 
     def keep_in_step(self, *, with_statistics: bool = False) -> None:
@@ -78,19 +84,22 @@ class SoakKnowledge:
             raise DiskOutOfStepError(f"statistics wait; {self.writer.saving_error}")
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
-        """Note a lesson that is durable or failed."""
+        """Note the command id of a lesson that is durable; ignore a lesson that was refused."""
         if acknowledgement.sequence is not None:
             self.acknowledged.append(acknowledgement.command_id)
 
     def close(self) -> None:
-        """Write the rest and close the file. Raises KnowledgeError."""
+        """Write the rest and close the file. Raises KnowledgeError if lessons were not written."""
         self._journal.is_over = True
         self.writer.close(_PATIENCE_S)
         for acknowledgement in self.writer.acknowledged():
             self.on_acknowledged(acknowledgement)
 
     def lost_lessons(self) -> Complaint | None:
-        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order.
+
+        Raises KnowledgeError if the file cannot be read.
+        """
         # One by one, for all at once would be more than the program itself takes; whether they fit one another is
         # looked at when it is opened again.
         awaited = chain(self._before, self.submitted)

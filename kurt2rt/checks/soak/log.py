@@ -18,7 +18,7 @@ class MinuteLog:
         self._worst_late_s = 0.0
 
     def on_tick(self, record: TickRecord, late_s: float, missed: int) -> None:
-        """Count a tick: its lateness, and the ticks missed before it."""
+        """Count a tick: its lateness in s, and the number of ticks missed before it."""
         self._ticks += 1
         self._drives += record.guard_result.wheel_speeds != STANDSTILL
         self._asks += record.decision.asking
@@ -30,7 +30,10 @@ class MinuteLog:
         self._worst_late_s = max(self._worst_late_s, late_s)
 
     def end_minute(self, at_s: float, program: ProgramRun, mood: str) -> None:
-        """Append the minute's sums."""
+        """Append the sums of the minute that ends at `at_s`, in s, and start the next ones from 0.
+
+        `program`: running program. `mood`: of the teacher.
+        """
         ticks = max(1, self._ticks)
         self.minutes.append(
             SoakMinute(

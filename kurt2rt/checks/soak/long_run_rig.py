@@ -21,16 +21,16 @@ class SoakRig(BusRig, Protocol):
 
     @property
     def position_m(self) -> tuple[float, float]:
-        """Return the true position."""
+        """True position (x, y) of the robot in m."""
         ...
 
     @property
     def collisions(self) -> int:
-        """Return the number of contacts."""
+        """Number of contacts with walls and obstacles so far."""
         ...
 
     def start_driver(self, wire: str) -> Kurt2:
-        """Start a new driver over a wire given by name, or `none`."""
+        """Start a new driver over a wire given by name, or `none`; return it. Raises SettingsError."""
         ...
 
     def end_driver(self) -> None:
@@ -40,11 +40,15 @@ class SoakRig(BusRig, Protocol):
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
     ) -> RigDisturbance:
-        """Schedule a fault; a target that is no part of robot or bus is left to the caller. Times in s."""
+        """Schedule a fault of `target` from `begin_s` to `end_s` and return it. Times in s of simulated time.
+
+        A target that is no part of robot or bus is left to the caller. `period_s` and `delay_s` are those of the
+        fault's kind.
+        """
         ...
 
     def end(self) -> None:
-        """Remove the fault."""
+        """Remove the fault from robot and bus."""
         ...
 
     def attach_tap(self, tap: Tap | None) -> None:
@@ -56,5 +60,5 @@ class SoakRig(BusRig, Protocol):
         ...
 
     def power_cycle(self) -> None:
-        """Power-cycle the robot's controller."""
+        """Switch the robot's controller off and on."""
         ...

@@ -50,11 +50,14 @@ class OdometryCheck:
         self._ticks[1] += readings.encoder_right_ticks
 
     def invalidate(self) -> None:
-        """Skip the next comparison."""
+        """Skip the next comparison, because a fault or a repositioning made it meaningless."""
         self._valid = False
 
     def compare(self) -> None:
-        """Compare the interval and begin the next one."""
+        """Compare encoder ticks and true rotation since the last call, and begin the next interval.
+
+        The largest difference goes to `worst_m`.
+        """
         if self._valid:
             for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):
                 self.worst_m = max(self.worst_m, abs(ticks * self._metres_per_tick - (turned_m - before_m)))
@@ -126,12 +129,12 @@ class SoakObserver(BusObserver):
         return self._told_standing or self._silent
 
     def watch_for_standstill(self) -> None:
-        """Reset `stood_at_s` to the next standstill."""
+        """Watch for the next standstill, which `first_standstill_s` then returns."""
         self.stood_at_s = None
         self.slowest_m_s = math.inf
 
     def first_standstill_s(self) -> float | None:
-        """Return the time of the first standstill since `watch_for_standstill`; None without one."""
+        """Return the time in s of the first standstill since `watch_for_standstill`; None without one."""
         if self.stood_at_s is None and self._silent:
             return self._heard_at_s + self._limits.controller_watchdog_s
         return self.stood_at_s

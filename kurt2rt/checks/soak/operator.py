@@ -28,7 +28,10 @@ class SoakOperator:
         self._resume_in_vain = False
 
     def on_tick(self, record: TickRecord) -> bool:
-        """Judge a tick; return whether the robot was repositioned after it."""
+        """Count how long the robot has not moved; return whether it was repositioned after this tick.
+
+        If the last repositioning did not help, its controller is power-cycled first. Call it after each tick.
+        """
         if not record.guard_result.latched:
             self._resume_in_vain = False
         elif _was_resumed(record):

@@ -111,9 +111,10 @@ class ProgramRun:
         return self._started_s is not None and self._time.now_s() - self._started_s > _READY_AFTER_S
 
     async def run(self, on_tick: Callable[[TickRecord], None], is_over: Callable[[], bool]) -> None:
-        """Run the loop like kurt2rt.service.serve: after any error the wheels stop first.
+        """Run the loop as kurt2rt.service.serve does, until `is_over` returns True or an error ends it.
 
-        `is_over`: called after each tick.
+        After any error the wheels stop first; `ended_by` tells the error, and nothing is raised. `on_tick` and
+        `is_over` are called after each tick.
         """
         runtime = self.runtime
         self._started_s = self._time.now_s()
@@ -135,7 +136,10 @@ class ProgramRun:
         self._started_s = None
 
     def close(self) -> Complaint | None:
-        """Save statistics, end the driver, close the file and compare it with the lessons. Raises KnowledgeError."""
+        """Save statistics, end the driver, close the file and compare it with the lessons.
+
+        Returns None if no lesson was lost. Raises KnowledgeError.
+        """
         self.runtime.scheduler.end()
         self._rig.end_driver()
         if not self.ended_by:
@@ -146,7 +150,7 @@ class ProgramRun:
         return self.knowledge.lost_lessons()
 
     def take_manual_control(self, disturbance: RigDisturbance) -> None:
-        """Drive manually over a link with a scheduled fault."""
+        """Let another teacher take the robot and drive it by hand, over a link with a scheduled fault."""
         link = self._link = TeacherLink(self._time, disturbance, self.runtime, self._chance)
         self._presses += 1
         for _ in range(self._presses):  # a press has a larger number than that of any press before
@@ -156,7 +160,7 @@ class ProgramRun:
         self._beat(link)
 
     def repeat_known_lesson(self) -> None:
-        """Teach a lesson that changes nothing."""
+        """Teach the action of the oldest RLA once more, a lesson that changes nothing; without an RLA do nothing."""
         rla = next(iter(self.runtime.level.system.rlas), None)
         if rla is not None:
             self._lessons_sent += 1
@@ -167,7 +171,7 @@ class ProgramRun:
         self._put(self._teacher.stop())
 
     def clear(self, target: Target) -> None:
-        """End the fault of a target."""
+        """End the fault of a target of the program: clock, tick, disk or teacher_link; ignore other targets."""
         match target:
             case "clock":
                 self.clock.clear()

@@ -64,7 +64,7 @@ def as_json(result: SoakResult) -> str:
 
 
 def texts_of(complaints: Sequence[Complaint]) -> str:
-    """Return all texts in one line."""
+    """Return the texts of all complaints in one line."""
     return "; ".join(map(text_of, complaints))
 
 

@@ -45,16 +45,16 @@ def used_mb() -> float:
 
 
 def open_files() -> int:
-    """Return the number of file descriptors."""
+    """Return the number of open file descriptors of this process."""
     return int(psutil.Process().num_fds())
 
 
 def threads() -> int:
-    """Return the number of Python threads."""
+    """Return the number of Python threads of this process."""
     return threading.active_count()
 
 
 def objects_by_type(most: int = 40) -> dict[str, int]:
-    """Return the most frequent types of the garbage collector's objects. Slow."""
+    """Return the number of objects by type name, of the `most` frequent types of the garbage collector. Slow."""
     counted = Counter(type(each).__qualname__ for each in gc.get_objects())
     return dict(counted.most_common(most))

@@ -81,7 +81,7 @@ class SoakRun:
     async def run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
         """Run for `hours` of simulated time, once; `on_progress` gets simulated seconds.
 
-        Raises KnowledgeError, DiskOutOfStepError, OSError.
+        Raises KnowledgeError, SettingsError, DiskOutOfStepError, OSError.
         """
         try:
             return await self._run(hours, on_progress)

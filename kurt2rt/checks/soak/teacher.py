@@ -64,7 +64,7 @@ class SoakTeacher:
         self._started_anew = True
 
     def watch(self, record: TickRecord, *, hand: bool, taken: bool) -> list[Command]:
-        """Return the commands after a tick.
+        """Return the commands after a tick, in order; call it after each tick.
 
         `hand`: another teacher drives manually. `taken`: that teacher still has control.
         """
