@@ -100,11 +100,11 @@ class Runtime:
     scheduler: Scheduler[TickRecord]
 
     def reposition(self) -> None:
-        """Tell the next tick that the robot was set down elsewhere."""
+        """Tell the next tick that the robot was set down elsewhere, so that it counts no transition."""
         self.inbox.put(RobotRepositioned())
 
     def snapshot(self) -> Statistics:
-        """Return counts, values and expectations of the active RLAs."""
+        """Return counts, values and expectations of the active RLAs, to be saved; drop those of deleted RLAs."""
         counted, system = self.statistics, self.level.system
         counted.drop_deleted(lambda rla_id: system.get(rla_id) is not None)
         return replace(
@@ -239,6 +239,8 @@ def build_runtime(
     Raises:
         hal.settings.SettingsError: for settings that do not fit each other.
         UnknownActionError, UnknownBehaviourError: for knowledge that cannot act here.
+        InvalidEventError: for an event that does not fit those before it.
+        ValueError: for a saved expectation with another number of features.
     """
     options = options or RuntimeOptions()
     mind = _Assembly(settings, task, tuple(events), options)

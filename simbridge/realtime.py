@@ -48,7 +48,7 @@ class RealtimeSimulation:
             self._held = True
 
     def step(self) -> None:
-        """Step once in the caller's thread, while the simulation is held."""
+        """Step once in the caller's thread; call it only between `hold` and `go_on`."""
         while self._jobs:
             self._jobs.popleft()()
         self._robot.step()
@@ -59,7 +59,7 @@ class RealtimeSimulation:
             self._held = False
 
     def wait(self, timeout_s: float) -> bool:
-        """Wait up to `timeout_s` and return whether the thread has ended."""
+        """Wait up to `timeout_s` for the thread's end; return whether it has ended."""
         self._thread.join(timeout_s)
         return not self._thread.is_alive()
 

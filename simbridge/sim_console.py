@@ -30,7 +30,7 @@ class SimConsole:
         self._ground = ground
 
     def obey(self, line: str) -> str:
-        """Execute a line and return the answer for the screen."""
+        """Execute a typed line and return the answer for the screen; an error of the user is an answer, too."""
         match line.split():
             case []:
                 return ""
@@ -80,7 +80,7 @@ class TypedLines:
         self.thread.start()
 
     def typed(self) -> Iterator[str]:
-        """Yield the lines since the last call."""
+        """Yield the lines that were typed since the last call; never waits."""
         while not self._typed.empty():
             yield self._typed.get()
 
@@ -100,7 +100,7 @@ class News:
         self._unheard, self._dead, self._trouble, self._collisions = True, False, "", 0
 
     def since(self) -> Iterator[str]:
-        """Yield a line for each change."""
+        """Yield a line for each change of the robot since the last call."""
         robot, trouble = self._standalone.robot, self._standalone.bus.error_text
         controller = robot.controller
         unheard, dead, collisions = controller.watchdog_expired, controller.crashed, robot.collisions
@@ -126,7 +126,7 @@ class StatusLine:
         self._told = 0
 
     def next(self) -> str:
-        """Return the present status; rates are those since the last line."""
+        """Return the present status in a line; its rates are those since the last call."""
         robot, bus, simulation = self._standalone.robot, self._standalone.bus, self._standalone.simulation
         controller = robot.controller
         time_s, control_frames = robot.time_s, controller.control_frames

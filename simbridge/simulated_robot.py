@@ -77,7 +77,7 @@ class SimulatedRobot:
         controller.send(*wheels.take_ticks(), self._pressed)
 
     def place(self, pose: Pose) -> None:
-        """Reposition the robot: wheels still, sensors settled, no lap or collision counted."""
+        """Move the robot to a pose: wheels still, sensors settled, no lap or collision counted."""
         self._wheels.halt()
         self._body.place(pose)
         self._collisions.end_episode()
@@ -88,7 +88,7 @@ class SimulatedRobot:
 
     @property
     def time_s(self) -> float:
-        """Return the simulated time since power-on."""
+        """Simulated time in s since power-on."""
         return self._cycles * self._cycle_s
 
     @property
@@ -97,12 +97,12 @@ class SimulatedRobot:
 
     @property
     def wheel_speeds(self) -> WheelSpeeds:
-        """Return the true rim speeds of the two sides."""
+        """True rim speeds of the two sides, in m/s."""
         return WheelSpeeds(self._wheels.left_m_s, self._wheels.right_m_s)
 
     @property
     def collisions(self) -> int:
-        """Return the number of collisions; touches at most 0.5 s apart count as one."""
+        """Number of collisions; touches at most 0.5 s apart count as one."""
         return self._collisions.count
 
     @property
@@ -115,12 +115,12 @@ class SimulatedRobot:
 
     @property
     def laps(self) -> float:
-        """Return the progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
+        """Progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
         return self._progress.laps
 
     @property
     def lap_m(self) -> float:
-        """Return the length of a lap along the outer wall of the room."""
+        """Length in m of a lap along the outer wall of the room."""
         return self._progress.lap_m
 
     @property

@@ -42,12 +42,12 @@ class Kurt2World:
 
     @property
     def held_world(self) -> RealtimeSimulation:
-        """The simulation, for a clock that steps it."""
+        """Thread of the simulation, for a clock that holds and steps it."""
         return self._simulation
 
     @property
     def lives(self) -> bool:
-        """True while the simulation runs."""
+        """Return whether the simulation runs."""
         return self._simulation.error is None
 
     def place(self) -> SimulatedPlace:
@@ -62,7 +62,10 @@ class Kurt2World:
         return plan_of(self._world, self._version)
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Shift a wall or obstacle; not onto the robot. Raises WorldRefusedError."""
+        """Shift a wall or obstacle by (dx_m, dy_m), in m.
+
+        Raises WorldRefusedError for an unknown name, or if it would lie on the robot.
+        """
         world = self._world.moved(name, dx_m, dy_m)
         if self._stands_on_robot(world, name):
             raise WorldRefusedError(WorldRefusal.WALL_ON_ROBOT, name=name)
@@ -71,14 +74,14 @@ class Kurt2World:
         self._simulation.submit(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
 
     def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        """Put the robot down elsewhere, wheels still. Raises WorldRefusedError."""
+        """Put the robot, wheels still, at a pose in m and rad. Raises WorldRefusedError if it does not fit there."""
         pose = Pose(x_m, y_m, heading_rad)
         if self._world.clearance_m(pose, self._geometry) == 0.0:
             raise WorldRefusedError(WorldRefusal.NO_ROOM)
         self._simulation.submit(lambda: self._robot.place(pose))
 
     def put_robot_back(self) -> None:
-        """Put the robot down where the run began, wheels still. Raises WorldRefusedError."""
+        """Put the robot where the run began, wheels still. Raises WorldRefusedError if it does not fit there now."""
         if self._world.clearance_m(self._start, self._geometry) == 0.0:
             raise WorldRefusedError(WorldRefusal.START_BLOCKED)
         self._simulation.submit(lambda: self._robot.place(self._start))

@@ -56,13 +56,13 @@ class Kurt2Simulation:
 
     @property
     def position(self) -> Position:
-        """True position."""
+        """True position of the robot, in m."""
         pose = self.simulated_robot.pose
         return Position(pose.x_m, pose.y_m)
 
     @property
     def pose(self) -> Pose:
-        """True pose."""
+        """True pose of the robot, in m and rad."""
         return self.simulated_robot.pose
 
     @property
@@ -81,13 +81,13 @@ class Kurt2Simulation:
 
     @property
     def nearest_m(self) -> float:
-        """Distance from the robot's center to the nearest wall or obstacle."""
+        """Distance in m from the robot's centre to the nearest wall or obstacle."""
         pose = self.simulated_robot.pose
         return self._nearest.distance_m((pose.x_m, pose.y_m))
 
     @property
     def collisions(self) -> int:
-        """Contacts so far."""
+        """Contacts with walls or obstacles so far."""
         return self.simulated_robot.collisions
 
     @property
@@ -97,16 +97,16 @@ class Kurt2Simulation:
 
     @property
     def laps(self) -> float:
-        """Progress along walls, in laps."""
+        """Progress along walls, in laps; driving backwards counts negative."""
         return self.simulated_robot.laps
 
     @property
     def lap_m(self) -> float:
-        """Length of a lap."""
+        """Length of a lap along the outer wall, in m."""
         return self.simulated_robot.lap_m
 
     def step(self) -> None:
-        """One cycle of 10 ms."""
+        """Advance the world by one cycle of 10 ms. Raises hal.bus.BusError."""
         self._line.cycle(self.simulated_robot.step)
 
     def attach_tap(self, tap: Tap | None) -> None:
@@ -114,7 +114,7 @@ class Kurt2Simulation:
         self._line.notebook_end.tap = tap
 
     def rescue(self) -> None:
-        """Set the robot down at the nearest start pose."""
+        """Put the robot, standing, at the nearest start pose."""
         here = self.simulated_robot.pose
 
         def squared_distance(pose: Pose) -> float:
@@ -123,16 +123,23 @@ class Kurt2Simulation:
         self.simulated_robot.place(min(self._starts, key=squared_distance))
 
     def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
-        """Set the robot down elsewhere."""
+        """Put the robot, standing, at a random start pose, or at any free pose `in_sight` of an obstacle.
+
+        `close`: so close to it that the robot cannot turn on the spot. Raises hal.settings.SettingsError if no free
+        pose is found.
+        """
         self.simulated_robot.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
 
     def put(self, pose: Pose) -> None:
-        """Set the robot down here."""
+        """Put the robot, standing, at this pose."""
         self.simulated_robot.place(pose)
 
     @contextmanager
     def live(self) -> Iterator[RealtimeSimulation]:
-        """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
+        """Advance the world in real time in a thread, with the robot's watchdog running, until the context ends.
+
+        Yields the thread. Leaving raises the error that ended it, if any.
+        """
         with (
             self._line.live(),
             RealtimeSimulation(self.simulated_robot, self._cycle_s) as realtime,
@@ -154,29 +161,38 @@ class Kurt2SimulationFactory:
     wire: str = NO_WIRE
 
     def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
-        """Open the simulated robot in a world."""
+        """Open the simulated robot in a world; `seed` and `purpose` make its sensors, start pose and noise.
+
+        Raises SettingsError for an unknown world or wire.
+        """
         return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
 
     def require_worlds(self, *worlds: str) -> None:
-        """Look at the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
         require_wire(self.wire)
         for world in worlds:
             load_world(world, self.settings)
 
     def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError."""
+        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
         return plan_of(load_world(world, self.settings))
 
     def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above."""
+        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
         draw_world(axes, load_world(world, self.settings))
 
     def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at the first start pose of a world."""
+        """Draw the robot at the first start pose of a world, on axes in m.
+
+        Raises hal.settings.SettingsError for an unknown world.
+        """
         draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
 
     def settings_of(self, world: str) -> str:
-        """Return all settings of a world, and the wire, as a text."""
+        """Return all settings of a world, and the wire, as a text.
+
+        Raises hal.settings.SettingsError for an unknown world.
+        """
         return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
 
 
@@ -184,11 +200,11 @@ class Kurt2SimulationFactory:
 def simulated_robot(
     settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
 ) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
-    """Yield a simulation that runs in real time, its second guard awake, and its world for a teacher.
+    """Yield a simulation that runs in real time, its watchdog running, and its world for a teacher.
 
-    A stall of this program does not keep the robot stopped: its wheels stalled with it.
-
-    `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
+    A stall of this program does not keep the robot stopped: its wheels stalled with it. `tap` sees the frames at the
+    notebook's end of its bus. Raises SettingsError for an unknown world or wire, and on leaving the error that ended
+    the simulation.
     """
     simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
     simulation.attach_tap(tap)

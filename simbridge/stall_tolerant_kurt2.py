@@ -18,7 +18,7 @@ class StallTolerantKurt2(Kurt2):
     """Reason given to `emergency_stop` last; None since the last release."""
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Ask for wheel speeds; the tick that ends a stall stands, and its latch is not kept."""
+        """Ask for wheel speeds in m/s; the tick that ends a stall stands, and its latch is not kept. Times in s."""
         grant = super().drive(wanted, decided_at_s, now_s)
         if not grant.latched or grant.reasons != _STALLED or self._requested is not None:
             return grant
@@ -28,12 +28,12 @@ class StallTolerantKurt2(Kurt2):
         return grant._replace(latched=self.health.latched is not None)
 
     def emergency_stop(self, reason: GuardReason) -> None:
-        """Brake now and stay stopped until `release`, whatever stalled before."""
+        """Brake now and stay stopped until `release`, also if a stall had latched the guard before."""
         self._requested = reason
         super().emergency_stop(reason)
 
     def release(self) -> None:
-        """End a latched stop."""
+        """End a latched stop; the robot stands until it is driven."""
         self._requested = None
         super().release()
 

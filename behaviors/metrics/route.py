@@ -35,7 +35,7 @@ class RouteSettings(MetricSettings):
     decisions: Annotated[int, Field(ge=4, le=64)] = 8
     """Junctions of the loop; at each of them one way on is right."""
     seed: Annotated[int, Field(ge=0)] | None = None
-    """Which loop of all that there are; None: the one of the robot's seed, where a robot is taught it."""
+    """Seed that chooses among all loops; None: the robot's seed if it is taught the loop."""
     starts: Annotated[int, Field(ge=1, le=100)] = 1
     """Number of starts in the training run: a decision without history is corrected at the next start only."""
 
@@ -69,7 +69,7 @@ class Passage:
     """Passage of the robot through one junction of the route."""
 
     leg: int
-    """Which one of the route it came by."""
+    """Index of the leg that the robot came by, from 0."""
     right: int
     """Quarter turns to the left that were right."""
     taken: int | None

@@ -47,7 +47,7 @@ class Route:
 
     @property
     def quarters(self) -> tuple[int, ...]:
-        """Quarter turns to the left at each junction."""
+        """Quarter turns to the left at each junction, in order."""
         return tuple(leg.quarters for leg in self.legs)
 
 

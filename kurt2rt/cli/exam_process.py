@@ -32,7 +32,11 @@ _TELL_EACH_SHARE = 0.01
 
 
 def main(arguments: list[str]) -> None:
-    """Examine, draw, and say what came of it."""
+    """Examine the knowledge, draw the drives and print the status as lines of JSON.
+
+    `arguments`: knowledge file, picture to write, robot, task and seed, as texts. An error of file or settings is
+    printed as the status. Raises ValueError for a seed that is no number.
+    """
     knowledge, picture, robot_name, task_name, seed = arguments
     os.nice(NICENESS)
     threading.Thread(target=_end_with_input, daemon=True).start()

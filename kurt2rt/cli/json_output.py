@@ -35,7 +35,10 @@ def require_json_file(file: Path | None, *, as_json: bool) -> None:
 
 
 def print_json(value: object) -> None:
-    """Print a value, as `plain` has it, as one JSON document."""
+    """Print a value, as `plain` returns it, as one JSON document on standard output.
+
+    Raises TypeError for a value that `plain` does not know.
+    """
     typer.echo(json.dumps(plain(value), indent=2, allow_nan=False))
 
 

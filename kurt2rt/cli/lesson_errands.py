@@ -20,14 +20,20 @@ from kurt2rt.platform.text_table import print_whole
 
 
 def runs_errands(task: TaskSettings) -> bool:
-    """Return whether the task is driven to places of a town."""
+    """Return whether the task sends the robot to places of a town."""
     return isinstance(task.course, ErrandsSettings)
 
 
 def errands(setup: LessonSetup, options: LessonOptions) -> None:
     """Lead robots through a town and send them to places; print tables and draw each robot.
 
-    Results that are in the folder already are kept. Raises typer.BadParameter for options of other lessons.
+    Results that are in the folder already are kept.
+
+    Raises:
+        typer.BadParameter: an option belongs to other lessons.
+        SettingsError: task, robot or world cannot be loaded.
+        StudyError: another run writes to the folder, or it has results of other settings.
+        KnowledgeError: a knowledge file of the streets cannot be read.
     """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
     from kurt2rt.experiments.navigation.figures import draw_errands

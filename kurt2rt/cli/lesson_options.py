@@ -89,7 +89,7 @@ class LessonOptions:
 
     @property
     def all_seeds(self) -> Sequence[int]:
-        """Return the seeds of --seeds, or that of --seed. Raises typer.BadParameter."""
+        """Seeds of --seeds, or that of --seed. Raises typer.BadParameter."""
         return [self.seed] if self.seeds is None else parse_seeds(self.seeds)
 
 

@@ -31,7 +31,7 @@ def teaches_route(task: TaskSettings) -> bool:
 
 
 def require_no_route_options(task: TaskSettings, options: LessonOptions) -> None:
-    """Require options that suit a task without a route. Raises typer.BadParameter."""
+    """Raise typer.BadParameter if the options include one that only a task with a route has."""
     for name, value in {"--decisions": options.decisions, "--basic": options.basic}.items():
         if value:
             raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
@@ -40,7 +40,14 @@ def require_no_route_options(task: TaskSettings, options: LessonOptions) -> None
 
 
 def one_route(setup: LessonSetup, options: LessonOptions) -> None:
-    """Teach one robot one route, examine it, print the numbers and draw the drive."""
+    """Teach one robot one route, examine it, print the numbers and draw the drive.
+
+    Raises:
+        typer.BadParameter: options do not fit.
+        SettingsError: task, robot or world cannot be loaded, or do not fit.
+        StudyError: the knowledge file of the streets is missing.
+        KnowledgeError: a knowledge file cannot be read or written.
+    """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
     from kurt2rt.experiments.route.figures import draw_route
 
@@ -82,7 +89,15 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
 
 
 def many_routes(setup: LessonSetup, options: LessonOptions, command: str) -> None:
-    """Teach and examine many robots; what is done already is kept. Prints tables and writes a report."""
+    """Teach and examine many robots; keep results that are in the folder. Print tables and write a report.
+
+    `command`: typed words, for the report.
+
+    Raises:
+        SettingsError: task, robot or world cannot be loaded.
+        StudyError: another run writes to the folder, or it has results of other settings.
+        KnowledgeError: a knowledge file of the streets cannot be read.
+    """
     from kurt2rt.experiments.route.figures import draw_figures
     from kurt2rt.experiments.route.report import write_report
 

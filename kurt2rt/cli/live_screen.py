@@ -41,7 +41,7 @@ class LiveScreen:
         self._refresh()
 
     def close(self) -> None:
-        """Remove the lines in place."""
+        """Remove the lines in place, and leave the terminal as it was."""
         if self._live is not None:
             self._live.stop()
             self._live = None

@@ -44,7 +44,10 @@ _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BL
 
 
 def main() -> None:
-    """Run the command line. What a user can mend is said in one line on standard error, exit code 2; Ctrl-C: 130."""
+    """Run the command line and end the process by SystemExit.
+
+    An error that a user can mend is one line on standard error, with exit code 2; Ctrl-C ends with 130.
+    """
     # One thread: a product with some hundred rows is over before a second one wakes, and the loop needs its core.
     os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
     with end_at_interrupt():

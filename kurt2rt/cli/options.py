@@ -99,21 +99,21 @@ Changes = Annotated[
 
 
 def seeds_option(whole: str, quick: str) -> Any:
-    """--seeds of a study, and those that are taken unless it is given."""
+    """Return --seeds of a study; `whole` and `quick` are the seeds without it, as texts for the help."""
     return typer.Option(
         help=f"One robot per seed, e.g. {whole}, which is the default; with --quick {quick}.", show_default=False
     )
 
 
 def results_option(default: str) -> Any:
-    """--out of a study; `default` says where its results go else."""
+    """Return --out of a study; `default` is the folder without it, as text for the help."""
     return typer.Option(
         "--out", help=f"Folder for what is made; created when absent. Default: {default}.", show_default=False
     )
 
 
 def changes_of(words: list[str] | None) -> dict[str, str]:
-    """Return the values of --set by key. Raises typer.BadParameter."""
+    """Return the values of --set by key; None: no --set. Raises typer.BadParameter for a word without `=`."""
     changes = {}
     for word in words or ():
         key, equals, value = word.partition("=")
@@ -124,7 +124,10 @@ def changes_of(words: list[str] | None) -> dict[str, str]:
 
 
 def parse_seeds(text: str) -> list[int]:
-    """Return the seeds of `100-119` or `1,5,7-9`. Raises typer.BadParameter."""
+    """Return the seeds of `100-119` or `1,5,7-9`, in order.
+
+    Raises typer.BadParameter for another form, too many seeds, or a seed that is named twice.
+    """
     seeds: list[int] = []
     try:
         for part in text.split(","):
@@ -151,7 +154,11 @@ EarlierBus = Annotated[str | None, typer.Option("--robot", hidden=True)]
 
 
 def bus_of(bus: str, earlier: str | None, *, default: str) -> str:
-    """Return the bus that --bus, or its earlier name --robot, names. Raises typer.BadParameter for both."""
+    """Return the bus that --bus, or its earlier name --robot, gives.
+
+    `bus`: value of --bus, which is `default` if it was not typed. `earlier`: value of --robot; None: not typed. Raises
+    typer.BadParameter if the two differ.
+    """
     if earlier is None:
         return bus
     if bus not in (default, earlier):

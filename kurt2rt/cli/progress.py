@@ -20,7 +20,7 @@ from kurt2rt.experiments.study.pool import PoolProgress
 
 @contextmanager
 def job_bars() -> Iterator[Report]:
-    """Show a bar for each job that reports, on standard error: standard output holds results alone."""
+    """Yield a callback that shows a bar for each job, on standard error: standard output holds results alone."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -47,20 +47,20 @@ class OneBar:
         self._id = progress.add_task("", total=whole_s)
 
     def look(self, progress: PoolProgress) -> None:
-        """Show the progress of the jobs."""
+        """Show the progress of the jobs: their robot time, and the names of running jobs."""
         first, *others = progress.running or ("",)
         # One name and a number, so that the times next to it have room.
         doing = f"{first} and {len(others)} more" if others else first
         self._progress.update(self._id, completed=progress.done_s, description=doing)
 
     def say(self, what: str) -> None:
-        """Show what is done after the jobs."""
+        """Replace the text of the bar, for work after the jobs."""
         self._progress.update(self._id, description=what)
 
 
 @contextmanager
 def one_bar(whole_s: float) -> Iterator[OneBar]:
-    """Show one bar for all jobs, of `whole_s` seconds of robot time."""
+    """Yield one bar for all jobs, of `whole_s` seconds of robot time, on standard error."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=20),

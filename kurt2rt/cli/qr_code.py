@@ -10,7 +10,10 @@ _QUIET_ZONE = 2
 
 
 def qr_code(link: str) -> Text:
-    """Return the code, two modules a character high: 19 lines of 37 characters for a link of up to 78 letters."""
+    """Return the QR code of a link as text, two modules a character high.
+
+    It has 19 lines of 37 characters for a link of up to 78 letters.
+    """
     drawn = io.StringIO()
     segno.make(link, error="l", micro=False, boost_error=False).terminal(drawn, border=_QUIET_ZONE, compact=True)
     # White on black in any colour scheme, because some cameras do not read an inverted code.

@@ -15,12 +15,15 @@ _SUFFIX = ".auto"
 
 
 def own_file(knowledge: Path) -> Path:
-    """Return the scripted teacher's own file, next to that of the settings."""
+    """Return the path of the scripted teacher's own knowledge file, next to the file of the settings."""
     return knowledge.with_name(f"{knowledge.stem}{_SUFFIX}{knowledge.suffix}")
 
 
 def require_agreement(knowledge: Path) -> None:
-    """Ask before a scripted teacher teaches into a file in which people taught. Raises KnowledgeError, typer.Exit."""
+    """Ask before a scripted teacher teaches into a file in which people taught.
+
+    Raises typer.Exit if the user says no, KnowledgeError if there is no terminal to ask at or the file cannot be read.
+    """
     instead = "leave out --knowledge, then the scripted teacher has a file of its own"
     if knowledge.exists() and not people_agree(str(knowledge), read_teachers(knowledge), instead):
         raise typer.Exit(ExitCode.FAILED)

@@ -127,7 +127,7 @@ def _screen(first: HealthReport, *, watch: bool, json: bool) -> Iterator[Callabl
 
 
 def as_rich(report: HealthReport) -> Group:
-    """Return the report as a table, with its troubles below."""
+    """Return the report as a table for the terminal, with its troubles below."""
     table = TextTable()
     table.add_column("", whole=True)
     table.add_column("")

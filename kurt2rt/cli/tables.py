@@ -18,7 +18,7 @@ _UNLIMITED = 100_000
 
 
 def console_of() -> Console:
-    """Return standard output: as wide as the terminal or COLUMNS; a file or a pager gets each line whole."""
+    """Return a console on standard output: as wide as the terminal or COLUMNS; a file gets each line whole."""
     console = Console(highlight=False)
     if console.is_terminal or "COLUMNS" in os.environ:
         return console
@@ -28,7 +28,10 @@ def console_of() -> Console:
 def print_study(
     tables: "Iterable[Table]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
 ) -> None:
-    """Its tables, why some of it was not judged, and where the report is."""
+    """Print the tables of a study, the reasons not to judge it, and the path of the report.
+
+    `as_json`: as one JSON document.
+    """
     if as_json:
         print_json({"tables": tables_of(tables), "not_judged": list(reasons_not_to_judge), "report": report})
         return

@@ -42,12 +42,12 @@ class PageOptions:
 
     @property
     def names(self) -> frozenset[str]:
-        """Names of this machine, in lower case."""
+        """Names of this machine and of --host-name, in lower case, as browsers may write them in an address."""
         return own_names() | {each.lower() for each in self.host_names}
 
 
 def serve_page(device: Device, host: str, port: int, options: PageOptions, public_address: str | None = None) -> None:
-    """Serve the page of a device until told to end. Raises PageError.
+    """Serve the page of a device until a signal or the end of the input ends it.
 
     Args:
         device: paired device.
@@ -55,6 +55,10 @@ def serve_page(device: Device, host: str, port: int, options: PageOptions, publi
         port: UDP port of the robot.
         options: of the page.
         public_address: address of a TLS proxy in front of the page, such as https://robot.example.
+
+    Raises:
+        PageError: no TCP port is free, the public address is invalid, or the device's pairing was revoked or renewed.
+        CredentialsError: the pairing cannot be opened.
     """
     public = None if public_address is None else parse_public_address(public_address)
     everywhere = device.name not in OF_THIS_MACHINE
@@ -87,9 +91,13 @@ def serve_page(device: Device, host: str, port: int, options: PageOptions, publi
 
 
 def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> None:
-    """Serve this machine and, while a device is paired, the network, until told to end. Raises PageError.
+    """Serve this machine's page and, while devices are paired, theirs on the network, until told to end.
 
-    `port` is the UDP port of the robot, which is this machine.
+    It makes this machine's pairing if it is missing. `port` is the UDP port of the robot, which is this machine.
+
+    Raises:
+        PageError: no TCP port is free.
+        CredentialsError: the folder of pairings cannot be read or written.
     """
     pairings = Pairings(Path(service.teachers), Path(service.devices))
     local_pairing(pairings.teachers, pairings.devices, port=service.port)

@@ -15,7 +15,10 @@ _POLL_PAIRING_S = 1.0
 
 
 async def until_teaching_ends(device: Device, *, while_stdin: bool) -> str:
-    """Wait for the end; return its reason in a line for the user, empty if the user asked for it."""
+    """Wait for a signal, the end of the input (`while_stdin`) or of the device's pairing.
+
+    Returns the reason in a line for the user; empty if the user asked for the end.
+    """
     reason = ""
     async with anyio.create_task_group() as tasks:
 
@@ -31,7 +34,7 @@ async def until_teaching_ends(device: Device, *, while_stdin: bool) -> str:
 
 
 async def until_ended(*, while_stdin: bool) -> None:
-    """Wait for a signal that ends the program, or with `while_stdin` for the end of its input."""
+    """Return after a signal that ends the program, or with `while_stdin` at the end of its input."""
     async with anyio.create_task_group() as tasks:
 
         async def input_ends() -> None:

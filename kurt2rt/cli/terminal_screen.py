@@ -94,7 +94,7 @@ class TerminalScreen:
             self._pin(pages)
 
     def close(self) -> None:
-        """Remove the lines in place."""
+        """Remove the lines in place from the terminal."""
         if self._live is not None:
             self._live.close()
 

@@ -8,7 +8,7 @@ class AsyncioClock:
     """Waits by `asyncio.sleep`, as the reference for better clocks."""
 
     def now_s(self) -> float:
-        """Return monotonic time in seconds."""
+        """Return the monotonic time in s."""
         return time.monotonic()
 
     async def wait_until(self, deadline_s: float) -> None:

@@ -28,7 +28,10 @@ def make_private_folder(folder: Path) -> list[Path]:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder that outlives a power cut, as `make_private_folder` does. Raises OSError."""
+    """Make a folder and its missing parents, and make their names durable; an existing folder is left alone.
+
+    New folders are for this user alone. Raises OSError.
+    """
     for each in make_private_folder(folder):
         fsync_folder(each.parent)
 
@@ -49,7 +52,10 @@ def fsync_file(path: Path) -> None:
 
 
 def write_durably(path: Path, text: str) -> None:
-    """Write a file that is whole after a power cut, or as it was before. Raises OSError."""
+    """Write a text file (UTF-8) in place of the one before; after a power cut it is whole, or as it was before.
+
+    Raises OSError.
+    """
     make_folder(path.parent)
     fresh = path.with_name(path.name + ".new")
     with fresh.open("w", encoding="utf-8") as file:

@@ -50,7 +50,7 @@ class TickTimer:
         self.missed_ticks = 0
 
     def begin(self, lateness_s: float) -> None:
-        """Begin a tick that starts `lateness_s` seconds after its deadline."""
+        """Begin a tick that starts `lateness_s` seconds after its deadline; call `lap` per stage, then `end`."""
         self._lateness[self._row] = int(lateness_s * 1e9)
         self._last_ns = time.perf_counter_ns()
 
@@ -66,11 +66,11 @@ class TickTimer:
         self._row = self.ticks % self._capacity
 
     def stage(self, stage: Stage) -> Percentiles:
-        """Return the time of one stage."""
+        """Return median, p99 and maximum of the time of one stage, in µs; zeros before the first tick."""
         return self._share(np.array(self._stages[stage]))
 
     def tick(self) -> Percentiles:
-        """Return the time of all stages together."""
+        """Return median, p99 and maximum of the time of all stages together, in µs; zeros before the first tick."""
         return self._share(np.sum([np.array(column) for column in self._stages], axis=0))
 
     def lateness(self) -> Percentiles:
@@ -78,7 +78,7 @@ class TickTimer:
         return self._share(np.array(self._lateness))
 
     def lateness_of_last(self, ticks: int) -> Percentiles:
-        """Return the lateness of the last `ticks` finished ticks, as far as they are kept."""
+        """Return the lateness of the last `ticks` finished ticks, in µs, as far as they are kept."""
         kept = min(ticks, self.ticks, self._capacity)
         rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
         return percentiles_of(np.array(self._lateness)[rows])

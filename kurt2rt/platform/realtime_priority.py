@@ -12,7 +12,8 @@ UNIT_PRIORITY: Final = 20
 def set_sched_fifo(priority: int, guards: Iterable[threading.Thread] = ()) -> str:
     """Run this thread under SCHED_FIFO; return the result in a line for the log.
 
-    Other threads, and programs started later, keep the normal scheduling. Without permission the loop runs as before.
+    Other threads, and programs started later, keep the normal scheduling. Without permission the loop runs as before,
+    and nothing is raised.
 
     Args:
         priority: 1 to 99; 0: normal scheduling.

@@ -28,7 +28,7 @@ class Scheduler(Generic[RecordT]):
         self._ending = False
 
     def end(self) -> None:
-        """Let `run` return after the tick it is in."""
+        """Let `run` return after the present tick."""
         self._ending = True
 
     async def run(self, ticks: int | None, after_tick: Callable[[RecordT], None]) -> None:

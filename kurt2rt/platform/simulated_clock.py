@@ -11,15 +11,15 @@ class HeldWorld(Protocol):
     """World that runs in real time in its own thread, or is held and stepped."""
 
     def hold(self) -> None:
-        """Stop the world's own thread from stepping."""
+        """Stop the world's own thread from stepping, until `go_on`."""
         ...
 
     def step(self) -> None:
-        """Step one cycle of a held world."""
+        """Step one cycle of a held world, in the caller's thread."""
         ...
 
     def go_on(self) -> None:
-        """Let the world's own thread step again."""
+        """Let the world's own thread step again, after `hold`."""
         ...
 
 
@@ -28,16 +28,16 @@ class Speed(Protocol):
 
     @property
     def wanted(self) -> int:
-        """Return the chosen ratio of robot time to real time."""
+        """Chosen ratio of robot time to real time."""
         ...
 
     @property
     def reached(self) -> float:
-        """Return the ratio of robot time to real time, measured over the last second."""
+        """Ratio of robot time to real time, measured over the last second."""
         ...
 
     def set(self, times: int) -> None:
-        """Choose a ratio from 1 to the fastest, from the next tick on. Raises ValueError."""
+        """Choose a ratio from the next tick on. Raises ValueError outside 1 to the fastest."""
         ...
 
 
@@ -67,12 +67,12 @@ class SimulatedClock:
 
     @property
     def wanted(self) -> int:
-        """Return the chosen ratio of robot time to real time."""
+        """Chosen ratio of robot time to real time."""
         return self._wanted
 
     @property
     def reached(self) -> float:
-        """Return the ratio of robot time to real time, measured over the last second."""
+        """Ratio of robot time to real time, measured over the last second."""
         return self._reached
 
     def set(self, times: int) -> None:

@@ -10,7 +10,7 @@ _TURN_S = 0.0005
 
 @contextmanager
 def short_switch_interval() -> Iterator[None]:
-    """Set the switch interval to 0.5 ms in the block."""
+    """Set Python's thread switch interval to 0.5 ms in the block, and restore it at the end."""
     before_s = sys.getswitchinterval()
     sys.setswitchinterval(_TURN_S)
     try:

@@ -49,7 +49,10 @@ class TextTable:
         return len(self._rows)
 
     def add_column(self, heading: str, *, number: bool = False, whole: bool = False) -> None:
-        """Add a column on the right; `number` and `whole` as in `Column`."""
+        """Add a column on the right; call it before the first row.
+
+        `number`: right-aligned. `whole`: cells are never broken into lines.
+        """
         self._columns.append(Column(heading, number, whole))
 
     def add_row(self, *cells: str | Text) -> None:

@@ -38,7 +38,11 @@ class AnalogFrames:
         self.without_sensor = [number for number in range(len(_MESSAGES)) if number not in self.with_sensor]
 
     def update(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Repack the frames of the sensors `fresh`; `counts` holds the readings of all sensors."""
+        """Repack the frames of sensors with new readings.
+
+        `fresh`: indexes of these sensors. `counts`: readings of all sensors, in counts, in the order of the sensor
+        table.
+        """
         changed = set()
         for sensor in fresh:
             number, place = self._places[sensor]

@@ -21,5 +21,5 @@ class ControllerBus(Protocol):
         ...
 
     def telemetry_port(self) -> SendingPort:
-        """Return a sender of all frames except CONTROL."""
+        """Return a sender of all frames except CONTROL; may be called several times."""
         ...

@@ -98,15 +98,22 @@ class MicroController:
 
     @property
     def state(self) -> tuple[int, ...]:
-        """Return the inputs of the next cycle besides the present commands, for the state hash."""
+        """Inputs of the next cycle besides the present commands, for the state hash."""
         return self._silent_cycles, self._actuators_on, self.crashed, self.junk_frames
 
     def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Apply new sensor readings in counts."""
+        """Apply new sensor readings.
+
+        `fresh`: indexes of sensors with new readings. `counts`: readings of all sensors, in counts.
+        """
         self._telemetry.update_readings(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
-        """Run the second half of a cycle: send telemetry. Raises hal.bus.BusError."""
+        """Run the second half of a cycle: send telemetry.
+
+        `left_ticks`, `right_ticks`: encoder ticks of this cycle, forward positive. `bumpers`: bit n is set if bumper n
+        touches. Raises hal.bus.BusError.
+        """
         self._instruments.count(left_ticks, right_ticks)
         if not self.crashed:
             self._telemetry.send(left_ticks, right_ticks, bumpers)

@@ -45,7 +45,10 @@ class Telemetry:
         self._idle_turns = [idle[(turn - len(slow)) % SLOW_CYCLES :: SLOW_CYCLES] for turn in range(SLOW_CYCLES)]
 
     def update_readings(self, fresh: Sequence[int], counts: Sequence[int]) -> None:
-        """Apply the new readings of some sensors."""
+        """Apply the new readings of some sensors.
+
+        `fresh`: indexes of these sensors. `counts`: readings of all sensors, in counts.
+        """
         self._analog.update(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:

@@ -20,13 +20,13 @@ class Cable:
         self._ends: list[CableInterface] = []
 
     def open(self) -> "CableInterface":
-        """Return a new end."""
+        """Return a new end; it receives the frames that are carried from now on."""
         end = CableInterface(self)
         self._ends.append(end)
         return end
 
     def carry(self, frame: can.Message, sender: "CableInterface") -> None:
-        """Deliver a copy to every end, the sender's included."""
+        """Deliver a copy of a frame to every end, the sender's included."""
         now_s = self.now_s()
         for end in self._ends:
             if is_heard(frame, end.accepted_ids):
@@ -53,7 +53,7 @@ class CableInterface:
         """Number of frames dropped because the queue was full."""
 
     def now_s(self) -> float | None:
-        """Return the cable's time."""
+        """Return the cable's time in s."""
         return self._cable.now_s()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:
@@ -77,7 +77,7 @@ class CableInterface:
         self._cable.leave(self)
 
     def deliver(self, frame: can.Message, now_s: float, *, own: bool) -> None:
-        """Queue a copy, stamped with `now_s`."""
+        """Queue a copy of a frame, stamped with `now_s`, in s; `own`: whether this end sent it."""
         if len(self._waiting) >= _MOST_WAITING:
             self.overruns += 1
             return

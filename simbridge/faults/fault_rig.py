@@ -72,13 +72,13 @@ class SimulatedFaultRig:
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def restart_driver(self) -> Kurt2:
-        """Replace the driver by a new one, like a restart of its process."""
+        """Replace the driver by a new one, like a restart of its process; return the new driver."""
         self.robot.close()
         self.robot = self._driver()
         return self.robot
 
     def attach_tap(self, tap: Tap) -> None:
-        """Attach a tap to the driver's interface."""
+        """Let `tap` see each frame that passes the driver's interface."""
         self._notebooks_bus.tap = tap
 
     def close(self) -> None:
@@ -162,7 +162,8 @@ class FaultRigFactory:
     ) -> SimulatedFaultRig:
         """Return a rig with a fault from `begin_s` to `end_s`, shifted by the seed's phase within a cycle.
 
-        A target that is no part of robot or bus is left to the caller; the rig's `disturbance` has the times.
+        A target that is no part of robot or bus is left to the caller; the rig's `disturbance` has the times. Times in
+        s; `period_s` and `delay_s` are those of the fault's kind.
         """
         chance = random.Random(f"{target} {kind} {seed}")
         phase_s = chance.uniform(0.0, self.settings.can.cycle_s)

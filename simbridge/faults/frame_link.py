@@ -20,7 +20,7 @@ class FrameLink(Protocol):
     """Link that delivers frames now, later or never."""
 
     def carry(self, frame: can.Message, deliver: Deliver) -> None:
-        """Carry a frame. Raises OSError if sending fails."""
+        """Carry a frame: call `deliver` with it now, later or never. Raises OSError if sending fails."""
         ...
 
 
@@ -41,7 +41,7 @@ class DelayedFrames:
         time.at(fault.end_s, self._deliver_all)
 
     def add(self, frame: can.Message, deliver: Deliver, at_s: float | None) -> None:
-        """Queue a frame; at `at_s`, in s, the oldest one is delivered, none for None."""
+        """Queue a frame; at `at_s`, in s, the oldest frame of the queue is delivered; None: no delivery is due."""
         self._queue.append((frame, deliver))
         if at_s is not None:
             self._time.at(at_s, self._deliver_oldest)
@@ -84,7 +84,7 @@ class FaultyLink:
         self._late = DelayedFrames(fault, time)
 
     def carry(self, frame: can.Message, deliver: Deliver) -> None:
-        """Carry a frame."""
+        """Carry a frame, changed, delayed or lost while the fault acts; otherwise deliver it at once."""
         if self._concerns is not None and frame.arbitration_id not in self._concerns:
             deliver(frame)
         elif not self._fault.acts(self._time.now_s()):

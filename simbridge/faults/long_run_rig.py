@@ -76,7 +76,7 @@ class LongRunRig:
         self.time.every(POLL_S, self._chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def start_driver(self, wire: str) -> Kurt2:
-        """Start a new driver over a wire given by name, or `none`. Raises SettingsError."""
+        """Start a new driver over a wire given by name, or `none`; return it. Raises SettingsError."""
         self.end_driver()
         self._open_bus(wire)
         self._robots_bus.reopen()
@@ -93,7 +93,11 @@ class LongRunRig:
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
     ) -> TimedFault:
-        """Schedule a fault; a target that is no part of robot or bus is left to the caller. Times in s."""
+        """Schedule a fault of `target` from `begin_s` to `end_s` and return it. Times in s of simulated time.
+
+        A target that is no part of robot or bus is left to the caller. `period_s` and `delay_s` are those of the
+        fault's kind.
+        """
         disturbance = TimedFault(kind, begin_s, end_s, period_s, delay_s)
         part, time, chance = part_of(target), self.time, self._chance
         self._robots_links.outward = faulty_telemetry_link(part, disturbance, time, chance, self._codec)
@@ -103,12 +107,12 @@ class LongRunRig:
         return disturbance
 
     def end(self) -> None:
-        """Remove the fault."""
+        """Remove the fault from robot and bus."""
         self._robots_links.outward = self._notebooks_links.inward = self._notebooks_links.outward = None
         self._wheels.disturb(None, TimedFault("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
 
     def attach_tap(self, tap: Tap | None) -> None:
-        """Attach a tap to the driver's interface; None detaches it."""
+        """Let `tap` see each frame that passes the driver's interface; None detaches it."""
         if self._notebooks_bus is not None:
             self._notebooks_bus.tap = tap
 
@@ -117,12 +121,12 @@ class LongRunRig:
         self.simulation.place(self._chance.choice(self._starts))
 
     def power_cycle(self) -> None:
-        """Power-cycle the robot's controller."""
+        """Switch the robot's controller off and on."""
         self.simulation.controller.power_cycle()
 
     @property
     def position_m(self) -> tuple[float, float]:
-        """Return the true position."""
+        """True position (x, y) of the robot in m."""
         pose: Pose = self.simulation.pose
         return pose.x_m, pose.y_m
 

@@ -41,7 +41,7 @@ class FaultyMotor:
         self._garbage_cycles = 0
 
     def apply(self, command: SideCommand) -> SideCommand:
-        """Return the command that the motor executes."""
+        """Return the command that the motor executes in place of `command`, under its fault."""
         self._late.append(command)
         late = self._late.popleft() if len(self._late) > self._late_cycles else self._late[0]
         if not self._fault.acts(self._time.now_s()):

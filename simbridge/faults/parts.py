@@ -27,7 +27,7 @@ _FOREIGN_COMMAND = Frame(CONTROL_ID, struct.pack(">HhhH", 2, 20, 20, 1))
 
 
 def part_of(target: str) -> Part | None:
-    """Return the part of this name; None if it is no part of robot or bus."""
+    """Return the part of robot or bus with the name of a fault's target; None if it is no such part."""
     return next((each for each in PARTS if each == target), None)
 
 

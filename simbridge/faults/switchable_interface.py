@@ -47,7 +47,7 @@ class InterfaceWrapper:
         """Number of frames dropped because a queue was full."""
 
     def now_s(self) -> float | None:
-        """Return the time in s."""
+        """Return the simulated time in s."""
         return self._now_s()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:

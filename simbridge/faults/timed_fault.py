@@ -20,7 +20,7 @@ class TimedFault(NamedTuple):
     """delayed: the delay."""
 
     def acts(self, now_s: float) -> bool:
-        """Return whether the fault acts at this time; an intermittent one acts while it fails."""
+        """Return whether the fault acts at `now_s`, in s; an intermittent one acts while it fails."""
         if not self.begin_s <= now_s < self.end_s:
             return False
         return self.kind != "intermittent" or int((now_s - self.begin_s) / self.period_s) % 2 == 0

@@ -107,13 +107,13 @@ class Body:
 
     @property
     def velocity(self) -> tuple[float, float, float]:
-        """Return the world-frame velocity: x and y in m/s, yaw rate in rad/s."""
+        """World-frame velocity: x and y in m/s, yaw rate in rad/s."""
         x_m_s, y_m_s = self._body.velocity
         return x_m_s, y_m_s, self._body.angular_velocity
 
     @property
     def slip(self) -> tuple[float, float]:
-        """Return the slip ratios of the left and the right side."""
+        """Slip ratios of the left and the right side, dimensionless."""
         return self._left_slip, self._right_slip
 
     @property
@@ -121,7 +121,7 @@ class Body:
         return bool(self._points)
 
     def contacts(self) -> list[Contact]:
-        """Return the contact points of this cycle."""
+        """Return the contact points of the body with walls and obstacles in this cycle."""
         x_m, y_m, heading_rad = self.pose
         cos, sin = math.cos(heading_rad), math.sin(heading_rad)
         found = []

@@ -58,7 +58,7 @@ class CollisionCounter:
         self.count = 0
 
     def update(self, touching: bool) -> None:
-        """Process one cycle."""
+        """Count a collision if `touching` begins; call it in each cycle."""
         if not touching:
             self._free_cycles += 1
             return

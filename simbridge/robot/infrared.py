@@ -45,7 +45,7 @@ class InfraredSensors:
             self._calendar[int(due_s / cycle_s)].append(i)
 
     def measure(self, pose: Pose) -> Sequence[int]:
-        """Simulate one cycle and return the indices of the sensors with new readings."""
+        """Simulate one cycle at a pose and return the indexes of the sensors with new readings."""
         calendar, cycle = self._calendar, self._cycle
         self._cycle = cycle + 1
         slot = cycle % len(calendar)

@@ -34,5 +34,5 @@ class Noise:
         return self._fractions.pop()
 
     def uniform(self, count: int) -> list[float]:
-        """Return uniform numbers from -1 to 1, for constants of a robot."""
+        """Return `count` uniform numbers from -1 to 1, dimensionless, for constants of a robot."""
         return [float(value) for value in self._generator.uniform(-1.0, 1.0, count)]

@@ -47,7 +47,7 @@ class Wheels:
 
     @property
     def state(self) -> tuple[float, ...]:
-        """Return all state that the next cycle depends on."""
+        """All numbers that the next cycle depends on, for the state hash."""
         return self.left_m_s, self.right_m_s, self._left_carry, self._right_carry
 
     def _next_speed(self, speed: float, target: float, brake: bool) -> float:

@@ -38,7 +38,10 @@ class World:
             self._add_shape(pymunk.Circle(self._add_body(post.name), post.radius_m, (post.x_m, post.y_m)))
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        """Move a named wall or obstacle by an offset in m. Raises KeyError that lists the names."""
+        """Move a named wall or obstacle by an offset in m.
+
+        Raises WorldRefusedError, which lists the names, for an unknown name.
+        """
         self.settings = self.settings.moved(name, dx_m, dy_m)
         body = self._bodies[name]
         body.position = (body.position.x + dx_m, body.position.y + dy_m)

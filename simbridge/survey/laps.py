@@ -32,7 +32,7 @@ class WallProgress:
 
     @property
     def lap_m(self) -> float:
-        """Return the length of the outer wall's ring."""
+        """Length in m of the outer wall's ring."""
         return self._rings.lengths_m[0]
 
     def reset(self, pose: Pose) -> None:
@@ -45,7 +45,10 @@ class WallProgress:
         self._place = self._rings.place(pose.x_m, pose.y_m, pose.heading_rad, None)
 
     def update(self, x_m: float, y_m: float, heading_rad: float) -> float:
-        """Apply the pose that the robot drove to, a few decimetres from the last one, and return `laps`."""
+        """Apply the pose that the robot drove to, a few decimetres from the last one; return the progress in laps.
+
+        Position in m, heading in rad.
+        """
         if self._world.settings is not self._surveyed:
             # Arc lengths of the old rings mean nothing after a wall was moved.
             self.reset(Pose(x_m, y_m, heading_rad))

@@ -71,8 +71,8 @@ class WallRings:
         """Return the place that a robot at this pose follows, or None if no ring is within 0.3 m.
 
         The closest ring wins. If two stretches are about as close, as in a narrow passage, the robot's heading decides:
-        it follows the stretch that has its wall on the robot's left. The stretch next to `followed`, the last
-        place, is preferred by 5 cm.
+        it follows the stretch that has its wall on the robot's left. The stretch next to `followed`, the last place, is
+        preferred by 5 cm. Position in m, heading in rad.
         """
         gathered_at = self._gathered_at
         if gathered_at is None or math.dist((x_m, y_m), gathered_at) > _MARGIN_M:

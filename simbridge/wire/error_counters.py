@@ -27,19 +27,22 @@ class ErrorCounters:
         self.receive = 0
 
     def sent(self) -> None:
-        """Count a carried own frame."""
+        """Count a frame of this controller that the bus carried."""
         if self.transmit:
             self.transmit -= 1
 
     def received(self) -> None:
-        """Count a received frame."""
+        """Count a frame that this controller received whole."""
         if self.receive >= PASSIVE_LIMIT:
             self.receive = _RECOVERED_RECEIVE
         elif self.receive:
             self.receive -= 1
 
     def send_failed(self, *, unacknowledged: bool) -> None:
-        """Count a destroyed own frame; a missing acknowledgement alone never leads to bus-off."""
+        """Count a destroyed frame of this controller.
+
+        `unacknowledged`: whether only the acknowledgement was missing, which alone never leads to bus-off.
+        """
         if not (unacknowledged and self.state is ErrorState.PASSIVE):
             self.transmit += _SEND_ERROR
 
@@ -50,17 +53,17 @@ class ErrorCounters:
 
     @property
     def transmit_state(self) -> ErrorState:
-        """Return the state by the transmit counter."""
+        """Error state by the transmit counter."""
         return ErrorState.BUS_OFF if self.transmit >= BUS_OFF_LIMIT else _state(self.transmit)
 
     @property
     def receive_state(self) -> ErrorState:
-        """Return the state by the receive counter, which never leads to bus-off."""
+        """Error state by the receive counter, which never leads to bus-off."""
         return _state(self.receive)
 
     @property
     def state(self) -> ErrorState:
-        """Return the more severe of both states."""
+        """More severe of both error states."""
         if not (self.transmit or self.receive):
             return ErrorState.ACTIVE
         return max(self.transmit_state, self.receive_state)

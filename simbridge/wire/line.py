@@ -23,7 +23,7 @@ class Line(Protocol):
     notebook_end: CanBus
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
-        """Simulate one cycle up to the notebook's tick."""
+        """Simulate one cycle up to the notebook's tick; `step_robot` is called once within it."""
         ...
 
     def live(self) -> AbstractContextManager[None]:
@@ -80,7 +80,7 @@ class WiredLine:
 
     @contextmanager
     def live(self) -> Iterator[None]:
-        """Follow the monotonic clock within the context."""
+        """Let the wire follow the monotonic clock within the context."""
         self.wire.follow(time.monotonic)
         try:
             yield

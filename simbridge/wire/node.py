@@ -24,7 +24,7 @@ class Queued(NamedTuple):
 
     @staticmethod
     def of(frame: can.Message) -> "Queued":
-        """Return a frame with its arbitration key and its length."""
+        """Return the queue's entry of a frame, with its arbitration key and its length in bits."""
         return Queued(arbitration_key(frame), frame, frame_bits(frame))
 
 
@@ -86,7 +86,10 @@ class WireNode:
         self.received = deque(frame for frame in self.received if self._accepts(frame))
 
     def deliver(self, frame: can.Message, time_s: float, *, own: bool) -> None:
-        """Queue a copy of a carried frame for the reader if it passes the filter."""
+        """Queue a copy of a carried frame for the reader if it passes the filter.
+
+        `time_s`: its stamp in s. `own`: whether this node sent it.
+        """
         if not self._accepts(frame):
             return
         copy = frame.__deepcopy__(None)
@@ -95,7 +98,10 @@ class WireNode:
         self._store(copy)
 
     def update_state(self, time_ns: int) -> None:
-        """Report a changed error state to the reader; at bus-off also clear the transmit queue."""
+        """Report a changed error state to the reader; at bus-off clear the queue and schedule the restart.
+
+        There is no restart if `restart_s` of the settings is None. `time_ns`: present time of the wire in ns.
+        """
         state = self.counters.state
         if state is self.state:
             return
@@ -107,7 +113,10 @@ class WireNode:
                 self.restarts_at_ns = time_ns + round(self.settings.restart_s * 1e9)
 
     def restart(self, time_ns: int, joins_ns: int) -> None:
-        """Restart after bus-off; the node participates again from `joins_ns`."""
+        """Restart after bus-off at `time_ns`; the node participates again from `joins_ns`, both in ns of the wire.
+
+        The reader gets a frame that reports the restart.
+        """
         self.counters = ErrorCounters()
         self.state = ErrorState.ACTIVE
         self.restarts_at_ns = None

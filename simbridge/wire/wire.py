@@ -93,7 +93,7 @@ class Wire:
             node.enqueue(frame.__deepcopy__(None))
 
     def recv(self, node: WireNode) -> can.Message | None:
-        """Return the oldest received frame of this node, or None."""
+        """Return the oldest frame that waits for this node's reader; None without one. Never waits."""
         with self._lock:
             self._sync_clock()
             return node.received.popleft() if node.received else None

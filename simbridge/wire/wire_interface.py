@@ -22,7 +22,7 @@ class WireInterface:
         """Number of frames dropped because the reader's buffer was full."""
 
     def now_s(self) -> float | None:
-        """Return the wire's time, which stamps the frames."""
+        """Return the wire's time in s, which stamps the frames."""
         return self._wire.now_s()
 
     def set_id_filter(self, frame_ids: frozenset[int]) -> None:

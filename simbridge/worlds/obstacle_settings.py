@@ -29,7 +29,7 @@ class WallSettings(Settings):
 
     @property
     def corners(self) -> tuple[Point, ...]:
-        """Return the corners seen from above, counter-clockwise."""
+        """Corners seen from above, in m, counter-clockwise."""
         (ax, ay), (bx, by) = self.from_m, self.to_m
         heading_rad = math.atan2(by - ay, bx - ax)
         return rectangle(

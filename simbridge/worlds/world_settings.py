@@ -36,7 +36,7 @@ class StartPoseSettings(Settings):
 
     @property
     def pose(self) -> Pose:
-        """Return the pose with the heading in radians."""
+        """Pose with the heading in radians."""
         return Pose(self.x_m, self.y_m, math.radians(self.heading_deg))
 
 
@@ -98,7 +98,7 @@ class WorldSettings(Settings):
 
     @property
     def names(self) -> list[str]:
-        """Return the names of all walls and obstacles."""
+        """Names of all walls and obstacles."""
         return [
             *(wall.name for wall in self.walls),
             *(post.name for post in self.round_obstacles),
@@ -107,12 +107,12 @@ class WorldSettings(Settings):
 
     @property
     def solids(self) -> list[tuple[Point, ...]]:
-        """Return the corners of every wall and box inside the outline."""
+        """Corners, in m, of every wall and box inside the outline."""
         return [*(wall.corners for wall in self.walls), *(box.corners for box in self.polygon_obstacles)]
 
     @property
     def shapes(self) -> list[shapely.Polygon]:
-        """Return everything inside the outline as polygons, in the order of `names`."""
+        """All walls and obstacles inside the outline as polygons in m, in the order of `names`."""
         posts = [shapely.Point(post.x_m, post.y_m).buffer(post.radius_m) for post in self.round_obstacles]
         walls, boxes = self.walls, self.polygon_obstacles
         return [
@@ -123,14 +123,14 @@ class WorldSettings(Settings):
 
     @property
     def free_space(self) -> shapely.Polygon | shapely.MultiPolygon:
-        """Return the inside of the outline without walls and obstacles, in one or several pieces."""
+        """Inside of the outline without walls and obstacles, in m, in one or several pieces."""
         free = shapely.Polygon(self.outline).difference(shapely.union_all(self.shapes))
         # If sides only touch, the difference may contain lines.
         return free if isinstance(free, shapely.Polygon) else shapely.MultiPolygon(polygons_of(free))
 
     @property
     def junctions(self) -> list[Point]:
-        """Return the crossings of streets, by x, then by y."""
+        """Crossings of streets in m, by x, then by y."""
         lines = [shapely.LineString([street.from_m, street.to_m]) for street in self.streets]
         places = [one.intersection(other) for one, other in combinations(lines, 2)]
         # Rounded, because three streets that meet form three pairs.
@@ -152,7 +152,7 @@ class WorldSettings(Settings):
         return self.clearances_m([pose], geometry)[0]
 
     def clearances_m(self, poses: Iterable[Pose], geometry: GeometrySettings) -> list[float]:
-        """Return `clearance_m` of several poses."""
+        """Return the distance in m from the body to the nearest wall at each pose; 0 if it overlaps one."""
         room = shapely.Polygon(self.outline)
         shapely.prepare(room)
         things = [room.exterior, *self.shapes]

@@ -48,6 +48,7 @@ def confirmed(
 
     Raises:
         KnowledgeError: a robot runs on the file; raised before anything is replayed.
+        SettingsError: the service's settings cannot be loaded.
         typer.Exit: code 1, the user says no.
     """
     # sys.stdin is None if standard input was closed.
@@ -71,7 +72,7 @@ def confirmed(
 
 
 def format_lesson(record: LessonRecord) -> str:
-    """Return a lesson in a few words, with its id."""
+    """Return a lesson in a few words, with its command id."""
     origin = record.event.origin
     return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"
 

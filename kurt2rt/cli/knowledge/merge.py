@@ -92,12 +92,12 @@ _LEFT_OUT = {
 
 
 def format_reason(conflict: Conflict) -> str:
-    """Return why the two states exclude each other."""
+    """Return the reason that both states of a conflict exclude each other."""
     return _REASONS[conflict.code].format(conflict, percent=100 * (conflict.radius_fraction or 0.0))
 
 
 def format_state(state: RlaState | NameState) -> str:
-    """Return what an RLA does, or whether a name is given, in one of the files."""
+    """Return the action of an RLA, or whether a name is given, in one of the files."""
     if isinstance(state, NameState):
         return f"the name {state.name} is {'given' if state.given else 'not given'}"
     if state.rla is not None:
@@ -106,7 +106,7 @@ def format_state(state: RlaState | NameState) -> str:
 
 
 def format_left_out(reward: LeftOutReward) -> str:
-    """Return which reward was left out, and why."""
+    """Return a line with the reward that was left out, and the reason."""
     state = "" if reward.rla is None else f"{reward.rla.title} with {reward.rla.action}"
     return _LEFT_OUT[reward.code].format(
         lesson=reward.record.text, teacher=reward.record.event.origin.teacher, action=reward.action, state=state

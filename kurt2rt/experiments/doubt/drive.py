@@ -59,8 +59,17 @@ async def drive(
 ) -> DriveLog:
     """Drive in the setup's world and return the log; `on_progress` gets the simulated seconds once a second.
 
+    Args:
+        factory: opens the simulation.
+        settings: of the robot.
+        task: that the robot was taught.
+        events: its lessons.
+        setup: world, seed and duration.
+        on_progress: callback.
+
     Raises:
         hal.settings.SettingsError: task and world do not fit, or the task sets no doubt.
+        UnknownActionError, UnknownBehaviourError: the lessons name an action or behaviour that the task lacks.
     """
     task = with_doubt(task, stands=setup.stands)
     with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:
@@ -117,7 +126,7 @@ class DoubtRun(Episode):
             self._settled_at = record.tick + self._settles
 
     def log(self) -> DriveLog:
-        """Return the ticks so far."""
+        """Return the log of the ticks so far."""
         return DriveLog(
             world=self._world,
             doubt=np.array(self._doubt),

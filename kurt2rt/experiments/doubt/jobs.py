@@ -39,7 +39,10 @@ class DoubtJob:
         return self.setup.duration_s
 
     def run(self, tell: Progress) -> DriveLog:
-        """Drive. Raises KnowledgeError, SettingsError."""
+        """Drive in the job's world and return the log; `tell` gets the simulated seconds.
+
+        Raises KnowledgeError if the knowledge file cannot be read, SettingsError if task and world do not fit.
+        """
         events = read_lessons(self.knowledge, self.settings, self.task)
         return anyio.run(drive, self.factory, self.settings, self.task, events, self.setup, tell)
 

@@ -72,7 +72,10 @@ def area_under_curve(scores: Scores, wrong: Flags) -> float:
 
 
 def question_ticks(scores: Scores, driving: Flags, threshold: float) -> list[int]:
-    """Return the ticks at which a robot with these scores (n,) would begin to ask."""
+    """Return the ticks at which a robot with these scores (n,) would begin to ask; `driving` has shape (n,).
+
+    Scores and threshold are dimensionless.
+    """
     found: list[int] = []
     last = -_APART_TICKS - 1
     for tick in np.flatnonzero((scores >= threshold) & driving).tolist():
@@ -83,7 +86,10 @@ def question_ticks(scores: Scores, driving: Flags, threshold: float) -> list[int
 
 
 def judge_score(logs: Sequence[DriveLog], scores: Sequence[Scores], threshold: float) -> ScoreResult:
-    """Return the quality of one score over all drives; `scores`: of each drive, shape (n,) each."""
+    """Return the quality of one score over all drives, at a threshold; both are dimensionless.
+
+    `scores`: one array for each log, of shape (n,) with the log's n ticks.
+    """
     wrong = [wrong_ticks(log) for log in logs]
     auc = area_under_curve(
         np.concatenate([each[log.driving] for log, each in zip(logs, scores, strict=True)]),
@@ -101,7 +107,10 @@ def judge_score(logs: Sequence[DriveLog], scores: Sequence[Scores], threshold: f
 
 
 def threshold_for(logs: Sequence[DriveLog], scores: Sequence[Scores], questions: int) -> float:
-    """Return the lowest threshold at which drives with these scores have at most so many questions."""
+    """Return the lowest threshold at which drives with these scores have at most so many questions together.
+
+    `scores`: one array for each log, of shape (n,) with the log's n ticks, dimensionless like the threshold.
+    """
     candidates = np.unique(np.concatenate(scores))
     low, high = 0, len(candidates) - 1
     while low < high:

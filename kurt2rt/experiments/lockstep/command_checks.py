@@ -12,9 +12,10 @@ from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 def require_carried_out(
     record: TickRecord, task: TaskSettings, may_be_late: Callable[[str], bool] = lambda _command_id: False
 ) -> int:
-    """Raise LessonLostError for a command that this tick refused, with what it was and what the task is made of.
+    """Return how many commands of a tick were refused because they came too late.
 
-    Those that `may_be_late`, by their ids, may be refused; returns how many were.
+    Raises LessonLostError for any other refused command, with the command and the repertoire of the task.
+    `may_be_late`: whether the command of an id may be refused.
     """
     if record.decision.cause is DecisionCause.BLIND:
         return 0  # the bus is in trouble, and nothing can be taught meanwhile; the teacher says it again

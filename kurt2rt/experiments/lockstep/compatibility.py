@@ -9,9 +9,9 @@ from kurt2rt.core.task_settings import TaskSettings
 
 
 def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
-    """Look, before anything is taught, whether each of these worlds has what the task's course needs.
+    """Check, before any training, that each of these worlds has all that the task's metric needs.
 
-    Raises hal.settings.SettingsError that names task, course and world.
+    Raises hal.settings.SettingsError that names task, metric and world.
     """
     for world in dict.fromkeys(worlds):
         try:

@@ -54,10 +54,24 @@ async def run_lesson(
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
     plan: LessonPlan | None = None,
 ) -> tuple[TrainingResult, list[TeachingEvent]]:
-    """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
+    """Teach, with the lessons kept in the file `knowledge`; return the result and all events the file then holds.
 
-    Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable. `plan`: None: the
-    task's own lesson, phases 1 and 2. Raises KnowledgeError, SettingsError, LessonLostError.
+    Goes on from the lessons in the file.
+
+    Args:
+        factory: opens the simulation.
+        settings: of the robot.
+        task: to teach.
+        knowledge: path of the file.
+        seed: of the robot and the teacher.
+        report: progress callback.
+        on_saved: gets each acknowledgement of a durable lesson.
+        plan: None: the task's own lesson, phases 1 and 2.
+
+    Raises:
+        KnowledgeError: the file cannot be used.
+        SettingsError: task and world do not fit.
+        LessonLostError: the robot refused a command, or a lesson was not stored.
     """
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
@@ -87,7 +101,11 @@ async def run_exams(
     seed: int,
     report: Report,
 ) -> tuple[WorldResult, ...]:
-    """Examine in each world, and let the teacher's policy drive there for comparison, from the same start."""
+    """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
+
+    Returns one result per world, in order. Raises SettingsError if task and world do not fit, LessonLostError if the
+    robot refused a command.
+    """
 
     async def drive(world: str, *, teacher_policy: bool) -> ExamResult:
         drive_name = "the teacher's own drive" if teacher_policy else "exam without teacher"

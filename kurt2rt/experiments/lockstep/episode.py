@@ -108,11 +108,11 @@ class Episode(ABC):
         """Act on one tick, after the counters of this class."""
 
     def on_second(self, record: TickRecord) -> None:
-        """Report the progress, once a second."""
+        """Report the progress to the callback; called once a second of robot time."""
         self._on_progress(record.now_s)
 
     async def run(self, ticks: int) -> None:
-        """Drive for so many ticks, or until the scheduler is ended."""
+        """Drive for so many ticks, or until the scheduler is ended, with `after_tick` after each tick."""
         await self.runtime.scheduler.run(ticks, self.after_tick)
 
     def after_tick(self, record: TickRecord) -> None:
@@ -163,7 +163,10 @@ class Episode(ABC):
         self._begin_at(self.simulation.pose)
 
     def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
-        """Put the robot on its route, or else at a random pose as `Simulation.reposition` chooses it."""
+        """Put the robot on its route, or else at a random pose.
+
+        `in_sight`: at a pose from which a sensor sees an obstacle. `close`: so close to it that the robot cannot turn.
+        """
         if isinstance(self.metric, RouteMetric):
             self.simulation.put(self.metric.reset_pose)
         else:

@@ -119,7 +119,9 @@ async def examine(
 
     Raises:
         LessonLostError: the robot refused a behaviour.
-        UnknownActionError: the policy names an action that the repertoire lacks.
+        UnknownActionError: policy or knowledge names an action that the repertoire lacks.
+        UnknownBehaviourError: the knowledge names a behaviour that the task lacks.
+        SettingsError: task and world do not fit.
     """
     exam = ExamRun(simulation, settings, task, events, setup, on_progress)
     await exam.drive()
@@ -183,7 +185,10 @@ class ExamRun(Episode):
             self.metric.abort()
 
     def on_tick(self, record: TickRecord) -> None:
-        """Measure the drive; end it or rescue the robot if it is stuck."""
+        """Measure the drive; end it or rescue the robot if it is stuck.
+
+        Raises LessonLostError if the robot refused a behaviour.
+        """
         require_carried_out(record, self.task)
         new_collisions = self.simulation.collisions - len(self._collision_positions)
         self._collision_positions.extend([self.simulation.position] * new_collisions)
@@ -205,7 +210,7 @@ class ExamRun(Episode):
                 self.rescue()
 
     def result(self) -> ExamResult:
-        """Return the counters and measures."""
+        """Return the counters and measures of the drive so far."""
         simulation, metric, duration_s = self.simulation, self.metric, self.ticks * self.period_s
         return ExamResult(
             world=self._setup.world,

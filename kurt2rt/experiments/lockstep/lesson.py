@@ -118,9 +118,12 @@ async def teach(
     on_progress: Callable[[float], None],
     plan: LessonPlan | None = None,
 ) -> TrainingResult:
-    """Teach the task with the scripted teacher, for the duration of the plan.
+    """Teach the task with the scripted teacher, for the duration of the plan; return counters and knowledge.
 
     Args:
+        simulation: that the robot drives in.
+        settings: of the robot.
+        task: to teach.
         training: destination of the lessons, and the knowledge to continue from.
         seed: random choices of the teacher.
         on_progress: called once a second with the simulated seconds.
@@ -129,6 +132,7 @@ async def teach(
     Raises:
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     plan = plan or plan_of(task)
     runtime = build_training_runtime(simulation, settings, task, training)
@@ -190,7 +194,10 @@ class TrainingRun(Episode):
         await self.run(self._planned_ticks)
 
     def on_tick(self, record: TickRecord) -> None:
-        """Let the teacher react, and rescue or reposition the robot as planned."""
+        """Let the teacher react, and rescue or reposition the robot as planned.
+
+        Raises LessonLostError if the robot refused a command.
+        """
         self._refused += require_carried_out(record, self.task, may_be_late=self._teacher.may_be_refused)
         if record.tick in self._phase_starts:
             self._begin_phase(self._phase_starts[record.tick])

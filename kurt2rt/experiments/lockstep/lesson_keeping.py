@@ -24,7 +24,7 @@ class LessonKeeping:
         self, file: Path, opened: OpenedKnowledge, writer: JournalWriter, on_saved: Callable[[Acknowledgement], None]
     ) -> None:
         self.opened = opened
-        """What the file held when it was opened, to go on from."""
+        """Journal and content of the file when it was opened, to continue from."""
         self.writer = writer
         """Event store of the training run (kurt2rt.core.tick.EventStore)."""
         self._file = file
@@ -32,12 +32,12 @@ class LessonKeeping:
 
     @property
     def training(self) -> TrainingStore:
-        """Return the writer with the knowledge of the file, to teach on from there."""
+        """Writer with the knowledge of the file, to teach on from there."""
         opened = self.opened
         return TrainingStore(self.writer, opened.events, opened.counter, opened.saved)
 
     def look(self) -> None:
-        """Check the acknowledgements so far. Raises LessonLostError."""
+        """Pass each new acknowledgement of a durable lesson on. Raises LessonLostError for one that failed."""
         for acknowledgement in self.writer.acknowledged():
             if acknowledgement.error is not None:
                 raise LessonLostError(f"{acknowledgement.error}", where=self._file)
@@ -46,7 +46,10 @@ class LessonKeeping:
     def telling(
         self, report: Callable[[str, float, float], None], what: str, whole_s: float
     ) -> Callable[[float], None]:
-        """Return a callback for the simulated seconds that checks the acknowledgements and reports progress."""
+        """Return a callback for the simulated seconds that checks the acknowledgements and reports progress.
+
+        `report` gets `what`, the seconds so far and `whole_s`, in s. The callback raises LessonLostError.
+        """
 
         def on_progress(done_s: float) -> None:
             self.look()
@@ -55,7 +58,10 @@ class LessonKeeping:
         return on_progress
 
     def end(self, counted: Statistics) -> None:
-        """Store the statistics, and wait until all is durable. Raises LessonLostError."""
+        """Store the statistics, and wait until all is durable.
+
+        Raises LessonLostError if a lesson failed or the disk does not answer within 30 s.
+        """
         self.writer.submit_statistics(counted)
         if not self.writer.flush(timeout_s=30.0):
             raise LessonLostError(self.writer.saving_error or f"{self._file}: the disk did not answer within 30 s")
@@ -69,7 +75,14 @@ def lessons_kept(
     task: TaskSettings,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
 ) -> Iterator[LessonKeeping]:
-    """Go on teaching into a file. `on_saved` hears of each lesson once it is durable. Raises KnowledgeError."""
+    """Open a knowledge file for a training run, and close it at the end of the context.
+
+    `on_saved` gets the acknowledgement of each durable lesson.
+
+    Raises:
+        KnowledgeError: the file cannot be used, or at the end not be written.
+        SettingsError: a file that the task uses cannot be read.
+    """
     opened = open_for_teaching(file, settings, task)
     with JournalWriter(opened.journal, utc_now) as writer:
         yield LessonKeeping(file, opened, writer, on_saved)

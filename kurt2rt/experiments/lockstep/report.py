@@ -163,7 +163,10 @@ def label_of(world: str) -> str:
 
 
 def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
-    """95 % interval of a share (Wilson's score interval), which holds for few trials and shares near 0 and 1 too."""
+    """Return the 95 % interval of a share (Wilson's score interval), as (low, high), each 0 to 1.
+
+    It holds for few trials and shares near 0 and 1, too.
+    """
     from scipy.stats import binomtest
 
     low, high = binomtest(successes, trials).proportion_ci(method="wilson")

@@ -21,7 +21,7 @@ class NoTeachingAllowed:
     saving_error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
-        """Raise RuntimeError."""
+        """Raise RuntimeError, because the run has no teacher."""
         raise RuntimeError(f"a lesson was given in an exam: {event}")
 
 
@@ -43,7 +43,8 @@ def build_training_runtime(
     """Build the runtime for a scripted teacher.
 
     Raises:
-        As `build_runtime` does.
+        hal.settings.SettingsError: settings do not fit each other.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     return build_runtime(
         simulation.robot,
@@ -75,7 +76,8 @@ def build_unattended_runtime(
         robot: driver in place of the simulation's own, for instance with a faulty sensor, which does not stop it.
 
     Raises:
-        As `build_runtime` does.
+        hal.settings.SettingsError: settings do not fit each other.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     return build_runtime(
         robot or simulation.robot,

@@ -14,7 +14,8 @@ _MINUTE_S = 60.0
 def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
     """Return the task with its own teacher and its controls, by label.
 
-    The controls are the other way to correct, the superhuman teacher, and the one that answers only.
+    The controls are the other way to correct, the superhuman teacher, and the one that answers only. Raises
+    hal.settings.SettingsError.
     """
     own = task.teaching.profile
     ways: Sequence[TeacherProfile] = (

@@ -36,7 +36,7 @@ def draw_trail(
 
 
 def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
-    """Return the trail in pieces, split at repositionings."""
+    """Return a trail in pieces, split where two points are farther apart than `carried_m`, in m."""
     pieces: list[list[PlaceT]] = []
     for place in trail:
         if not pieces or math.dist(pieces[-1][-1], place) > carried_m:
@@ -46,5 +46,5 @@ def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
 
 
 def columns(places: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """Return all x and all y, in m."""
+    """Return all x and all y of the places, in m, as two lists."""
     return [x for x, _ in places], [y for _, y in places]

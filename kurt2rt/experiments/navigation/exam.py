@@ -89,7 +89,10 @@ class GoalsRun(Episode):
         self._failure: str | None = None
 
     async def drive(self, home: Pose) -> ErrandsRun:
-        """Drive to all goals, from `home`."""
+        """Drive to all goals, from `home`, and return the outcome of each.
+
+        Raises LessonLostError if the robot refused a command.
+        """
         self._place_at(home, HOME)
         if self._goals:
             self._begin_goal()
@@ -97,7 +100,10 @@ class GoalsRun(Episode):
         return ErrandsRun(how=self._how, errands=tuple(self._done), trail=rounded_places(self.trail))
 
     def on_tick(self, record: TickRecord) -> None:
-        """Measure the drive and judge whether it is over."""
+        """Measure the drive and judge whether it is over.
+
+        Raises LessonLostError if the robot refused a command.
+        """
         require_carried_out(record, self.task)
         self.measure()
         if record.decision.plan is not None:

@@ -15,7 +15,7 @@ _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "
 
 
 def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
-    """Draw the tour and the drives of one robot."""
+    """Draw the tour and the drives of one robot in a world, and write the picture to `path`. Raises OSError."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)

@@ -67,7 +67,10 @@ def rounded_places(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...
 
 
 def street_tracker(plan: WorldPlan, task: TaskSettings) -> Errands:
-    """Return the metric that tracks a robot from street to street. Raises hal.settings.SettingsError."""
+    """Return the metric that tracks a robot from street to street in a world.
+
+    Raises hal.settings.SettingsError for a task without goals, or a world without streets.
+    """
     return navigation_settings(task).walk_in(plan, task.behaviours)
 
 
@@ -138,7 +141,10 @@ class TourRun(Episode):
         await self.run(self._planned_ticks)
 
     def on_tick(self, record: TickRecord) -> None:
-        """Let guide and teacher react, and put a stuck robot back to its home."""
+        """Let guide and teacher react, and put a stuck robot back to its home.
+
+        Raises LessonLostError if the robot refused a command.
+        """
         require_carried_out(record, self.task, may_be_late=lambda _: self._teacher.may_be_late)
         self.measure()
         command = self._guide.watch(record)
@@ -158,7 +164,7 @@ class TourRun(Episode):
             self._rescues += 1
 
     def result(self) -> TourResult:
-        """Return the counters and the knowledge."""
+        """Return the counters and the knowledge of the tour."""
         system = self.runtime.level.system
         return TourResult(
             teaching_s=self._planned_ticks * self.period_s,

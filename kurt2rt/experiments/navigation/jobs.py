@@ -37,7 +37,10 @@ class NavigationJob(StudyJob):
         return self.task.teaching.duration_s + len(self.strategies) * goals * self.task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> ErrandsOutcome:
-        """Lead the robot through the town and send it to its goals."""
+        """Lead the robot through the town and send it to its goals; return the outcome.
+
+        `knowledge`: path of the file to make. Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         copy_knowledge(self.basic, knowledge)
         outcome = await teach_and_send(
             self.factory,

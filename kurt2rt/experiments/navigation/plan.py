@@ -47,10 +47,21 @@ def make_plan(
     controls: bool = False,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> NavigationPlan:
-    """Look at task and worlds, and make the jobs.
+    """Check task and worlds, and return the jobs.
 
-    `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it. `controls`: also
-    without a plan. Raises hal.settings.SettingsError, StudyError, KnowledgeError.
+    Args:
+        task: with errands.
+        basic: the task that teaches the streets.
+        seeds: one robot each.
+        parts: factory, robot and results of the jobs.
+        basic_folder: files of robots that were taught `basic`; None: the streets are taught first.
+        controls: whether to drive also without a plan.
+        source_of: returns the hash of the program's source.
+
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        StudyError: a knowledge file is missing.
+        KnowledgeError: a knowledge file cannot be read.
     """
     factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     worlds = (task.teaching.world, *task.exam.worlds[:1])
@@ -79,5 +90,5 @@ def make_plan(
 
 
 def read_outcomes(plan: NavigationPlan, results: Results) -> tuple[ErrandsOutcome, ...]:
-    """Return the outcomes of all jobs. Raises StudyError."""
+    """Return the outcomes of all jobs, robot by robot. Raises StudyError if a result is missing or damaged."""
     return tuple(results.read(job, ErrandsOutcome) for job in plan.jobs)

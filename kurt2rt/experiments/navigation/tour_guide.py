@@ -62,13 +62,13 @@ class TourGuide:
         self._set_out()
 
     def set_down_at_home(self) -> None:
-        """Restart the tour at home."""
+        """Restart the tour at home, after the robot was put there."""
         self._to_say.clear()
         self._to_say.append(BeAt(self._next_id(), _NAME, HOME))
         self._set_out()
 
     def watch(self, record: TickRecord) -> Command | None:
-        """Return the command in response to one tick, if any."""
+        """Return the guide's command in response to one tick; None without one. Call it on every tick."""
         mid, street = record.decision.mid, self._walk.street
         assert mid is not None
         if self._to_say:

@@ -39,7 +39,7 @@ class Extent:
         return task.model_copy(update={"teaching": teaching, "exam": exam})
 
     def paper(self, paper: PaperSettings) -> PaperSettings:
-        """Return the settings with fewer generated worlds and less growth."""
+        """Return the settings of the study with fewer generated worlds and less growth."""
         experiments = tuple(each.model_copy(update={"unseen": self._unseen(each.unseen)}) for each in paper.experiments)
         return paper.model_copy(update={"experiments": experiments, "growth": self._growth(paper.growth)})
 

@@ -27,7 +27,10 @@ _VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdi
 
 
 def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> None:
-    """Draw Fig. 7: the trail round the two columns, with its start."""
+    """Draw the trail of a drive round the two columns, with its start, as Fig. 7 of the paper does.
+
+    Writes a PNG to `path`. Raises OSError.
+    """
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     axes = figure.subplots()
     _draw_drive(axes, factory, drive)
@@ -36,7 +39,10 @@ def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> N
 
 
 def draw_drives(factory: SimulationFactory, drives: Sequence[DriveOutcome], path: Path) -> None:
-    """Draw a panel for each drive: trail, start, unknown situations and collisions."""
+    """Draw a panel for each drive: trail, start, unknown situations and collisions.
+
+    Writes a PNG to `path`. Raises OSError.
+    """
     columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
     rows = math.ceil(len(drives) / columns)
     figure = Figure(
@@ -78,7 +84,10 @@ _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of th
 
 
 def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) -> None:
-    """Draw a panel for each reading: medians as lines, quartiles as bands, and the point of the paper's text."""
+    """Draw the number of RLAs against time for each R, a panel for each reading (Fig. 2 of the paper).
+
+    Medians are lines, quartiles bands; the point of the paper's text is marked. Writes a PNG. Raises OSError.
+    """
     figure = Figure(figsize=(5.6 * len(studies), 4.8), layout="constrained")
     panels = figure.subplots(1, len(studies), squeeze=False, sharey=True)[0]
     for axes, study in zip(panels, studies, strict=True):
@@ -106,7 +115,10 @@ def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) 
 
 
 def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
-    """Draw Fig. 4: the world of the training, with the robot."""
+    """Draw the world of the training from above, with the robot (Fig. 4 of the paper).
+
+    Writes a PNG to `path`. Raises OSError.
+    """
     figure = Figure(figsize=(5.6, 6.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)
@@ -115,7 +127,10 @@ def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> N
 
 
 def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
-    """Draw Fig. 6: all worlds, two in a row."""
+    """Draw all worlds from above, two in a row (Fig. 6 of the paper).
+
+    Writes a PNG to `path`. Raises OSError.
+    """
     rows = math.ceil(len(worlds) / 2)
     figure = Figure(figsize=(10.0, 5.0 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).flatten().tolist()
@@ -132,9 +147,9 @@ _MOST_UNSEEN = 1
 
 
 def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each figure into the folder: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
+    """Draw each figure into the folder and yield it: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
 
-    Those are left out whose task is not in the study.
+    Figures of tasks that are not in the study are left out. Raises OSError.
     """
     paper = study.plan.paper
     shipped = study.of("shipped")

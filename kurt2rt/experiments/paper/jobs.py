@@ -46,7 +46,10 @@ class TaughtJob(StudyJob):
         return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> TaughtOutcome:
-        """Teach the task and examine it in each world."""
+        """Teach the task into the file `knowledge`, examine it in each world and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
         lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
         exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report)
@@ -99,7 +102,10 @@ class GrowthJob(StudyJob):
         return self.task.teaching.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> GrowthOutcome:
-        """Teach the task in phase 1."""
+        """Teach the task in phase 1 into the file `knowledge` and return the number of RLAs after each second.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         lesson, _ = await run_lesson(self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report)
         return GrowthOutcome(made_of=self.made_of, seed=self.seed, radius=self.radius, growth=lesson.growth)
 

@@ -39,7 +39,7 @@ class DriveOutcome(Settings):
 
     @property
     def verdict(self) -> ExamVerdict:
-        """Verdict on the exam."""
+        """Verdict on the exam, by the teacher's own drive."""
         if self.teacher_got_nowhere:
             return ExamVerdict.NOT_JUDGED
         return ExamVerdict.PASSED if self.succeeded else ExamVerdict.FAILED

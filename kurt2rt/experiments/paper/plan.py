@@ -57,12 +57,12 @@ class PaperPlan:
 
     @property
     def waves(self) -> tuple[tuple[TaughtJob | GrowthJob, ...], ...]:
-        """One wave: no job needs another."""
+        """All jobs in one wave: no job needs another."""
         return (tuple(self.jobs),)
 
     @property
     def jobs(self) -> list[TaughtJob | GrowthJob]:
-        """All jobs."""
+        """All jobs of the study, in the order of the report."""
         return [
             *(job for experiment in self.experiments for job in experiment.jobs),
             *(job for growth in self.growth for job in growth.jobs),

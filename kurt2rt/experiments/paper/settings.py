@@ -36,7 +36,7 @@ class UnseenSettings(Settings):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The worlds by name."""
+        """Names of the generated worlds."""
         return tuple(f"{self.kind}-{seed}" for seed in range(self.first, self.first + self.count))
 
 
@@ -86,9 +86,9 @@ class PaperSettings(Settings):
 
 
 def load_paper(name_or_path: str = "basic_level", factory: SimulationFactory | None = None) -> PaperSettings:
-    """Shipped settings by name, or a file by path; with a factory its worlds are looked at, too.
+    """Return the settings of a shipped study by name, or of a file by path.
 
-    Raises hal.settings.SettingsError that names file and key.
+    With a factory its worlds are checked, too. Raises hal.settings.SettingsError that names file and key.
     """
     path = find_config("paper", name_or_path)
     paper = load_settings(path, PaperSettings)

@@ -84,7 +84,7 @@ class PaperSummary:
 
     @property
     def label(self) -> str:
-        """The task as it is shown in tables."""
+        """Label of the task in tables."""
         return self.task.name.replace("_", " ")
 
 
@@ -170,11 +170,11 @@ class GrowthStudy:
 
     @property
     def radii(self) -> list[float]:
-        """Each R once, in rising order."""
+        """Each R of the robots once, in counts, in rising order."""
         return sorted({each.radius for each in self.outcomes})
 
     def curves(self, radius: float) -> list[tuple[int, ...]]:
-        """Return the number of RLAs after each second, a curve for each robot."""
+        """Return the number of RLAs after each second, a curve for each robot taught with `radius`, in counts."""
         return [each.growth for each in self.outcomes if each.radius == radius]
 
 
@@ -192,12 +192,15 @@ class PaperStudy:
         return tuple(dict.fromkeys(each.reading for each in self.summaries))
 
     def of(self, reading: Reading) -> tuple[PaperSummary, ...]:
-        """Return the experiments in one reading."""
+        """Return the summaries of the experiments in one reading."""
         return tuple(each for each in self.summaries if each.reading == reading)
 
 
 def read_study(plan: PaperPlan, results: Results) -> PaperStudy:
-    """Put together what all jobs have left. Raises StudyError."""
+    """Read the results of all jobs and return their summaries.
+
+    Raises StudyError if a result is missing or damaged.
+    """
     return PaperStudy(
         plan,
         tuple(summarize(each, [results.read(job, TaughtOutcome) for job in each.jobs]) for each in plan.experiments),

@@ -172,7 +172,7 @@ def behaviour_table(summaries: Sequence[PaperSummary], title: str) -> Table:
 
 
 def growth_table(growth: GrowthStudy) -> Table:
-    """Return the table of Fig. 2."""
+    """Return the table of the median number of RLAs after some times, a row for each R (Fig. 2 of the paper)."""
     last_s = min(len(each.growth) for each in growth.outcomes)
     at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
     rows = []

@@ -14,7 +14,7 @@ _NAME = "corruption"
 def corrupt(
     rlas: Sequence[Rla], actions: Sequence[str], share: float, seed: int, purpose: str
 ) -> Iterator[ActionReplaced]:
-    """Give this share of the RLAs, at least one, another one of these actions.
+    """Yield the events that give this share of the RLAs, 0 to 1, at least one, another action of `actions`.
 
     Each purpose has wrong actions of its own: a critic is not examined on those that it was taught on.
     """

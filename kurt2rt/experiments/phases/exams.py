@@ -26,7 +26,7 @@ class Scoring:
         self._ticks: Counter[tuple[int, int | None]] = Counter()
 
     def look(self, record: TickRecord) -> None:
-        """Count the opinions of one tick."""
+        """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
         if record.appraisal_features is None or not record.decision.driving:
             return
         said = None if record.opinion is None else record.opinion.said
@@ -34,7 +34,7 @@ class Scoring:
 
     @property
     def judgements(self) -> Iterator[Judgement]:
-        """Pairs of opinions with their ticks."""
+        """Pairs of opinions of judge and critic, each with its number of ticks."""
         for judged, said in sorted(self._ticks, key=str):
             yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
 
@@ -50,7 +50,10 @@ class Examiner:
     report: Report
 
     async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
-        """Return the drives of the teacher's own policy."""
+        """Let the teacher's own policy drive in each world; return the outcomes in order.
+
+        Raises SettingsError if task and world do not fit.
+        """
         drives = [await self._drive(world, (), None, None, teacher_policy=True) for world in worlds]
         return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
 
@@ -62,9 +65,18 @@ class Examiner:
         teachers: Sequence[ExamOutcome],
         autonomous_values: Statistics | None = None,
     ) -> tuple[ExamOutcome, ...]:
-        """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds.
+        """Return the exams of the knowledge in `events`, measured by the teacher's own drives in the same worlds.
 
-        `saved`, `autonomous_values`: what rewards had made of it, and phase 5.
+        Args:
+            events: lessons of the robot.
+            saved: values that rewards had given; None: none.
+            worlds: of the exams.
+            teachers: results of `teachers` for these worlds.
+            autonomous_values: values of phase 5; None: none.
+
+        Raises:
+            SettingsError: task and world do not fit.
+            UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
         """
         progress = {each.world: each.progress for each in teachers}
         outcomes = []
@@ -75,7 +87,10 @@ class Examiner:
         return tuple(outcomes)
 
     async def critic(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> tuple[Judgement, ...]:
-        """Drive in the world of the training without learning, and return the opinions of critic and judge."""
+        """Drive in the world of the training without learning, and return the opinions of critic and judge.
+
+        `saved`: values that rewards had given; None: none. Raises SettingsError if task and world do not fit.
+        """
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
         await self._drive(self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.look)

@@ -33,7 +33,11 @@ _WORLD_COLOURS = ("#1f6fb2", "#d1495b", "#2e8540", "#b8860b", "#6b4c9a")
 
 
 def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each figure into the folder: phases.png, load.png, agreement.png, branches.png, intact.png."""
+    """Draw each figure into the folder and yield it.
+
+    The files are phases.png, load.png, agreement.png, branches.png and intact.png. Raises OSError, and SettingsError if
+    the task's critic cannot be loaded.
+    """
     robots = len(study.plan.seeds)
     path = folder / "phases.png"
     _draw_stages(study, PATH, path)

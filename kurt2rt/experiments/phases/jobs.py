@@ -74,7 +74,10 @@ class FirstPhasesJob(PhasesJob):
         return task.teaching.duration_s + 3 * len(task.exam.worlds) * task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> JobOutcome:
-        """Teach phases 1 and 2 and examine all stages."""
+        """Teach phases 1 and 2 into the file `knowledge`, examine all stages and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         robot, task, worlds, examiner = self.robot, self.task, self.task.exam.worlds, self.examiner(report)
         lesson, events = await run_lesson(self.factory, robot, task, knowledge, seed=self.seed, report=report)
         teachers = await examiner.teachers(worlds)
@@ -123,7 +126,10 @@ class StepJob(PhasesJob):
         return taught_s + drives * self.task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> JobOutcome:
-        """Prepare the knowledge, teach and examine."""
+        """Prepare the knowledge in the file `knowledge`, teach the step, examine it and return the outcome.
+
+        Raises StudyError without the result of an earlier step, KnowledgeError, SettingsError, LessonLostError.
+        """
         step = self.of
         self._copy_knowledge(knowledge)
         self._prepare(knowledge)
@@ -150,9 +156,10 @@ class StepJob(PhasesJob):
         return JobOutcome(made_of=self.made_of, seed=self.seed, stages=(stage,))
 
     def plan(self) -> LessonPlan | None:
-        """Return the plan; random penalties are as many as the judge's penalties of the job `alike`.
+        """Return the phases that the step teaches; None for a step without a training run.
 
-        Raises StudyError without the result of that job.
+        Random penalties are as many as the judge's penalties in the result of the job `alike`. Raises StudyError
+        without that result.
         """
         plan = self.of.plan
         if plan is None or self.alike is None:

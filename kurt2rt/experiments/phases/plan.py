@@ -40,7 +40,7 @@ class PhasesPlan:
 
     @property
     def jobs(self) -> list[Job]:
-        """All of them."""
+        """Jobs of all waves, in order."""
         return [job for wave in self.waves for job in wave]
 
 
@@ -52,10 +52,17 @@ def make_plan(
     quick: bool = False,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> PhasesPlan:
-    """Look at task and worlds, and make the jobs.
+    """Check task and worlds, and return the jobs.
 
-    `quick`: all steps, each so short that it says nothing but that everything works. `source_of`: tells the hash of
-    the program's source. Raises hal.settings.SettingsError.
+    Args:
+        task: with a section on phases.
+        seeds: one robot each.
+        parts: factory, robot and results of the jobs.
+        quick: all steps, each so short that it says nothing but that everything works.
+        source_of: returns the hash of the program's source.
+
+    Raises:
+        hal.settings.SettingsError: the task has no such section, or does not fit a world.
     """
     factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     if quick:

@@ -19,7 +19,11 @@ def reasons_not_to_judge(plan: PhasesPlan) -> Iterator[str]:
 
 
 def write_report(study: PhasesStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:
-    """Write the report. `command`: what was typed, without what belongs to the machine alone. Raises OSError."""
+    """Write the report as an HTML page.
+
+    `command`: typed words, without those that belong to the machine alone. Raises OSError, and SettingsError if the
+    task has no section on phases.
+    """
     plan = study.plan
     reasons = list(reasons_not_to_judge(plan))
     write_page(

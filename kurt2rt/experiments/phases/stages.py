@@ -15,7 +15,11 @@ from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement, StageOutc
 
 
 def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
-    """Return the RLA system with all its levels, for counting: it does not match by the task's weights."""
+    """Return the RLA system with all its levels, for counting: it does not match by the task's weights.
+
+    Raises hal.settings.SettingsError if the task's situation cannot be loaded, InvalidEventError if an event does not
+    fit.
+    """
     dimensions = load_situation(task.situation, robot.infrared.names).dimensions
     system = RlaSystem(
         dimensions, task.learning.radius, others={CRITIC: Space(len(load_critic(task.critic).names), 1.0, None)}

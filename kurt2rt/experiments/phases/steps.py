@@ -67,13 +67,13 @@ class PhaseStep:
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """Steps that have to be done before it."""
+        """Names of the steps that have to be done before this step."""
         critic = () if self.critic == "own" else (PHASE_4,)
         return (self.after, *critic, *([self.blames_like] if self.blames_like else []))
 
 
 def phases_of(task: TaskSettings) -> PhasesSettings:
-    """Return the task's section. Raises hal.settings.SettingsError without one."""
+    """Return the section of the task on phases 3 to 5. Raises hal.settings.SettingsError without one."""
     if task.phases is None:
         raise SettingsError(
             "says nothing about phases 3 to 5", where=f"task {task.name}", do="add a section `phases:` to its file"
@@ -146,9 +146,9 @@ class _Plans:
 
 
 def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
-    """Yield all steps after the lesson of phases 1 and 2, each behind those it needs.
+    """Yield all steps after the lesson of phases 1 and 2, each after those it needs.
 
-    Raises hal.settings.SettingsError.
+    Raises hal.settings.SettingsError if the task has no section on phases.
     """
     plans = _Plans(task, phases_of(task))
     yield from _path_steps(plans)

@@ -40,7 +40,7 @@ class StageExams:
 
     @property
     def share(self) -> float:
-        """Share that succeeded."""
+        """Share of the exams that succeeded, 0 to 1."""
         return self.succeeded / self.robots
 
 
@@ -155,7 +155,7 @@ class Paired:
 
     @property
     def worst_change(self) -> float:
-        """The bad end of the interval, as a share of the mean before; above 0: worse."""
+        """Bad end of the interval, as a share of the mean before; above 0: worse."""
         worst = -self.difference.low if self.measure.better > 0 else self.difference.high
         return worst / abs(self.before) if self.before else math.copysign(math.inf, worst) if worst else 0.0
 
@@ -221,7 +221,7 @@ class PhasesStudy:
 
 
 def read_study(plan: PhasesPlan, results: Results) -> PhasesStudy:
-    """Put together what all jobs have left. Raises StudyError."""
+    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
     stages: dict[str, list[StageOutcome]] = {}
     teachers = []
     for job in plan.jobs:

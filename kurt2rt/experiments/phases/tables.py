@@ -52,13 +52,19 @@ _PAIRED = (
 
 
 def phases_targets_table(study: PhasesStudy, not_judged_because: Sequence[str]) -> Table:
-    """Return the table of all targets."""
+    """Return the table of all targets with their results; with reasons against judging, none is judged.
+
+    Raises hal.settings.SettingsError if the task has no section on phases.
+    """
     found: list[tuple[tuple[str, ...], Verdict]] = [((), each) for each in verdicts(study)]
     return targets_table(found, not_judged_because, note_without_targets="Of this task nothing is asked.")
 
 
 def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
-    """Yield all tables. `reasons`: those against judging."""
+    """Yield all tables. `reasons`: those against judging.
+
+    Raises hal.settings.SettingsError if the task has no section on phases.
+    """
     yield phases_targets_table(study, reasons)
     taught_by = f"Taught by the scripted teacher {study.plan.task.teaching.profile.name}."
     yield exam_table("Phase by phase", PATH, study, f"{taught_by} {SUCCESS} {_PHASE_4}")
@@ -203,7 +209,10 @@ def teachers_table(study: PhasesStudy) -> Table:
 
 
 def settings_table(task: TaskSettings) -> Table:
-    """Return the table of the settings of phases 3 to 5 and of the critic."""
+    """Return the table of the settings of phases 3 to 5 and of the critic.
+
+    Raises hal.settings.SettingsError if the task has no section on phases.
+    """
     of: dict[str, Any] = {
         "phases": phases_of(task).model_dump(mode="json", exclude={"asked"}),
         "reinforcement": task.reinforcement.model_dump(mode="json"),

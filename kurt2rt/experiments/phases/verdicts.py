@@ -15,7 +15,10 @@ _HOUR_S = 3600.0
 
 
 def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
-    """Yield the verdict on each target of the task."""
+    """Yield the verdict on each target of the task.
+
+    Raises hal.settings.SettingsError if the task has no section on phases.
+    """
     phases = phases_of(study.plan.task)
     asked = phases.asked
     rewards, alone = study.stages[REWARDS], study.stages[CRITIC_ALONE]

@@ -40,7 +40,10 @@ def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) ->
 
 
 def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
-    """Draw the route of one robot with the numbers of its decisions, and the drive."""
+    """Draw the route of one robot with the numbers of its decisions, and the drive.
+
+    Writes a PNG to `path`. Raises OSError.
+    """
     figure = Figure(figsize=(7.2, 7.8), layout="constrained")
     axes = figure.subplots()
     _draw(axes, factory, world, outcome)
@@ -50,7 +53,7 @@ def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, pa
 
 
 def draw_routes(factory: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
-    """Draw a panel for each robot."""
+    """Draw a panel for each robot: route, decisions and drive. Writes a PNG to `path`. Raises OSError."""
     wide = min(_COLUMNS, len(outcomes))
     rows = math.ceil(len(outcomes) / wide)
     figure = Figure(figsize=(4.0 * wide, 4.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08))

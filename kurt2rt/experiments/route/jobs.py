@@ -32,7 +32,10 @@ class BasicJob(StudyJob):
         return self.task.teaching.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> BasicOutcome:
-        """Teach the streets."""
+        """Teach the streets into the file `knowledge` and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         lesson, _ = await run_lesson(self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report)
         return BasicOutcome(
             made_of=self.made_of,
@@ -73,7 +76,10 @@ class RouteJob(StudyJob):
         return self.task.teaching.duration_s + self.task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> RouteOutcome:
-        """Teach the route on top of the streets, and examine it."""
+        """Teach the route on top of the streets into the file `knowledge`, examine it and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         copy_knowledge(self.basic, knowledge)
         taught = await teach_route(
             self.factory, self.robot, self.task, self.variant, knowledge, seed=self.seed, report=report

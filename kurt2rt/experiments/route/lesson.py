@@ -37,7 +37,7 @@ class TaughtRoute:
     wrong: tuple[Wrong, ...]
 
     def outcome(self, made_of: Provenance | None = None) -> RouteOutcome:
-        """Return the stored outcome."""
+        """Return the outcome to store, of the training run and the exam; `made_of`: its provenance, if known."""
         last, exam, legs = self.lessons[-1], self.exam, self.route.legs
 
         def of_all(name: str) -> int:
@@ -86,7 +86,10 @@ async def teach_route(
 ) -> TaughtRoute:
     """Teach the task's route into a file that holds the streets, and examine it.
 
-    Raises KnowledgeError, SettingsError, LessonLostError.
+    Raises:
+        KnowledgeError: the file cannot be used.
+        SettingsError: the task teaches no route, or does not fit the world.
+        LessonLostError: the robot refused a command, or a lesson was not stored.
     """
     task = variant.task(task)
     world = task.exam.worlds[0]
@@ -131,7 +134,10 @@ def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> T
 
 
 def copy_knowledge(source: Path, path: Path) -> None:
-    """Copy a knowledge file, also while another process writes it. Raises KnowledgeError."""
+    """Copy a knowledge file to `path`, where no file may be, also while another process writes it.
+
+    Raises KnowledgeError.
+    """
     with Journal.read_only(source) as journal:
         path.write_bytes(journal.image())
 

@@ -20,7 +20,7 @@ class Wrong(Settings):
 
     at_s: float
     leg: int
-    """Which junction of the route, from 0."""
+    """Index of the junction on the route, from 0."""
     layer: Layer
     x_m: float
     y_m: float

@@ -52,7 +52,7 @@ class RoutePlan:
 
     @property
     def jobs(self) -> list[BasicJob | RouteJob]:
-        """All of them."""
+        """Jobs of all waves, in order."""
         return [job for wave in self.waves for job in wave]
 
 
@@ -128,9 +128,14 @@ def streets_of(
     fingerprints: Fingerprints,
     folder: Path | None,
 ) -> TaughtStreets:
-    """Taught here, or with `folder` taken from files as `kurt2rt lesson` leaves them.
+    """Return the jobs that teach the streets, and the knowledge file of each robot.
 
-    Raises StudyError, KnowledgeError, SettingsError.
+    `folder`: files as `kurt2rt lesson` leaves them, which are used instead of jobs; None: the streets are taught.
+
+    Raises:
+        StudyError: a knowledge file is missing.
+        KnowledgeError: a knowledge file cannot be read.
+        SettingsError: a task and a world do not fit.
     """
     if folder is not None:
         files = {seed: basic_file(folder, basic, seed) for seed in seeds}
@@ -145,7 +150,7 @@ def streets_of(
 def basic_task_of(task: TaskSettings) -> TaskSettings:
     """Return the task that teaches the streets, named by `system` of the route's task, with the same teacher.
 
-    Raises hal.settings.SettingsError.
+    Raises hal.settings.SettingsError if there is no such task.
     """
     if task.system is None:
         raise SettingsError(
@@ -155,7 +160,10 @@ def basic_task_of(task: TaskSettings) -> TaskSettings:
 
 
 def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
-    """Knowledge of the streets of one robot: `place` itself, or in that folder. Raises StudyError."""
+    """Return the file with one robot's knowledge of the streets: `place` itself, or a file in that folder.
+
+    Raises StudyError if there is no such file.
+    """
     file = place / f"{basic.name}-{seed}.knowledge" if place.is_dir() else place
     if file.is_file():
         return file
@@ -167,5 +175,8 @@ def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
 
 
 def decisions_of(task: TaskSettings, asked: Sequence[int]) -> tuple[int, ...]:
-    """Return the lengths of routes: the requested ones, each once, or the task's own."""
+    """Return the lengths of routes: the requested ones, each once, or the task's own.
+
+    Raises hal.settings.SettingsError for a task without a route.
+    """
     return tuple(dict.fromkeys(asked)) or (route_of_task(task).decisions,)

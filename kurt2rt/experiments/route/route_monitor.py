@@ -23,15 +23,18 @@ class RouteMonitor:
         self._true: deque[int] = deque(maxlen=_HISTORY)
         self._inside = False
         self._wanted = ""
-        """At the entry of the junction that it is in or was in last."""
+        """Behaviour that was active at the entry of the newest junction."""
         self._changed = ""
-        """What was wanted within it instead; empty: nothing else."""
+        """Other behaviour that became active within that junction; empty if none did."""
         self._knew = True
-        """Whether then it had noticed everything, and nothing else."""
+        """True if at that entry the robot had noticed exactly the turns that it had made."""
         self._last: tuple[TickRecord, FixedRoute] | None = None
 
     def look(self, record: TickRecord, course: TaskMetric) -> None:
-        """Compare one tick, after the metric was updated."""
+        """Compare one tick: note junctions that the robot noticed or entered, and judge each that it left.
+
+        Call it on every tick, after the metric `course`, a FixedRoute, was updated. Errors are appended to `wrong`.
+        """
         assert isinstance(course, FixedRoute)
         self._last = record, course
         mid = record.decision.mid
@@ -47,7 +50,7 @@ class RouteMonitor:
         self._judge()
 
     def end(self) -> None:
-        """Judge the last junctions at the end of the drive."""
+        """Judge the last junctions; call it once, after the drive."""
         self._judge()
 
     def _judge(self) -> None:

@@ -35,7 +35,7 @@ class RouteSummary:
 
     @property
     def right(self) -> Rate:
-        """Share of these that were right; where there were none, none was."""
+        """Share of the junctions that were right, with its interval; 0 without junctions."""
         wrong = [each.drive.junctions - each.drive.right for each in self.outcomes]
         junctions = [each.drive.junctions for each in self.outcomes]
         if not sum(junctions):
@@ -54,7 +54,7 @@ class RouteSummary:
         return {layer: self.failed(layer) for layer in LAYERS}
 
     def quartiles(self, of: str) -> tuple[float, float, float]:
-        """Return the quartiles of an attribute of the outcomes."""
+        """Return lower quartile, median and upper quartile of a numeric attribute of the outcomes, by name."""
         return quartiles([float(getattr(each, of)) for each in self.outcomes])
 
 
@@ -67,7 +67,7 @@ class RouteStudy:
 
 
 def read_study(plan: RoutePlan, results: Results) -> RouteStudy:
-    """Put together what all jobs have left. Raises StudyError."""
+    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
     return RouteStudy(plan, tuple(_summary(each, results) for each in plan.experiments))
 
 

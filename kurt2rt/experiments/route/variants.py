@@ -31,7 +31,10 @@ class Variant:
     corrects_basic: bool = True
 
     def task(self, task: TaskSettings) -> TaskSettings:
-        """Return the task with the changes of the variant."""
+        """Return a copy of the task with the changes of the variant.
+
+        Raises hal.settings.SettingsError if the variant's mid level cannot be loaded.
+        """
         if self.mid is None or task.mid is None:
             return task.model_copy(update={"mid": None})
         mid = load_mid_level(self.mid or task.mid)

@@ -11,7 +11,7 @@ _DPI = 130
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Save a figure as a PNG whose bytes depend on its content only."""
+    """Save a figure as a PNG whose bytes depend on its content only. Raises OSError."""
     figure.savefig(path, dpi=_DPI, metadata={"Software": None})
 
 

@@ -18,7 +18,10 @@ _MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
 def write_page(
     path: Path, package: str, template: str, title: str, pictures: Sequence[SavedFigure], **what: object
 ) -> None:
-    """Fill a template of `package`, which extends `page.html.j2` of this one. Raises OSError."""
+    """Fill a template of `package`, which extends `page.html.j2` of this one, and write the page to `path`.
+
+    `what`: values for the template. Raises OSError.
+    """
     environment = jinja2.Environment(
         loader=jinja2.ChoiceLoader([jinja2.PackageLoader(package, ""), jinja2.PackageLoader(_HERE, "")]),
         autoescape=True,
@@ -36,7 +39,7 @@ def write_page(
 
 
 def spans(seeds: Sequence[int]) -> str:
-    """Seeds as they are typed: 100-119, or 1,5,7."""
+    """Return seeds as a user types them: 100-119, or 1,5,7."""
     first, last = seeds[0], seeds[-1]
     if len(seeds) > 1 and list(seeds) == list(range(first, last + 1)):
         return f"{first}-{last}"

@@ -25,8 +25,8 @@ class Rate(NamedTuple):
 def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
     """Return the events per unit of exposure over several drives, such as collisions in 10 min.
 
-    The interval is the wider at each end of two: Poisson's exact one for rare events, and a bootstrap over the drives,
-    because collisions come in clusters.
+    `counts` and `exposures`: one value per drive. The interval is the wider at each end of two: Poisson's exact one for
+    rare events, and a bootstrap over the drives, because collisions come in clusters.
     """
     total = sum(exposures)
     events = sum(counts)
@@ -38,7 +38,7 @@ def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
 
 
 def poisson_interval(events: int) -> tuple[float, float]:
-    """Return the exact 95 % interval of the expected count, given a count (Garwood 1936)."""
+    """Return the exact 95 % interval (low, high) of the expected count, given a count (Garwood 1936)."""
     from scipy.stats import chi2
 
     low = chi2.ppf(_TAIL, 2 * events) / 2 if events else 0.0

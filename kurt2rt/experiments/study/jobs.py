@@ -57,7 +57,10 @@ class StudyJob(ABC):
 
     @abstractmethod
     async def measure(self, knowledge: Path, report: Report) -> Settings:
-        """Train and examine the robot and return the outcome; `knowledge` is the file to teach into."""
+        """Train and examine the robot and return the outcome; `knowledge` is the file to teach into.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
 
     @property
     def file(self) -> str:
@@ -70,7 +73,10 @@ class StudyJob(ABC):
         return self.results.folder / f"knowledge/{self.stem}.knowledge"
 
     def run(self, on_progress: Progress) -> None:
-        """Run the job and store result and knowledge."""
+        """Run the job in an event loop of its own, and store result and knowledge; `on_progress` gets robot time in s.
+
+        Raises the errors of `measure`, and OSError if the results cannot be stored.
+        """
         anyio.run(self._run, ProgressSum(on_progress).report)
 
     async def _run(self, report: Report) -> None:

@@ -16,7 +16,7 @@ class StudyPlan(Protocol):
 
     @property
     def waves(self) -> Sequence[Sequence[StoredJob]]:
-        """Jobs in the order of the waves."""
+        """Jobs of each wave, in the order of the waves."""
         ...
 
 

@@ -41,11 +41,11 @@ class Job(Protocol[ResultT_co]):
 
     @property
     def robot_time_s(self) -> float:
-        """Simulated time in s."""
+        """Simulated time of the whole job in s, for the progress."""
         ...
 
     def run(self, tell: Progress) -> ResultT_co:
-        """Run the job and report the progress in s."""
+        """Run the job and return its result; `tell` gets the simulated seconds so far."""
         ...
 
 
@@ -65,11 +65,18 @@ def run_jobs(
     on_done: Callable[[int], None] = lambda _: None,
     on_progress: Callable[[PoolProgress], None] = lambda _: None,
 ) -> list[ResultT]:
-    """Run all jobs, the longest first; results in the order of the jobs. With one process it is this one.
+    """Run all jobs, the longest first; return their results in the order of the jobs.
 
-    `on_done` hears the place of each job that is through, `on_progress` twice a second how far all are.
-    What a job raises ends all the others at once, and so does Ctrl-C; the error's notes name the job.
-    Raises JobKilledError when a process is killed from outside.
+    With one process it is this one. The first error of a job ends all other jobs, and so does Ctrl-C; the error's notes
+    name the job.
+
+    Args:
+        on_done: gets the index of each job that is through.
+        on_progress: gets the progress of all jobs twice a second.
+
+    Raises:
+        JobKilledError: a process was killed from outside.
+        Exception: any error of a job.
     """
     # The longest last would leave the other processes idle at the end.
     order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)

@@ -12,7 +12,10 @@ class ProgressSum:
         self._now_s = 0.0
 
     def report(self, what: str, done_s: float, whole_s: float) -> None:  # noqa: ARG002 - as curriculum.Report
-        """One drive's own time; a smaller one than before is that of the next drive."""
+        """Report the sum after `done_s`, in s, of a drive; a smaller `done_s` than before begins the next drive.
+
+        `what` and `whole_s` are not used.
+        """
         if done_s < self._now_s:
             self._before_s += self._now_s
         self._now_s = done_s

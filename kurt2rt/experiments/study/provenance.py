@@ -31,7 +31,7 @@ class Provenance(Settings):
     versions: str
 
     def differences(self, other: "Provenance") -> list[str]:
-        """Names of what is not the same."""
+        """Return the names of the fields that differ."""
         return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
 
 
@@ -54,7 +54,7 @@ def source_hash(*deciding: type) -> str:
 
 
 def settings_hash(*settings: str) -> str:
-    """Return the hash of texts."""
+    """Return the first 16 hexadecimal digits of the SHA-256 of all texts."""
     return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
 
 
@@ -83,7 +83,7 @@ class Fingerprints:
     def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> Provenance:
         """Return the provenance of a job in these worlds; `more`: further texts that decide its result.
 
-        Raises hal.settings.SettingsError for unusable settings.
+        Raises hal.settings.SettingsError if settings of the task or a world cannot be loaded.
         """
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
         return Provenance(

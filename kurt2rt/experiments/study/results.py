@@ -30,7 +30,7 @@ class StoredResult(Protocol):
 
     @property
     def file(self) -> str:
-        """Path within the folder of results."""
+        """Path of the result within the folder of results."""
         ...
 
     @property
@@ -40,7 +40,7 @@ class StoredResult(Protocol):
 
     @property
     def outcome(self) -> type[Settings]:
-        """Schema of its result."""
+        """Class of its outcome, which is the schema of the file."""
         ...
 
 
@@ -56,7 +56,7 @@ class Results:
 
     @contextmanager
     def held(self) -> Iterator[None]:
-        """Make the folder, keep other runs out of it, and clear away what an interrupted one had begun.
+        """Make the folder, lock it against other runs, and remove unfinished jobs of an interrupted run.
 
         Raises StudyError while another run writes there, OSError where nothing can be written.
         """
@@ -76,15 +76,15 @@ class Results:
 
     @contextmanager
     def scratch(self) -> Iterator[Path]:
-        """Yield a temporary folder for an unfinished job."""
+        """Yield a temporary folder for an unfinished job, deleted at the end of the context. Raises OSError."""
         with tempfile.TemporaryDirectory(prefix=_UNFINISHED, dir=self.folder) as folder:
             yield Path(folder)
 
     def missing(self, jobs: Sequence[StoredResult]) -> list[int]:
-        """Places of the jobs that have no result yet.
+        """Return the indexes of the jobs that have no result yet.
 
-        Raises StudyError when there are results of other settings, source or versions, or files that are no results:
-        never are they mixed.
+        Raises StudyError if there are results of other settings, source or versions, or damaged files: they are never
+        mixed.
         """
         foreign: list[str] = []
         differences: set[str] = set()
@@ -111,15 +111,18 @@ class Results:
         return missing
 
     def write(self, job: StoredResult, outcome: Settings) -> None:
-        """Keep a result; it is there whole or not at all."""
+        """Store the outcome of a job, whole and durable. Raises OSError."""
         write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
 
     def read(self, job: StoredResult, schema: type[OutcomeT]) -> OutcomeT:
-        """Return a result. Raises StudyError."""
+        """Return the outcome of a job. Raises StudyError if it is missing, damaged or of another schema."""
         return self._read(self.folder / job.file, schema)
 
     def keep(self, file: Path, name: str) -> None:
-        """Move a finished file out of the scratch folder, to this path within the folder of results."""
+        """Move a finished file out of the scratch folder to `name`, a path within the folder of results.
+
+        Raises OSError.
+        """
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         file.replace(path)

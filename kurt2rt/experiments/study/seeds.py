@@ -32,11 +32,14 @@ class SeedJob:
 
     @property
     def robot_time_s(self) -> float:
-        """The lesson; and in each world the exam and the teacher's own drive."""
+        """Time of the lesson, and in each world of the exam and of the teacher's own drive, in s."""
         return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s
 
     def run(self, tell: Progress) -> CurriculumResult:
-        """Teach and examine one seed."""
+        """Teach and examine the robot of one seed and return the result; `tell` gets the simulated seconds.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
         report = ProgressSum(tell).report
 
         async def run() -> CurriculumResult:
@@ -52,9 +55,9 @@ class SeedJob:
 
 
 def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:
-    """Run all jobs; results in the order of the jobs. `on_done` hears each seed that is through.
+    """Run all jobs; return their results in the order of the jobs.
 
-    Raises JobKilledError and what a job raises.
+    `on_done` gets the index of each job that is through. Raises JobKilledError and the errors of a job.
     """
     try:
         return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))

@@ -49,7 +49,7 @@ class Verdict:
 
     @property
     def result(self) -> Result:
-        """Met, missed or not judged."""
+        """Result of the comparison: met, missed or not judged."""
         if not self.judged:
             return Result.NOT_JUDGED
         return Result.MET if self.met else Result.MISSED

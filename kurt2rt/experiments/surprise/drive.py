@@ -87,14 +87,20 @@ async def drive(
     setup: SurpriseSetup,
     on_progress: Callable[[float], None],
 ) -> tuple[SurpriseCounts, Statistics]:
-    """Drive and continue to learn what to expect; return the counters, and the statistics to continue from.
+    """Drive and continue to learn expectations; return the counters, and the statistics to continue from.
 
     Args:
+        factory: opens the simulation.
+        settings: of the robot.
+        task: that the robot was taught.
+        events: its lessons.
         saved: expectations of the drives before.
+        setup: world, change and duration.
         on_progress: called once a second with the simulated seconds.
 
     Raises:
         hal.settings.SettingsError: task and world do not fit.
+        UnknownActionError, UnknownBehaviourError: the lessons do not fit the task.
     """
     with closing(factory.open(setup.world, setup.seed, setup.purpose)) as simulation:
         chance = random.Random(f"surprise {setup.purpose} {setup.difference} {setup.seed}")
@@ -143,7 +149,7 @@ class SurpriseRun(Episode):
             self._just_repositioned = True
 
     def counts(self) -> SurpriseCounts:
-        """Return the counters."""
+        """Return the counters of the drive so far."""
         return SurpriseCounts(
             self._difference,
             self._ends,

@@ -44,7 +44,10 @@ class SurpriseJob:
         return self.learns_s + 4 * self.different_s
 
     def run(self, tell: Progress) -> tuple[SurpriseCounts, ...]:
-        """Run all drives."""
+        """Run all drives of the robot and return the counters of each; `tell` gets the simulated seconds.
+
+        Raises KnowledgeError, SettingsError.
+        """
         return anyio.run(self._drives, tell)
 
     async def _drives(self, tell: Progress) -> tuple[SurpriseCounts, ...]:

@@ -29,7 +29,7 @@ class RoomPlan:
 
     @property
     def floor(self) -> shapely.Polygon:
-        """Return the free area with islands as holes, without chinks behind leaning walls."""
+        """Free area with islands as holes, without chinks behind leaning walls."""
         corners = [*(wall.corners for wall in self.walls), *(table.corners for table in self.tables)]
         shapes = [shapely.Polygon(each) for each in corners]
         pieces = polygons_of(shapely.Polygon(self.corners).difference(shapely.union_all(shapes)))

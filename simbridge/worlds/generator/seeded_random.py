@@ -22,7 +22,7 @@ class SeededRandom:
         return int(self._random() * count)
 
     def choice(self, choices: Sequence[T]) -> T:
-        """Return a random element."""
+        """Return a random element of a sequence that is not empty."""
         return choices[self.integer(len(choices))]
 
     def chance(self, probability: float) -> bool:

@@ -36,7 +36,7 @@ class MapSettings(Settings):
 
 
 def image_error(source: Path, what: str, do: str) -> SettingsError:
-    """Return the refusal of a map's image."""
+    """Return the error that refuses a map's image: `what` is wrong, and what to `do`."""
     return SettingsError(what, where=f"{source}: image", do=do)
 
 
