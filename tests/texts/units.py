@@ -1,13 +1,26 @@
-"""Listing of the errors of a unit."""
+"""Listings of the errors of a unit and of a status that cannot be read."""
 
 from collections.abc import Iterator
 from string import Formatter
 
+from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 
 def errors() -> Iterator[tuple[str, str]]:
-    """Yield the error of each code, with names of its fields for their values."""
+    """Yield the error of each code of a unit, with names of its fields for their values."""
     for code in UnitCode:
-        names = {name for _, name, _, _ in Formatter().parse(code.what) if name}
-        yield code, str(UnitError(code, where="WHERE", **{name: name.upper() for name in names}))
+        yield code, str(UnitError(code, where="WHERE", **_names_in(code.what)))
+
+
+def status_errors() -> Iterator[tuple[str, str]]:
+    """Yield the error of each code of a status, with names of its fields for their values."""
+    for code in StatusCode:
+        fields: dict[str, object] = {**_names_in(code.what), **_names_in(code.do)}
+        if "silent_s" in fields:
+            fields["silent_s"] = 2.5
+        yield code, str(StatusError(code, where="WHERE", **fields))
+
+
+def _names_in(text: str) -> dict[str, str]:
+    return {name: name.upper() for _, name, _, _ in Formatter().parse(text) if name}

@@ -12,11 +12,11 @@ from pathlib import Path
 import anyio
 from anyio.abc import Listener, SocketStream
 
-from hal.errors import UserError
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of, report_of
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.service.health.monitor import HealthMonitor
+from kurt2rt.service.health.status_error import StatusCode, StatusError
 
 _MOST_READERS = 8
 _TAKEN_WITHIN_S = 2.0
@@ -24,10 +24,6 @@ _REMOVED_WITHIN_S = 0.2
 _LONGEST_LINE = 65_536
 _WAITS_FOR = "waits_for"
 _PAGES = "pages"
-
-
-class StatusError(UserError):
-    """The status of a robot program cannot be read."""
 
 
 def status_socket_path(knowledge: Path) -> Path:
@@ -122,33 +118,25 @@ def read_reports(path: Path, patience_s: float) -> Iterator[HealthReport]:
             with short_name(path) as short:
                 reader.connect(short)
         except (FileNotFoundError, ConnectionRefusedError) as error:
-            raise StatusError(
-                f"no robot program runs with the knowledge {path.with_suffix('')}, or it waits for its disk",
-                do="start one with kurt2rt run, or name its knowledge file",
-            ) from error
+            raise StatusError(StatusCode.NO_PROGRAM, knowledge=path.with_suffix("")) from error
         except OSError as error:
-            raise StatusError(f"cannot be read ({error})", where=path, do="be the user of the robot program") from error
+            raise StatusError(StatusCode.NOT_READ, where=path, error=error) from error
         while True:
             try:
                 line = lines.readline(_LONGEST_LINE)
             except TimeoutError as error:
-                raise StatusError(
-                    f"the robot program at {path} has said nothing for {patience_s:g} s",
-                    do="it hangs or was stopped: end it and start it again",
-                ) from error
+                raise StatusError(StatusCode.SILENT, where=path, silent_s=patience_s) from error
             except OSError as error:
-                raise StatusError(f"the robot program ended ({error})", where=path) from error
+                raise StatusError(StatusCode.BROKEN_OFF, where=path, error=error) from error
             if not line:
-                raise StatusError("the robot program has ended", where=path)
+                raise StatusError(StatusCode.ENDED, where=path)
             try:
                 told = json.loads(line)
                 if isinstance(told, dict) and _WAITS_FOR in told:
-                    raise StatusError(f"the robot program stands and waits for {told[_WAITS_FOR]}")
+                    raise StatusError(StatusCode.WAITS, missing=told[_WAITS_FOR])
                 yield replace(report_of(told), pages=_links_in(told))
             except (ValueError, WireError) as error:
-                raise StatusError(
-                    f"is not understood ({error})", where=path, do="use the kurt2rt that the robot runs"
-                ) from error
+                raise StatusError(StatusCode.NOT_UNDERSTOOD, where=path, error=error) from error
 
 
 def _links_in(told: Mapping[str, object]) -> tuple[str, ...]:

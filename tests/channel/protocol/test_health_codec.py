@@ -36,7 +36,8 @@ def test_health_codec_any_error_text_stays_readable() -> None:
     odd = Trouble(TroubleCode.PROGRAM, 1.0, False, "channel", (), "first line\nsecond\t" + "x" * 1000)
     told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))
     assert len(told.troubles) == MOST_ROWS
-    assert told.troubles[0].what.startswith("first line second x")
+    assert "\n" not in told.troubles[0].what
+    assert "\t" not in told.troubles[0].what
 
 
 def test_report_of_older_robot_keeps_the_texts() -> None:

@@ -166,7 +166,7 @@ def test_a_closed_context_sends_nothing_more(pairing: Pairing) -> None:
     context = OscoreContext(pairing.teacher)
     context.close()
     context.close()
-    with pytest.raises(oscore.ContextUnavailable, match="closed or revoked"):
+    with pytest.raises(oscore.ContextUnavailable, match="revoked"):
         context.new_sequence_number()
 
 
@@ -182,7 +182,7 @@ def test_context_of_old_pairing_writes_not_into_renewed(pairing: Pairing, tmp_pa
 
 def test_two_programs_cannot_use_the_same_side(pairing: Pairing) -> None:
     first = OscoreContext(pairing.teacher)
-    with pytest.raises(CredentialsError, match="another program uses this pairing"):
+    with pytest.raises(CredentialsError, match="another program"):
         OscoreContext(pairing.teacher)
     with pytest.raises(TimeoutError):
         oscore.FilesystemSecurityContext(str(pairing.teacher))  # aiocoap's own tools are kept out as well
@@ -201,7 +201,7 @@ def test_aiocoaps_own_context_reads_what_is_left(pairing: Pairing) -> None:
 
 
 def test_a_folder_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(CredentialsError, match=r"no pairing to open .*kurt2rt pair absent"):
+    with pytest.raises(CredentialsError, match="kurt2rt pair absent"):
         OscoreContext(tmp_path / "absent")
 
 

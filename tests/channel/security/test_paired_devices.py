@@ -1,4 +1,5 @@
 import os
+import re
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
@@ -64,7 +65,7 @@ async def test_pairing_with_critics_name_is_refused_and_reported(house: House) -
     await teachers.refresh()
     assert teachers.names == ("tablet",)
     (line,) = teachers.trouble
-    assert "critic is the name of the robot's own critic; kurt2rt pair critic --revoke" in line
+    assert "kurt2rt pair critic --revoke" in line
 
 
 def test_strangers_find_nothing(house: House) -> None:
@@ -144,7 +145,7 @@ def test_two_robot_programs_cannot_share_a_folder(house: House) -> None:
     house.start()
     second = house.start()
     assert second.names == ()
-    assert "another program uses this pairing" in second.trouble[0]
+    assert str(house.teachers / "phone") in second.trouble[0]
 
 
 async def test_teachers_folder_deleted_refuses_all(house: House, tmp_path: Path) -> None:
@@ -219,5 +220,5 @@ def test_each_start_challenges_a_device_once(house: House) -> None:
 
 def test_a_folder_that_is_none_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(CredentialsError, match="cannot be read"):
+    with pytest.raises(CredentialsError, match=re.escape(str(tmp_path / "file"))):
         Teachers(tmp_path / "file")

