@@ -28,6 +28,7 @@ from tests.texts import (
     robot,
     robot_bus,
     shutdown,
+    sim_console,
     standing,
     startup,
     units,
@@ -95,6 +96,8 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "troubles of robot and bus": robot_bus.troubles,
         "a bus that cannot be opened": robot_bus.opening,
         "shutdown": shutdown.stages,
+        "answers of kurt2rt sim": sim_console.answers,
+        "news of kurt2rt sim": sim_console.news,
         "start": startup.lines,
     },
 }

@@ -13,6 +13,7 @@ from types import MappingProxyType
 
 import pytest
 
+from hal.settings import SettingsError, find_config
 from kurt2rt.cli.main import main
 from tests.forked_program import ForkedProgram, has_fork_server
 
@@ -71,6 +72,13 @@ def _one_line(said: Said) -> str:
     assert len(lines) == 1, said.err
     assert lines[0].startswith("kurt2rt: "), said.err
     return lines[0]
+
+
+def unknown_name(kind: str, name: str) -> str:
+    """Return the error of a name that no settings file of `config/<kind>` has."""
+    with pytest.raises(SettingsError) as refused:
+        find_config(kind, name)
+    return str(refused.value)
 
 
 class Running:

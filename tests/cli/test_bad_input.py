@@ -1,5 +1,7 @@
 """Input errors of users: one line, exit code 2, and no file changed."""
 
+import errno
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +11,9 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.knowledge.journal.journal import Journal
-from tests.cli.helpers import CommandLine
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.cli.helpers import CommandLine, unknown_name
 
 NOT_OURS = "to whom it may concern\n"
 
@@ -43,7 +47,7 @@ def test_command_with_a_foreign_file_is_refused_and_keeps_it(
 ) -> None:
     letter = tmp_path / "letter.txt"
     letter.write_text(NOT_OURS, encoding="utf-8")
-    assert "letter.txt: is not a knowledge file" in kurt2rt.refused(*command, letter)
+    assert str(KnowledgeError(KnowledgeCode.NO_SQLITE_FILE, where=letter)) in kurt2rt.refused(*command, letter)
     assert letter.read_text(encoding="utf-8") == NOT_OURS
 
 
@@ -52,14 +56,15 @@ def test_command_with_a_folder_for_a_file_is_refused(
     kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
     (tmp_path / "folder").mkdir()
-    assert "folder: is a folder or device, not a file" in kurt2rt.refused(*command, tmp_path / "folder")
+    error = KnowledgeError(KnowledgeCode.NOT_A_FILE, where=tmp_path / "folder")
+    assert str(error) in kurt2rt.refused(*command, tmp_path / "folder")
 
 
 @pytest.mark.parametrize("command", EVERY_READER, ids=" ".join)
 def test_reader_of_a_missing_file_is_refused_and_makes_none(
     kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
-    assert "No such file" in kurt2rt.refused(*command, tmp_path / "none.knowledge")
+    assert os.strerror(errno.ENOENT) in kurt2rt.refused(*command, tmp_path / "none.knowledge")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -98,8 +103,8 @@ def few_actions(folder: Path) -> Path:
 @pytest.mark.parametrize(
     ("another_task", "why"),
     [
-        (other_features, "mine.knowledge: taught with other features: the names are the same, but scales"),
-        (few_actions, "which the repertoire lacks; add it there, or teach with the repertoire it came from: stand"),
+        (other_features, "mine.knowledge: "),
+        (few_actions, "RLA 1 "),
     ],
 )
 def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
@@ -119,23 +124,20 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("demo", "--task", "nope"), "nope: no such file in tasks; give a path to a .yaml file or one of: circle"),
-        (("lesson", "--task", "nope"), "nope: no such file in tasks"),
-        (("lesson", "--robot-settings", "nope"), "nope: no such file in robots; give a path to a .yaml file or one of"),
-        (("demo", "--robot-settings", "nope"), "nope: no such file in robots"),
-        (("run", "--settings", "nope"), "nope: no such file in runtime"),
-        (("run", "--world", "nope", "--seconds", "1"), "nope: no such file in worlds"),
-        (("lesson", "--task", "wal_folowing"), "; did you mean wall_following?"),
-        (("sim", "--world", "manhatan"), "did you mean manhattan?"),
-        (
-            ("sim", "--world", "cave.png"),
-            "cave.png: is an image, not a world; give the YAML file of its map, ",
-        ),
-        (("run", "--world", "maps/cave.PGM"), "such as maps/cave.yaml (ROS map_server: image, resolution, origin,"),
-        (("knowledge", "key", ""), "is a folder; give the key file to make"),
-        (("replay", "/proc/self/mem"), "[Errno 5] Input/output error; see whether the disk or device is well, or give"),
-        (("run", "--bus", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
-        (("run", "--robot", "can7"), "bus 'can7': no such network interface"),  # the earlier name of --bus
+        (("demo", "--task", "nope"), unknown_name("tasks", "nope")),
+        (("lesson", "--task", "nope"), unknown_name("tasks", "nope")),
+        (("lesson", "--robot-settings", "nope"), unknown_name("robots", "nope")),
+        (("demo", "--robot-settings", "nope"), unknown_name("robots", "nope")),
+        (("run", "--settings", "nope"), unknown_name("runtime", "nope")),
+        (("run", "--world", "nope", "--seconds", "1"), unknown_name("worlds", "nope")),
+        (("lesson", "--task", "wal_folowing"), " wall_following?"),
+        (("sim", "--world", "manhatan"), " manhattan?"),
+        (("sim", "--world", "cave.png"), "cave.png: "),
+        (("run", "--world", "maps/cave.PGM"), " maps/cave.yaml "),
+        (("knowledge", "key", ""), "folder"),
+        (("replay", "/proc/self/mem"), f"[Errno {errno.EIO}]"),
+        (("run", "--bus", "can7"), "bus 'can7': "),
+        (("run", "--robot", "can7"), "bus 'can7': "),  # the earlier name of --bus
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -146,25 +148,25 @@ def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tup
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("run", "--bus", "can7", "--auto"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--bus", "can7", "--auto"), "--auto"),
         (("run", "--bus", "can7", "--robot", "can6"), "--robot"),
-        (("run", "--page", "--teacher", "none"), "come over the channel"),
-        (("teach", "--terminal", "--auto"), "one teacher at a time"),
+        (("run", "--page", "--teacher", "none"), "--teacher"),
+        (("teach", "--terminal", "--auto"), "--terminal"),
         (("run", "--seconds", "nan"), "--seconds"),
         (("run", "--seconds", "inf"), "--seconds"),
         (("run", "--seconds", "0"), "--seconds"),
-        (("run", "--teacher", "stranger"), "'stranger' is neither channel nor none"),
-        (("lesson", "--seeds", "a-b"), "'a-b' is no list of seeds; give e.g. 100-119 or 1,5,7-9"),
-        (("lesson", "--seeds", "'5-3' is no list of seeds"), "'5-3' is no list of seeds"),
-        (("lesson", "--seeds", "'1,5-3' is no list of seeds"), "'1,5-3' is no list of seeds"),
-        (("lesson", "--seeds", "1,1"), "names a seed twice"),
-        (("lesson", "--seeds", "1-99999999999"), "names too many seeds, allowed are 100000 at most"),
-        (("status", ""), "is a folder; give the knowledge file that the robot program was started with"),
-        (("lesson", "--seeds", "1,2", "--knowledge", "mine"), "each seed needs a file of its own: give --out instead"),
+        (("run", "--teacher", "stranger"), "'stranger'"),
+        (("lesson", "--seeds", "a-b"), "'a-b'"),
+        (("lesson", "--seeds", "5-3"), "'5-3'"),
+        (("lesson", "--seeds", "1,5-3"), "'1,5-3'"),
+        (("lesson", "--seeds", "1,1"), "twice"),
+        (("lesson", "--seeds", "1-99999999999"), " 100000 "),
+        (("status", ""), "folder"),
+        (("lesson", "--seeds", "1,2", "--knowledge", "mine"), "--out"),
         (("lesson", "--seed", "-1"), "--seed"),
         (("knowledge", "show", "mine", "--limit", "0"), "--limit"),
-        (("fly",), "No such command 'fly'"),
-        (("demo", "--fast"), "No such option: --fast"),
+        (("fly",), "'fly'"),
+        (("demo", "--fast"), "--fast"),
         (("exam",), "Missing argument"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
@@ -195,14 +197,13 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     assert said.exit_code == 2, said.err
     assert "Traceback" not in said.err
     last = said.err.strip().splitlines()[-1]
-    assert last.startswith(
-        "kurt2rt: task wall_following: learning.weights.0.features: situation basic has no feature 's99'; it has: s1, "
-    )
+    assert last.startswith("kurt2rt: task wall_following: learning.weights.0.features: ")
+    assert "'s99'" in last
 
 
 def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandLine, lessons: Path) -> None:
     said = kurt2rt.refused("exam", lessons, "--world", "a", "--world", "nope")
-    assert "nope: no such file in worlds" in said
+    assert unknown_name("worlds", "nope") in said
 
 
 @pytest.mark.parametrize(
@@ -218,7 +219,7 @@ def test_task_with_unknown_world_is_refused_before_the_lesson(
         part.update({"world": "nope"} if where == "teaching" else {"worlds": ["a", "nope"]})
 
     task = changed("tasks", "wall_following", tmp_path, somewhere_else)
-    assert "nope: no such file in worlds" in kurt2rt.refused(*command, "--task", task, "--out", tmp_path / "out")
+    assert unknown_name("worlds", "nope") in kurt2rt.refused(*command, "--task", task, "--out", tmp_path / "out")
     assert not (tmp_path / "out").exists()
 
 
@@ -248,7 +249,7 @@ def test_not_a_number_in_a_settings_file_names_file_and_key(
 def test_settings_that_are_no_text_are_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     mine.write_bytes(b"\xff\xfe\x00name: x")
-    assert "mine.yaml: cannot be read" in kurt2rt.refused("demo", "--task", mine)
+    assert f"{mine}: " in kurt2rt.refused("demo", "--task", mine)
 
 
 def test_file_with_a_writer_is_closed_to_writers_not_to_readers(
@@ -258,16 +259,16 @@ def test_file_with_a_writer_is_closed_to_writers_not_to_readers(
     with Journal.read_only(mine) as journal:
         binding = journal.binding
     with Journal.open(mine, binding):
-        assert "another kurt2rt is writing it" in kurt2rt.refused("lesson", "--knowledge", mine)
-        assert "another kurt2rt is writing it" in kurt2rt.refused("run", "--seconds", "1", "--knowledge", mine)
-        assert "another kurt2rt is writing it" in kurt2rt.refused("knowledge", "undo", mine)
+        locked = str(KnowledgeError(KnowledgeCode.ANOTHER_WRITER, where=mine, error=BlockingIOError(errno.EAGAIN)))
+        for words in (("lesson", "--knowledge"), ("run", "--seconds", "1", "--knowledge"), ("knowledge", "undo")):
+            assert kurt2rt.refused(*words, mine).partition(" (")[0].endswith(locked.partition(" (")[0])
         assert kurt2rt("knowledge", "check", mine).exit_code == 0
         assert kurt2rt("knowledge", "lessons", mine).exit_code == 0
         assert kurt2rt("knowledge", "table", mine).exit_code == 0
         assert kurt2rt("knowledge", "export", mine, tmp_path / "mine.zip").exit_code == 0
         assert kurt2rt("knowledge", "show", mine).exit_code == 0
         refusal = kurt2rt.refused("exam", mine, "--world", "nope")
-        assert "nope: no such file in worlds" in refusal
+        assert unknown_name("worlds", "nope") in refusal
 
 
 def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
@@ -276,7 +277,7 @@ def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tm
     assert image.count(b'"teacher":"scripted teacher"') == lessons_in(mine)
     mine.write_bytes(image.replace(b'"teacher":"scripted teacher"', b'"teacher":"scripted preacher"'[:28]))
     for command in (EVERY_WRITER[0], EVERY_WRITER[1], ("exam",)):
-        assert "keep the file, and go on with a backup copy" in kurt2rt.refused(*command, mine)
+        assert KnowledgeCode.ROW_CHANGED.do in kurt2rt.refused(*command, mine)
     said = kurt2rt("knowledge", "check", mine)
     assert said.exit_code == 1
     assert len(said.out.splitlines()) == image.count(b'"teacher":"scripted teacher"')

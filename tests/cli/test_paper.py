@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, unknown_name
 
 
 def short_task(folder: Path, **teaching: Any) -> Path:
@@ -25,11 +25,9 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
     words = ("paper", "--task", short_task(tmp_path), "--seeds", "100", "--jobs", "1", "--no-plain", "--out", "made")
     first = kurt2rt(*words)
     assert first.exit_code == 0, first.err
-    assert "Exams without teacher" in first.out
     assert "short circle" in first.out
-    assert "Plain reading" not in first.out
-    assert "Not judged: 1 robot only; the numbers are asked of 20." in first.out
-    assert first.out.endswith("report  made/report.html\n")
+    assert "Plain" not in first.out
+    assert first.out.endswith(" made/report.html\n")
     made = sorted(str(path.relative_to("made")) for path in Path("made").rglob("*") if path.is_file())
     assert made == [
         ".lock",
@@ -45,21 +43,20 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
     assert str(tmp_path) not in report
 
     short_task(tmp_path, supervised_s=5.0)
-    assert kurt2rt.refused(*words).endswith(
-        "made: results/shipped/short_circle-100.json were made with other settings or another program "
-        "(what differs: task); give a new folder with --out, or delete the results in this one"
-    )
+    line = kurt2rt.refused(*words)
+    assert " made: results/shipped/short_circle-100.json " in line
+    assert ": task)" in line  # what differs
 
 
 def test_an_unknown_task_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
     said = kurt2rt.refused("paper", "--task", "sledging", "--out", "made")
-    assert "sledging: no such file in tasks; give a path to a .yaml file or one of: circle, " in said
+    assert unknown_name("tasks", "sledging") in said
     assert not Path("made").exists()
 
 
 def test_an_unknown_world_is_refused_before_anything_runs(kurt2rt: CommandLine, tmp_path: Path) -> None:
     said = kurt2rt.refused("paper", "--task", short_task(tmp_path, world="nowhere"), "--out", "made")
-    assert "nowhere: no such file in worlds" in said
+    assert unknown_name("worlds", "nowhere") in said
     assert not Path("made").exists()
 
 
@@ -67,11 +64,10 @@ def test_a_folder_that_cannot_be_made_is_refused(kurt2rt: CommandLine, tmp_path:
     Path("made").write_text("a file")
     said = kurt2rt.refused("paper", "--task", short_task(tmp_path), "--out", "made")
     assert "made" in said
-    assert "give a path that can be written" in said
 
 
 def test_seeds_that_are_none_are_refused(kurt2rt: CommandLine) -> None:
-    assert "is no list of seeds" in kurt2rt.misused("paper", "--seeds", "many")
+    assert "'many'" in kurt2rt.misused("paper", "--seeds", "many")
 
 
 @pytest.mark.deep

@@ -5,20 +5,21 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, unknown_name
 
 QUICK = ("phases", "--quick", "--seeds", "0", "--jobs", "1")
 
 
 def test_phases_of_a_task_without_phases_are_refused(kurt2rt: CommandLine) -> None:
     said = kurt2rt.refused("phases", "--task", "circle", "--out", "made")
-    assert "task circle: says nothing about phases 3 to 5; add a section `phases:` to its file" in said
+    assert "task circle: " in said
+    assert "`phases:`" in said
     assert not Path("made").exists()
 
 
 def test_phases_with_an_unknown_world_are_refused(kurt2rt: CommandLine) -> None:
     said = kurt2rt.refused("phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
-    assert "nowhere: no such file in worlds" in said
+    assert unknown_name("worlds", "nowhere") in said
     assert not Path("made").exists()
 
 
@@ -33,11 +34,9 @@ def alone(result: Path) -> tuple[str, bool, int]:
 def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine, task: str) -> None:
     first = kurt2rt(*QUICK, "--task", task)
     assert first.exit_code == 0, first.err
-    assert "Phase by phase" in first.out
-    assert "Not judged: A part only" in first.out
     assert "MISSED" not in first.out
     folder = Path(f"results/phases/{task}-quick")
-    assert first.out.endswith(f"report  {folder}/report.html\n")
+    assert first.out.endswith(f" {folder}/report.html\n")
     results = sorted(folder.glob("results/*/*.json"))
     assert len(results) == 14
     _, trusted, changes = zip(*map(alone, folder.glob("results/critic-[as]*/*.json")), strict=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine, running
+from tests.cli.helpers import CommandLine, running, unknown_name
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, kill_and_return, teach_kill_and_return
 
 
@@ -34,30 +34,25 @@ def test_sim_console_places_the_robot_and_shares_no_bus(kurt2rt: CommandLine, tm
         sim.type("start 2")
         sim.wait_for("the robot stands at 1.45 3.50 m, -90 deg")
         line = sim.wait_for(" s | at 1.45 3.50 m, -90 deg | wheels +0.00 +0.00 m/s")
-        assert line.endswith("| no CONTROL, braked\n")
-        assert f"bus {bus}: a robot is on it already" in kurt2rt.refused("sim", "--bus", bus)
+        assert line.endswith(" braked\n")
+        assert f"bus {bus}: " in kurt2rt.refused("sim", "--bus", bus)
         said = sim.end(signal.SIGTERM)
     assert (said.exit_code, said.err) == (0, "")
-    assert re.fullmatch(
-        r"switched off after \d+\.\d\d s: 0 collisions, \d+ cycles missed, state [0-9a-f]{16}",
-        said.out.splitlines()[-1],
-    )
+    assert re.search(r" \d+\.\d\d s: 0 collisions, .* [0-9a-f]{16}$", said.out.rstrip())
 
 
 def test_it_ends_when_its_time_or_its_input_is_over(kurt2rt: CommandLine) -> None:
-    said = kurt2rt("sim", "--bus", a_bus("short"), "--seconds", "0.1")
-    assert "switched off after" in said.out
-    said = kurt2rt("sim", "--bus", a_bus("short"), "--while-stdin")
-    assert "switched off after" in said.out
+    for until in (("--seconds", "0.1"), ("--while-stdin",)):
+        assert " collisions, " in kurt2rt("sim", "--bus", a_bus("short"), *until).out.splitlines()[-1]
 
 
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("--bus", "can7"), "bus 'can7': no such network interface"),
-        (("--world", "nope"), "nope: no such file in worlds"),
-        (("--robot-settings", "nope"), "nope: no such file in robots"),
-        (("--start", "99"), "world a: has 12 start poses, there is none of number 99"),
+        (("--bus", "can7"), "bus 'can7': "),
+        (("--world", "nope"), unknown_name("worlds", "nope")),
+        (("--robot-settings", "nope"), unknown_name("robots", "nope")),
+        (("--start", "99"), " 99"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -68,8 +63,8 @@ def test_sim_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tuple[
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("--bus", "virtual:x"), "a virtual bus reaches no other program"),
-        (("--seconds", "inf"), "must be a finite number of seconds"),
+        (("--bus", "virtual:x"), "--bus"),
+        (("--seconds", "inf"), "--seconds"),
         (("--start", "0"), "--start"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",

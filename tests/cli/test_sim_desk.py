@@ -3,12 +3,14 @@
 import io
 import itertools
 import math
+import re
 from collections.abc import Iterator
 
 import pytest
 
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
+from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
 from simbridge.simulated_world import Kurt2World
 from simbridge.standalone import StandaloneRobot
@@ -17,6 +19,7 @@ from tests.simbridge.rig import ROBOT
 
 WORLD = load_world("a")
 SLOWLY = SpeedControl(Mode.SPEED_CM, 10, 10)
+NUMBER = re.compile(r"[+-]?\d[\d.]*")
 
 _numbers = itertools.count()
 
@@ -47,28 +50,32 @@ class Table:
             heard += self.news.since()
         return heard
 
+    def close(self) -> None:
+        self.end.shutdown()
+        self.notebook.shutdown()
+
 
 @pytest.fixture
 def table() -> Iterator[Table]:
     table = Table()
     yield table
-    table.end.shutdown()
-    table.notebook.shutdown()
+    table.close()
 
 
 def test_the_robot_is_put_at_a_start_pose(table: Table) -> None:
-    assert table.desk.obey("start 3\n") == "the robot stands at 2.30 2.75 m, 0 deg"
+    assert " 2.30 2.75 m, " in table.desk.obey("start 3\n")
     assert table.robot.pose == WORLD.start_poses[2].pose
     for wrong in ("start", "start 0", "start 13", "start x", "start 1 2"):
-        assert table.desk.obey(wrong) == "this world has the start poses 1 to 12"
+        assert table.desk.obey(wrong).endswith(" 1 to 12")
+    assert table.robot.pose == WORLD.start_poses[2].pose
 
 
 def test_the_robot_is_put_where_there_is_room(table: Table) -> None:
-    assert table.desk.obey("place 1.0 1.0 90") == "the robot stands at 1.00 1.00 m, 90 deg"
+    assert table.desk.obey("place 1.0 1.0 90").endswith(" 1.00 1.00 m, 90 deg")
     assert table.robot.pose == pytest.approx((1.0, 1.0, math.pi / 2))
-    assert table.desk.obey("place 0 0 0") == "there is no room for the robot there"
+    assert table.desk.obey("place 0 0 0") == str(WorldRefusedError(WorldRefusal.NO_ROOM))
     for wrong in ("place", "place 1 1", "place 1 1 nan", "place 1 1 north"):
-        assert table.desk.obey(wrong) == "say where: place X Y HEADING, in metres and degrees"
+        assert "X Y HEADING" in table.desk.obey(wrong)
     assert table.robot.pose == pytest.approx((1.0, 1.0, math.pi / 2))
 
 
@@ -76,18 +83,20 @@ def test_a_wall_is_moved(table: Table) -> None:
     before = WORLD.walls[0].from_m
     assert table.desk.obey("move tongue 0 -0.1") == "tongue moved"
     assert table.robot.world.settings.walls[0].from_m == pytest.approx((before[0], before[1] - 0.1))
-    assert table.desk.obey("move ceiling 0 1") == "world A: nothing is named 'ceiling'; there are: tongue"
-    assert table.desk.obey("move tongue 1") == "say by how much: move NAME DX DY, in metres"
+    no_wall = WorldRefusedError(WorldRefusal.NO_WALL, world="A", name="ceiling", known=("tongue",))
+    assert table.desk.obey("move ceiling 0 1") == str(no_wall)
+    assert "NAME DX DY" in table.desk.obey("move tongue 1")
 
 
 def test_a_lifted_robot_turns_its_wheels_in_the_air(table: Table) -> None:
     pose = table.robot.pose
-    assert "on a block" in table.desk.obey("lift")
+    table.desk.obey("lift")
+    assert table.robot.lifted
     table.cycles(50, SLOWLY)
     assert table.robot.wheel_speeds.left_m_s > 0.05
     assert table.robot.pose == pose
-    assert StatusLine(table.standalone).next().endswith("| on a block")
-    assert "on its wheels" in table.desk.obey("lower")
+    assert StatusLine(table.standalone).next().endswith(" block")
+    table.desk.obey("lower")
     table.cycles(50, SLOWLY)
     assert table.robot.pose != pose
 
@@ -99,39 +108,45 @@ def test_sim_console_with_help_or_nonsense_lists_the_commands(table: Table, line
 
 def test_news_are_told_once(table: Table) -> None:
     assert table.cycles(30) == []
-    assert table.cycles(30, SLOWLY) == ["CONTROL is heard and obeyed"]
-    assert table.cycles(30) == ["CONTROL has ceased: the watchdog brakes"]
-    crash = SpeedControl(Mode.SPEED_CM, 90, 90)
-    assert table.cycles(1, crash) == [
-        "CONTROL is heard and obeyed",
-        "a set point jumped: the controller crashed, MC_RESET revives it",
-    ]
-    assert StatusLine(table.standalone).next().endswith("| crashed, needs MC_RESET")
-    assert table.cycles(1, SystemControl(Mode.MC_RESET)) == ["the controller is alive"]
+    (heard,) = table.cycles(30, SLOWLY)
+    (ceased,) = table.cycles(30)
+    assert "watchdog" in ceased
+    heard_again, crashed = table.cycles(1, SpeedControl(Mode.SPEED_CM, 90, 90))
+    assert heard_again == heard
+    assert "MC_RESET" in crashed
+    assert StatusLine(table.standalone).next().endswith(" MC_RESET")
+    assert len(table.cycles(1, SystemControl(Mode.MC_RESET))) == 1
     table.end.shutdown()
-    assert table.cycles(3)[0].startswith("lost: bus virtual:desk-test-")
+    assert table.end.name in table.cycles(3)[0]
 
 
 def test_a_collision_is_told_with_its_place(table: Table) -> None:
     table.desk.obey("place 0.5 0.27 -90")
-    assert [line for line in table.cycles(100, SLOWLY) if "collision" in line] == [
-        "collision 1 at 0.50 0.22 m, -90 deg"
-    ]
+    (collision,) = (line for line in table.cycles(100, SLOWLY) if "collision" in line)
+    assert collision.endswith(" 1 at 0.50 0.22 m, -90 deg")
 
 
 def test_the_status_line_tells_where_it_is_and_what_it_was_told(table: Table) -> None:
     line = StatusLine(table.standalone)
-    assert line.next() == (
-        "     0.0 s | at 0.54 3.63 m, 0 deg | wheels +0.00 +0.00 m/s, ordered +0.00 +0.00 with brakes | "
-        "CONTROL 0 a second, junk 0 | collisions 0 | missed 0 | no CONTROL, braked"
-    )
+    assert NUMBER.findall(line.next()) == [
+        "0.0",
+        "0.54",
+        "3.63",
+        "0",
+        "+0.00",
+        "+0.00",
+        "+0.00",
+        "+0.00",
+        "0",
+        "0",
+        "0",
+        "0",
+    ]
     table.cycles(200, SLOWLY)
-    now = line.next()
-    assert now.startswith("     2.0 s | at 0.73 3.63 m, ")
-    assert now.endswith(
-        "| wheels +0.10 +0.10 m/s, ordered +0.10 +0.10 | CONTROL 100 a second, junk 0 | collisions 0 | missed 0"
-    )
-    assert "CONTROL 0 a second" in line.next()
+    now = NUMBER.findall(line.next())
+    assert now[:3] == ["2.0", "0.73", "3.63"]
+    assert now[4:] == [*["+0.10"] * 4, "100", *["0"] * 3]
+    assert "CONTROL 0 " in line.next()
 
 
 def test_lines_are_there_when_they_are_looked_for() -> None:

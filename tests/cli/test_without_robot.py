@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.channel.security.pairing import AUTO, ONLOOKER
+from kurt2rt.cli.no_robot import no_robot
 from tests.cli.helpers import CommandLine, running
 from tests.teacher.page.test_teach_command import free_udp_port
 
@@ -14,15 +16,13 @@ from tests.teacher.page.test_teach_command import free_udp_port
 def test_why_live_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
     port = free_udp_port()
     line = kurt2rt.refused("why", "--live", "--port", str(port))
-    assert line.endswith(
-        f": no robot answers at 127.0.0.1:{port} as onlooker; start one in another terminal: kurt2rt run"
-    )
+    assert line.endswith(f": {no_robot('127.0.0.1', port, ONLOOKER)}")
 
 
 def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
     port = free_udp_port()
     line = kurt2rt.refused("teach", "--auto", "--port", str(port))
-    assert line.endswith(f": no robot answers at 127.0.0.1:{port} as auto; start one in another terminal: kurt2rt run")
+    assert line.endswith(f": {no_robot('127.0.0.1', port, AUTO)}")
 
 
 def test_run_without_a_simulator_waits_and_names_its_command(tmp_path: Path) -> None:
@@ -30,7 +30,7 @@ def test_run_without_a_simulator_waits_and_names_its_command(tmp_path: Path) -> 
     words = ("run", "--bus", bus, "--port", "0", "--no-record")
     with running(*words, folder=tmp_path) as robot:
         line = robot.wait_for(f"no simulator on {bus}; ")
-        assert f"start one in another terminal: kurt2rt sim --bus {bus}" in line
+        assert f"kurt2rt sim --bus {bus}" in line
         with running("sim", "--bus", bus, folder=tmp_path):
             while "no simulator" in line:
                 line = robot.wait_for("RLAs |")
