@@ -35,8 +35,8 @@ def test_motor_primitive_ignores_the_readings() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("front_sensor: s1,", "front_sensor: s19,", "actions.14 (along_left_wall): there is no sensor s19"),
-        ("back_sensor: s2,", "back_sensor: s1,", "actions.14 (along_left_wall): s1 and s1 must look to the same side"),
+        ("front_sensor: s1,", "front_sensor: s19,", " s19;"),
+        ("back_sensor: s2,", "back_sensor: s1,", " s1 and s1 "),
     ],
 )
 def test_load_repertoire_wrong_sensor_names_the_entry(old: str, new: str, told: str, tmp_path: Path) -> None:
@@ -44,5 +44,6 @@ def test_load_repertoire_wrong_sensor_names_the_entry(old: str, new: str, told: 
     path.write_text(BASIC.replace(old, new, 1))
     with pytest.raises(SettingsError) as caught:
         load_repertoire(str(path), ROBOT)
-    assert str(caught.value).startswith(f"{path}: {told}")
-    assert "the robot's sensors are s1, s2, s3" in str(caught.value)
+    assert str(caught.value).startswith(f"{path}: actions.14 (along_left_wall): ")
+    assert told in str(caught.value)
+    assert " s1, s2, s3, " in str(caught.value)

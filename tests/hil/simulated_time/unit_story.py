@@ -3,7 +3,9 @@
 `test_unit` runs this in a machine whose first process is systemd, in simulated time: no program is late there.
 """
 
+import errno
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import AsyncIterator, Iterator
@@ -126,7 +128,7 @@ def may_do_little(pid: int) -> None:
     folder = STATE.stat()
     assert (folder.st_uid, folder.st_mode & 0o777) == (int(user), 0o700)
     for path in ("/etc/made", "/usr/made", "/opt/made", "/var/made", "/var/lib/made", "/run/made", "/home/made"):
-        assert "Read-only file system" in seen_from(pid, "touch", path)
+        assert os.strerror(errno.EROFS) in seen_from(pid, "touch", path)
     assert seen_from(pid, "touch", f"{STATE}/made") == ""
     assert seen_from(pid, "ls", "-A", "/home", "/root", "/tmp").split() == ["/home:", "/root:", "/tmp:"]
     assert not set(seen_from(pid, "ls", "/dev").split()) & {"mem", "kmsg", "console"}

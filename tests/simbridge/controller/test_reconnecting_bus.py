@@ -69,7 +69,7 @@ def test_reconnecting_bus_robot_stands_while_it_is_gone(adapter: Adapter) -> Non
     assert adapter.steady.lost > 100
     cycles(300)
     assert 3 <= adapter.tries - 1 <= 4  # once a second
-    assert adapter.steady.error_text == "bus 'desk': no such network interface"
+    assert "'desk'" in adapter.steady.error_text
     adapter.plugged_in = True
     cycles(150)
     assert adapter.steady.error_text == ""
@@ -85,7 +85,7 @@ def test_reconnecting_bus_full_queue_loses_one_frame(adapter: Adapter) -> None:
     assert adapter.steady.lost == 0
     port.send(encoder)
     assert adapter.steady.lost == 1
-    assert "too many frames waiting" in adapter.steady.error_text
+    assert "sending failed" in adapter.steady.error_text
     assert len(adapter.notebook.drain()) == QUEUE_FRAMES
     adapter.steady.drain()
     port.send(encoder)
