@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.security.pairing import AUTO, ONLOOKER
+from kurt2rt.channel.security.pairing import ONLOOKER
 from kurt2rt.cli.no_robot import no_robot
+from kurt2rt.core.rla.programs import AUTO
 from tests.cli.helpers import CommandLine, running
 from tests.teacher.page.test_teach_command import free_udp_port
 
