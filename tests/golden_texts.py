@@ -31,6 +31,7 @@ from tests.texts import (
     sim_console,
     standing,
     startup,
+    studies,
     units,
     verdicts,
     why,
@@ -85,6 +86,9 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     "studies": {
         "targets": verdicts.targets,
         "results": verdicts.results,
+        "reasons against judging": studies.reasons,
+        "exams": studies.exams,
+        "controls without effect": studies.controls,
     },
     "log": {
         "outcomes of commands": outcomes.in_log,

@@ -92,14 +92,15 @@ async def test_mid_level_asks_learns_and_continues_later(simulation: Kurt2Simula
     with closing(Service(simulation, clock, path)) as first:
         await first.run(0.5)
         (question,) = first.questions
-        assert str(question) == "I don't know any way yet, teach me which behaviour to follow"
-        assert "stands and asks the way" in first.line
+        assert isinstance(question, MidQuestion)
+        assert (question.nearest_rla, question.here) == (None, ())
+        assert "asks the way" in first.line
 
         record = await first.run(20.0, Teach("way-1", "Ann", "straight_on", level=MID))
         assert record.mid is not None
         assert record.mid.event is not None
         assert record.mid.event.quarters == 0
-        assert "sent by mid-level RLA 1" in first.line
+        assert "mid-level RLA 1" in first.line
 
         record = await first.run(20.0, Correct("way-2", "Ann", "turn_left", level=MID))
         assert record.mid is not None

@@ -86,7 +86,7 @@ def test_tables_have_doubt_and_its_control() -> None:
 
 
 def test_task_without_doubt_is_refused() -> None:
-    with pytest.raises(SettingsError, match="sets no doubt"):
+    with pytest.raises(SettingsError, match=r"fleeing\b.*\bdoubt"):
         with_doubt(load_task("fleeing"), stands=True)
 
 

@@ -50,20 +50,19 @@ def test_an_answer_that_the_repertoire_lacks_ends_the_lesson(tmp_path: Path) -> 
     task = without(tmp_path, "forward", "along_left_wall", "curve_left")
     with pytest.raises(
         LessonLostError,
-        match=r"task wall_following, tick \d+: the robot refused lesson-1-after-0-1: there is no action '\w+'; the "
-        r"repertoire has: bear_left, .*; make policy wall_following, course laps and repertoire .*small.yaml fit",
+        match=r"task wall_following, tick \d+: .*lesson-1-after-0-1: .*'\w+'; .*: bear_left, .*small\.yaml",
     ):
         teach(tmp_path / "knowledge", task)
 
 
 def test_teacher_policy_names_an_unknown_action(tmp_path: Path) -> None:
     task = without(tmp_path, "forward", "along_left_wall", "curve_left")
-    with pytest.raises(UnknownActionError, match=r"the policy says '\w+', which the repertoire lacks; .*: bear_left, "):
+    with pytest.raises(UnknownActionError, match=r"'\w+', .*: bear_left, "):
         examined(task)
 
 
 def test_unknown_behaviour_ends_lesson_and_exam(tmp_path: Path) -> None:
-    with pytest.raises(LessonLostError, match=r"lesson-1-after-0-1: there is no taught behaviour 'fly'; .* course fly"):
+    with pytest.raises(LessonLostError, match=r"lesson-1-after-0-1: .*'fly'; .*\bfly\b"):
         teach(tmp_path / "knowledge", FLYING)
-    with pytest.raises(LessonLostError, match="the robot refused exam-1: there is no taught behaviour 'fly'"):
+    with pytest.raises(LessonLostError, match=r"exam-1: .*'fly'"):
         examined(FLYING)

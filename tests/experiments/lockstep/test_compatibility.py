@@ -9,9 +9,9 @@ from tests.experiments.helpers import STAGE
 @pytest.mark.parametrize(
     ("task", "worlds", "why"),
     [
-        ("circle", ("one_object", "a"), "task circle: course rounds: world A has 0 round obstacles"),
-        ("eight", ("two_objects", "one_object"), "task eight: course eights: world .* has 1 round obstacles"),
-        ("streets", ("streets-3", "rooms-3"), "task streets: course junctions: world rooms-3 has no streets that meet"),
+        ("circle", ("one_object", "a"), r"circle: .*rounds: .*\bA .*\b0\b"),
+        ("eight", ("two_objects", "one_object"), r"eight: .*eights: .*\b1\b"),
+        ("streets", ("streets-3", "rooms-3"), r"streets: .*junctions: .*rooms-3"),
     ],
 )
 def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[str, str], why: str) -> None:
@@ -23,7 +23,7 @@ def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[s
 
 def test_require_course_refuses_behaviours_without_an_exit() -> None:
     task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
-    with pytest.raises(SettingsError, match="behaviours must be among straight_on"):
+    with pytest.raises(SettingsError, match="straight_on"):
         require_course(STAGE, task, ["manhattan"])
 
 

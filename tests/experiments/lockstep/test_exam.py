@@ -139,7 +139,7 @@ def test_a_lesson_in_an_exam_is_a_defect_and_no_silence() -> None:
         clock = LockstepClock(simulation.step)
         runtime = build_runtime(simulation.robot, ROBOT, short_task(), [], NoTeachingAllowed(), clock)
         runtime.inbox.put(Teach("t-1", "Ann", "forward"))
-        with pytest.raises(RuntimeError, match="a lesson was given in an exam"):
+        with pytest.raises(RuntimeError, match="exam"):
             anyio.run(runtime.scheduler.run, 1, lambda _: None)
     finally:
         simulation.close()

@@ -1,3 +1,4 @@
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -127,7 +128,7 @@ def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: 
     flush = JournalWriter.flush
     monkeypatch.setattr(JournalWriter, "flush", without_patience)
     monkeypatch.setattr(Journal, "append", on_a_dead_disk)
-    with pytest.raises((LessonLostError, KnowledgeError), match="the disk is full; make room on it"):
+    with pytest.raises((LessonLostError, KnowledgeError), match=re.escape(KnowledgeCode.DISK_FULL.what)):
         teach(tmp_path / "knowledge", short_task(2.0, 0.0))
 
 
@@ -136,5 +137,5 @@ def test_a_lesson_that_the_journal_refuses_is_an_error(tmp_path: Path, monkeypat
         return [Receipt(each.event.origin.command_id, 7, each.stamped_at, new=False, agrees=False) for each in entries]
 
     monkeypatch.setattr(Journal, "append", refuse)
-    with pytest.raises(LessonLostError, match="knowledge: command 'lesson-1-after-0-1': another lesson of this id"):
+    with pytest.raises(LessonLostError, match=r"knowledge: .*'lesson-1-after-0-1'"):
         teach(tmp_path / "knowledge", short_task(2.0, 0.0))

@@ -88,7 +88,7 @@ def test_other_reading_is_not_called_plain(change: dict[str, str]) -> None:
 
 @pytest.mark.parametrize("name", ["../circle", "my circle", "a/b", "''"])
 def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
-    with pytest.raises(SettingsError, match=r"circle\.yaml: name: String should match pattern"):
+    with pytest.raises(SettingsError, match=r"circle\.yaml: name: "):
         load_task("circle", changes={"name": name})
 
 

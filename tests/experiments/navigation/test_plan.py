@@ -82,14 +82,14 @@ def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
 def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
     tables = list(all_tables([done.outcome], navigation_settings(done.plan.task), "ordinary"))
     assert len(tables) == 3
-    assert "the scripted teacher ordinary." in tables[1].note
+    assert "ordinary" in tables[1].note
     picture = tmp_path / "robot.png"
     draw_errands(STAGE, "manhattan", done.outcome, picture)
     assert imread(picture).shape[0] > 400
 
 
 def test_a_task_without_errands_has_none_to_run() -> None:
-    with pytest.raises(SettingsError, match="task route: to run errands it needs the course errands"):
+    with pytest.raises(SettingsError, match=r"\broute\b.*\berrands\b"):
         navigation_settings(load_task("route"))
 
 

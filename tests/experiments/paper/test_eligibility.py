@@ -1,5 +1,6 @@
 """Conditions for judging the paper study."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -45,29 +46,26 @@ def test_twenty_robots_that_nobody_has_seen_are_judged() -> None:
 
 
 @pytest.mark.parametrize(
-    ("seeds", "reason"),
+    ("seeds", "numbers"),
     [
-        (range(100, 119), "19 robots only; the numbers are asked of 20."),
-        ((100,), "1 robot only; the numbers are asked of 20."),
-        (range(79, 99), "1 of the seeds are among 0 to 79, on which settings were chosen; give others."),
-        (
-            range(100, 140, 2),
-            "wall_following: 15 of the 30 generated worlds are left out by these seeds; "
-            "give 20 that follow each other.",
-        ),
+        (range(100, 119), ["19", "20"]),
+        ((100,), ["1", "20"]),
+        (range(79, 99), ["1", "0", "79"]),
+        (range(100, 140, 2), ["15", "30", "20"]),
     ],
 )
-def test_others_are_not_and_the_reason_is_said(seeds: range | tuple[int, ...], reason: str) -> None:
-    assert list(reasons_not_to_judge(plan(seeds, SETTINGS))) == [reason]
+def test_others_are_not_and_the_reason_has_its_numbers(seeds: range | tuple[int, ...], numbers: list[str]) -> None:
+    (reason,) = reasons_not_to_judge(plan(seeds, SETTINGS))
+    assert re.findall(r"\d+", reason) == numbers
 
 
 def test_a_part_is_not_judged() -> None:
     (reason,) = reasons_not_to_judge(replace(plan(NOT_SEEN, SETTINGS), extent=QUICK))
-    assert reason.startswith("A part only")
+    assert not re.findall(r"\d", reason)
 
 
 def test_rooms_on_which_settings_were_chosen_judge_nothing() -> None:
     assert SETTINGS.unseen is not None
     known = SETTINGS.model_copy(update={"unseen": SETTINGS.unseen.model_copy(update={"first": 59})})
     (reason,) = reasons_not_to_judge(plan(NOT_SEEN, known))
-    assert "among rooms-0 to rooms-59" in reason
+    assert re.findall(r"rooms-\d+", reason) == ["rooms-0", "rooms-59"]

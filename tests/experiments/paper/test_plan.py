@@ -122,13 +122,13 @@ def test_a_task_of_ones_own_is_done_and_nothing_is_asked_of_it(tmp_path: Path) -
 
 
 def test_an_unknown_task_is_refused_with_those_there_are() -> None:
-    with pytest.raises(SettingsError, match=r"sledging: no such file in tasks; .* circle, .*streets"):
+    with pytest.raises(SettingsError, match=r"sledging: .* circle, .*streets"):
         planned("circle", "sledging")
 
 
 def test_an_unknown_world_is_refused(tmp_path: Path) -> None:
     teaching = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())["teaching"]
-    with pytest.raises(SettingsError, match="nowhere: no such file in worlds"):
+    with pytest.raises(SettingsError, match=r"nowhere: .*worlds"):
         planned(changed_task(tmp_path, name="mine", teaching=teaching | {"world": "nowhere"}))
 
 
@@ -142,12 +142,12 @@ def test_a_path_to_a_shipped_task_is_the_same_as_its_name(path: str) -> None:
 
 def test_a_world_that_cannot_give_the_course_is_refused(tmp_path: Path) -> None:
     exam = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())["exam"]
-    with pytest.raises(SettingsError, match="task mine: course rounds: world C has 0 round obstacles"):
+    with pytest.raises(SettingsError, match=r"mine: .*rounds: .*\bC .*\b0\b"):
         planned(changed_task(tmp_path, name="mine", exam=exam | {"worlds": ["one_object", "c"]}))
 
 
 def test_two_tasks_of_one_name_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(StudyError, match="two tasks have the name circle"):
+    with pytest.raises(StudyError, match=r"\bcircle\b"):
         planned("circle", changed_task(tmp_path))
 
 
@@ -156,7 +156,7 @@ def test_success_asked_in_a_world_without_exam_is_refused() -> None:
     circle = next(each for each in paper.experiments if each.task == "circle")
     asked = circle.asked.model_copy(update={"success_at_least": {"b": 0.5}})
     wrong = paper.model_copy(update={"experiments": (circle.model_copy(update={"asked": asked}),)})
-    with pytest.raises(StudyError, match="circle: success is asked in b, but its exams are in one_object"):
+    with pytest.raises(StudyError, match=r"circle: .*\bb\b.*one_object"):
         planned(paper=wrong)
 
 

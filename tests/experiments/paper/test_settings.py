@@ -1,5 +1,6 @@
 """Settings of the paper study, and their errors."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +20,18 @@ SHIPPED = yaml.safe_load((CONFIG_DIR / "paper" / "basic_level.yaml").read_text()
     [
         (
             {"growth": SHIPPED["growth"] | {"task": "sledging"}},
-            "growth.task: there is no experiment with task 'sledging'",
+            r"growth\.task: .*'sledging'",
         ),
-        ({"eight": "nine"}, "eight: there is no experiment with task 'nine'; give one of: fleeing, wall_following, "),
-        ({"testing_ground": "nowhere"}, "testing_ground: nowhere: no such file in worlds"),
-        ({"worlds": ["a", "nowhere"]}, "worlds.1: nowhere: no such file in worlds"),
+        ({"eight": "nine"}, "eight: .*'nine'; .*: fleeing, "),
+        ({"testing_ground": "nowhere"}, "testing_ground: nowhere: "),
+        ({"worlds": ["a", "nowhere"]}, r"worlds\.1: nowhere: "),
     ],
 )
 def test_load_paper_names_file_and_key_of_missing_parts(changed: dict[str, Any], said: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump(SHIPPED | changed))
-    with pytest.raises(SettingsError) as caught:
+    with pytest.raises(SettingsError, match=f"^{re.escape(str(path))}: {said}"):
         load_paper(str(path), STAGE)
-    assert str(caught.value).startswith(f"{path}: {said}")
 
 
 def test_load_paper_accepts_the_shipped_settings() -> None:

@@ -85,5 +85,5 @@ def test_autonomous_steps_plan_no_repositioning(name: str) -> None:
 
 @pytest.mark.parametrize("key", ["phases", "judge"])
 def test_a_task_that_says_nothing_of_these_phases_is_refused(key: str) -> None:
-    with pytest.raises(SettingsError, match=f"task wall_following: .*; add .*`{key}:`"):
+    with pytest.raises(SettingsError, match=f"wall_following: .*`{key}:`"):
         list(steps_of(TASK.model_copy(update={key: None})))

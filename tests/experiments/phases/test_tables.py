@@ -25,7 +25,7 @@ def test_every_branch_is_beside_the_others() -> None:
 def test_nothing_is_judged_where_there_is_a_reason_not_to() -> None:
     table = phases_targets_table(study(), ["Too few."])
     assert {row[-1] for row in table.rows} == {"not judged"}
-    assert table.note == "Not judged. Too few."
+    assert table.note.endswith("Too few.")
     judged = phases_targets_table(study(), [])
     assert {row[-1] for row in judged.rows} <= {"met", "MISSED"}
 

@@ -1,6 +1,8 @@
 """Tables of the teaching."""
 
-from kurt2rt.experiments.phases.steps import ASKS, LONG_RUN, REWARDS
+import re
+
+from kurt2rt.experiments.phases.steps import ASKS, CORRUPTED, LONG_RUN, REWARDS, TITLES, UNKNOWN_BAD
 from kurt2rt.experiments.phases.training_tables import critic_table, long_run_table, words_of_controls, workload_table
 from tests.experiments.phases.outcomes import cells, exam, stage, study, teaching
 
@@ -14,13 +16,14 @@ def test_why_somebody_had_to_come_is_told_apart() -> None:
 
 def test_a_control_that_equals_another_is_said_to() -> None:
     words = list(words_of_controls(study(2)))
-    assert "asks, unknown is -1: 2 of 2 robots never met the unknown, so no -1 came." in words
-    assert "asks only: 2 of 2 robots drive exactly as in 'corrupted, untouched'." in words
-    assert not any("no robot asked" in each for each in words)
+    assert any(each.startswith(f"{TITLES[UNKNOWN_BAD]}: 2 of 2 ") for each in words)
+    equal = [each for each in words if each.startswith(f"{TITLES[ASKS]}: ")]
+    assert len(equal) == 1
+    assert TITLES[CORRUPTED] in equal[0]
     silent = [stage(ASKS, exam(progress=7.0), taught=teaching().model_copy(update={"asks": 0})) for _ in range(2)]
     words = list(words_of_controls(study(2, asks_only=silent)))
-    assert "asks only: no robot asked anything." in words
-    assert not any(each.startswith("asks only: 2 of 2") for each in words)
+    (said,) = (each for each in words if each.startswith(f"{TITLES[ASKS]}: "))
+    assert TITLES[CORRUPTED] not in said
 
 
 def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
@@ -28,7 +31,7 @@ def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
     row = cells(critic_table(told), 0)
     assert (row["agreement at its end"], row["trusted"], row["undone"]) == ("0.90", "2 of 2", "1")
     silent = study(phase_4=[stage("phase-4", taught=teaching(agreement=(None, None))) for _ in range(2)])
-    assert cells(critic_table(silent), 0)["agreement at its end"] == "too little heard"
+    assert not re.search(r"\d", cells(critic_table(silent), 0)["agreement at its end"])
 
 
 def test_agreement_is_told_of_phase_4_alone() -> None:

@@ -1,5 +1,6 @@
 """Route study on the simulated robot: streets, route, tables, figures and report."""
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -97,7 +98,7 @@ def test_route_run_stores_the_mid_level(done: Done) -> None:
 def test_route_run_repeated_does_nothing(done: Done) -> None:
     again = a_programme(done.results)
     assert missing_time_s(again, done.results) == 0.0
-    with pytest.raises(StudyError, match="made with other settings"):
+    with pytest.raises(StudyError, match=re.escape(f"{done.results.folder}: ")):
         done.results.missing(a_programme(done.results, teaching_s=13.0).jobs)
 
 
@@ -107,7 +108,7 @@ def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
     assert plan.basic_jobs == ()
     assert plan.experiments[0].jobs[0].basic == folder / "streets-1.knowledge"
     assert basic_file(folder / "streets-1.knowledge", plan.basic, 1) == folder / "streets-1.knowledge"
-    with pytest.raises(StudyError, match=r"streets-2\.knowledge: there is no such file; teach the streets with"):
+    with pytest.raises(StudyError, match=r"streets-2\.knowledge: "):
         basic_file(folder, plan.basic, 2)
 
 

@@ -1,6 +1,7 @@
 """The folder of results: goes on where it was, mixes nothing."""
 
 import json
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -42,18 +43,16 @@ def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_pa
     results.write(JOBS[0], robot(1, 90))
     results.write(JOBS[1], robot(2, 90))
     other = [Job(job.file, MADE_OF.model_copy(update={what: "changed"})) for job in JOBS]
-    with pytest.raises(StudyError) as caught:
+    with pytest.raises(StudyError, match=rf"one-1\.json .*\b1 .*: {what}\)") as caught:
         results.missing(other)
-    assert str(caught.value) == (
-        f"{tmp_path}: results/shipped/one-1.json and 1 more were made with other settings or another program "
-        f"(what differs: {what}); give a new folder with --out, or delete the results in this one"
-    )
+    assert caught.value.where == str(tmp_path)
+    assert "--out" in caught.value.do
 
 
 def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
     (tmp_path / "results" / "shipped").mkdir(parents=True)
     (tmp_path / JOBS[0].file).write_text("{}")
-    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+    with pytest.raises(StudyError, match=r"one-1\.json: .*--out"):
         Results(tmp_path).missing(JOBS)
 
 
@@ -63,14 +62,14 @@ def test_missing_raises_for_an_incomplete_result(tmp_path: Path) -> None:
     content = json.loads((tmp_path / JOBS[0].file).read_text())
     del content["drives"][0]["teachers_stuck"]
     (tmp_path / JOBS[0].file).write_text(json.dumps(content))
-    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+    with pytest.raises(StudyError, match=r"one-1\.json: .*--out"):
         results.missing(JOBS)
 
 
 def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
     with (
         Results(tmp_path).held(),
-        pytest.raises(StudyError, match="another run writes here; wait for its end"),
+        pytest.raises(StudyError, match=re.escape(f"{tmp_path}")),
         Results(tmp_path).held(),
     ):
         pass

@@ -47,7 +47,7 @@ def test_run_seeds_reports_an_error_at_once(tmp_path: Path) -> None:
     failing = replace(first, worlds=("nowhere",))
     others = [replace(second, seed=seed, knowledge=tmp_path / f"{seed}.knowledge") for seed in range(10, 30)]
     done: list[int] = []
-    with pytest.raises(SettingsError, match="nowhere: no such file in worlds") as caught:
+    with pytest.raises(SettingsError, match=r"nowhere: .*worlds") as caught:
         run_seeds([failing, *others], 1, done.append)
     assert caught.value.__notes__ == ["wall_following, seed 5"]
     assert done == []
