@@ -71,6 +71,15 @@ class NoticeSettings(Settings):
     """Time after which any wrong action is noticed."""
 
 
+class LookBackSettings(Settings):
+    """Time and precision of a person who stops the robot and looks back for a mistake (rewind)."""
+
+    takes: Delay = LogNormalDelay(kind="log_normal", median_s=3.0, spread=0.42, longest_s=15.0)
+    """Time from the standstill to the press that names the right action, after which the robot drives on."""
+    moment_spread_s: Annotated[float, Field(ge=0, le=5)] = 0.2
+    """Standard deviation of the moment that the person takes for the begin of the mistake."""
+
+
 class LapseSettings(Settings):
     """Times in which the teacher looks away."""
 
@@ -83,6 +92,8 @@ class ErrorSettings(Settings):
 
     answers: Share
     corrections: Share
+    undone: Share = 0.0
+    """Fraction of these that the person notices at once, because the screen says what was taught, and undoes."""
 
 
 class PersonSettings(Settings):
@@ -100,6 +111,7 @@ class PersonSettings(Settings):
     link: LinkSettings
     presses_per_minute: Annotated[int, Field(ge=0, le=600)]
     """Limit on presses in any 60 s; 0: no limit."""
+    look_back: LookBackSettings = LookBackSettings()
     lapses: LapseSettings
     errors: ErrorSettings
     slower_per_minute: Annotated[float, Field(ge=0, le=1)]
@@ -112,8 +124,9 @@ class TeacherProfile(Settings):
     name: Name
     what: Sentence
     """Teacher in one sentence."""
-    corrects_by: Literal["press", "hold", "nothing"] = "press"
-    """Way to correct: a press that names the action, an action that is held, or answers only."""
+    corrects_by: Literal["press", "hold", "rewind", "nothing"] = "press"
+    """Way to correct: a press that names the action, an action that is held, a stop and a look back (rewind), or
+    answers only."""
     answers_by: Literal["press", "hold"] = "press"
     """Way to answer a question."""
     corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"

@@ -104,8 +104,8 @@ class TrainingResult:
 
     @property
     def presses(self) -> int:
-        """Number of the teacher's answers and corrections."""
-        return sum(minute.lessons + minute.corrections for minute in self.workload)
+        """Number of the teacher's presses (`WorkloadMinute.presses`)."""
+        return sum(minute.presses for minute in self.workload)
 
 
 async def teach(
@@ -292,6 +292,8 @@ class TrainingRun(Episode):
         self._alarms += 1
 
     def _rescue_if_stuck(self, tick: int) -> None:
+        if self.runtime.handler.active_stop is not None:
+            return  # the teacher looks back; the time of the stuck detector stands still with the robot
         waiting = self.asking and self._teacher.available
         # A robot that asks again and again while it touches a wall does not get away either.
         if not (waiting and self._plan.rescues_who_asks) and self.is_stuck(waiting=waiting):

@@ -10,7 +10,9 @@ from kurt2rt.core.teaching.commands import (
     HoldAction,
     ReplaceAction,
     Reward,
+    Stop,
     Teach,
+    Undo,
 )
 
 
@@ -33,6 +35,15 @@ class WorkloadMinute(NamedTuple):
     """Rescues of a stuck robot."""
     go: int = 0
     """Resume commands after a latched stop."""
+    stops: int = 0
+    """Stops to look back (rewind)."""
+    undone: int = 0
+    """Undos of own wrong presses."""
+
+    @property
+    def presses(self) -> int:
+        """Number of presses: answers and corrections, with the stops, resumes and undos that they took."""
+        return self.lessons + self.corrections + self.stops + self.go + self.undone
 
 
 Hands = Literal["set_down", "shown", "rescued", "go"]
@@ -68,6 +79,10 @@ class TeacherWorkload:
                 now = now._replace(corrections=now.corrections + 1)
             case Reward():
                 now = now._replace(rewards=now.rewards + 1)
+            case Stop(press_id=None):
+                now = now._replace(stops=now.stops + 1)
+            case Undo():
+                now = now._replace(undone=now.undone + 1)
             case Appraise():
                 now = now._replace(appraisals=now.appraisals + 1)
         self._minutes[place] = now

@@ -65,6 +65,8 @@ def workload_table(title: str, stages: Sequence[str], study: PhasesStudy) -> Tab
         "shown",
         "rescued",
         "Go",
+        "stops to look back",
+        "own presses undone",
         "+1",
         "-1",
         "too late",

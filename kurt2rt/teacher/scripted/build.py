@@ -10,6 +10,7 @@ from kurt2rt.core.teacher_settings import (
     LapseSettings,
     LinkSettings,
     LogNormalDelay,
+    LookBackSettings,
     NoticeSettings,
     PersonSettings,
 )
@@ -37,7 +38,7 @@ def build_teacher(
     profile, period_s = task.teaching.profile, robot.can.cycle_s
     policy = task.policy.build(robot.infrared)
     person = profile.person
-    if person is None and "hold" in (profile.corrects_by, profile.answers_by):
+    if person is None and {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}:
         person = _without_limits(task.teaching.teacher, period_s)
     if person is not None:
         sense = TaskSense(policy, tuple(actions), action_groups(task.repertoire))
@@ -69,6 +70,7 @@ def _without_limits(teacher: TeacherSettings, period_s: float) -> PersonSettings
         notices=NoticeSettings(different_after_s=patience_s, similar_after_s=patience_s),
         link=LinkSettings(pictures_per_s=1.0 / period_s, one_way_s=0.0),
         presses_per_minute=0,
+        look_back=LookBackSettings(takes=always(teacher.reaction_s), moment_spread_s=0.0),
         lapses=LapseSettings(per_minute=0.0, duration=always(0.0)),
         errors=ErrorSettings(answers=teacher.error_rate, corrections=teacher.error_rate),
         slower_per_minute=0.0,

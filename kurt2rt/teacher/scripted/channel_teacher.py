@@ -14,7 +14,7 @@ from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, Stop, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView, radius_fraction
@@ -218,7 +218,7 @@ def view_of_state(state: State) -> TeacherView:
 
 
 async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
-    """Send a command once; return 1 if it gave a lesson, 0 if it was refused or not answered; a hold counts as one."""
+    """Send a command once; return 1 if it gave a lesson, else 0; a hold counts as one."""
     try:
         match command:
             case Teach(action=action, decision_tick=of):
@@ -229,6 +229,15 @@ async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
                 answer = await robot.correct(action, of=tick if of is None else of)
             case HoldAction(action=action):
                 robot.press_action(action)
+                return 0
+            case Stop(press_id=None):
+                await robot.stop()
+                return 0
+            case Resume():
+                await robot.resume()
+                return 0
+            case Undo():
+                await robot.undo()  # its own wrong lesson is the last one: nobody else teaches
                 return 0
             case Stop():
                 released = await robot.let_go()

@@ -59,11 +59,11 @@ class PressLimit:
         self._minute_ticks = round(MINUTE_S / period_s)
         self._presses: deque[int] = deque(maxlen=presses_per_minute or 1)
 
-    def allows(self) -> bool:
-        """Return whether a press now stays within the limit."""
-        if not self._limit or len(self._presses) < self._limit:
+    def allows(self, presses: int = 1) -> bool:
+        """Return whether so many presses now stay within the limit; it must allow them in a minute."""
+        if not self._limit or len(self._presses) + presses <= self._limit:
             return True
-        return self.now - self._presses[0] >= self._minute_ticks
+        return self.now - self._presses[len(self._presses) + presses - self._limit - 1] >= self._minute_ticks
 
     def count(self) -> None:
         """Count a press."""

@@ -8,12 +8,16 @@ from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
-from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Stop, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit
+from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
 from kurt2rt.teacher.scripted.press_times import HumanTimes
+
+_REWIND_PRESSES = 2
+"""Presses of a correction by rewind; a person who has not both left does not begin one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,16 @@ class _PlannedPress:
     """Tick of the press."""
     picture: TeacherView
     """State that the press is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class _PlannedUndo:
+    """Undo of an own wrong press."""
+
+    due: int
+    """Tick of the press."""
+    lesson: str
+    """Command id of the wrong press."""
 
 
 class _Hand:
@@ -105,8 +119,11 @@ class ScriptedPerson(BasicTeacher):
         slower = person.slower_per_minute
         self._question_delay = DelaySampler(person.question_delay, slower, period_s, stream("question delays"))
         self._mistake_delay = DelaySampler(person.mistake_delay, slower, period_s, stream("mistake delays"))
+        self._look_back_delay = DelaySampler(person.look_back.takes, slower, period_s, stream("looks back"))
         self._attention = Attention(person.lapses, period_s, stream("lapses"))
         self._errors = random.Random(stream("errors"))
+        self._slips = random.Random(stream("slips that are noticed"))
+        self._moments = random.Random(stream("moments of mistakes"))
         self._presses = PressLimit(person.presses_per_minute, period_s)
         self.times = HumanTimes(person, self._presses, period_s=period_s, seed=seed, session=session)
         self._mistakes = MistakeWatcher(person.notices, sense.groups, period_s)
@@ -119,6 +136,9 @@ class ScriptedPerson(BasicTeacher):
         self._hand_ticks = round(person.hand_delay_s / period_s)
         self._hold_ticks = round(profile.hold_s / period_s)
         self._hand: _Hand | None = None
+        self._look_back: LookBack | None = None
+        self._look_back_errs = False
+        self._period_s = period_s
         self._press_id = 0
         self._seen: TeacherView | None = None
         self._now = 0
@@ -127,6 +147,7 @@ class ScriptedPerson(BasicTeacher):
         self._behaviour = ""
         self._answer: _PlannedPress | None = None
         self._correction: _PlannedPress | None = None
+        self._undo: _PlannedUndo | None = None
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Process a view that is `ticks` later than the last one; return the command that reaches the robot.
@@ -143,9 +164,11 @@ class ScriptedPerson(BasicTeacher):
             if self._hand is not None:
                 self._hand.follow(self._now, self._right(picture))
                 self._hold_on(self._hand, picture)
+            elif self._look_back is not None:
+                self._go_on_looking_back(self._look_back, picture)
             elif self._attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
-        if self._hand is None:
+        if self._hand is None and self._look_back is None:
             self._press_if_due()
         return self._sent.pop(self._now)
 
@@ -175,15 +198,22 @@ class ScriptedPerson(BasicTeacher):
 
     def _corrected_picture(self, noticed: TeacherView) -> TeacherView:
         began = self._mistakes.began
-        return began if began is not None and self._profile.corrects_tick == "began" else noticed
+        looks_at_begin = self._profile.corrects_tick == "began" or self._profile.corrects_by == "rewind"
+        return began if began is not None and looks_at_begin else noticed
 
     def _press_if_due(self) -> None:
-        if self._answer is not None and self._now >= self._answer.due:
+        if self._undo is not None:
+            if self._now >= self._undo.due and self._presses.allows():
+                self._presses.count()
+                self._forget()
+                self._send(Undo(self._next_id(), SCRIPTED, self._undo.lesson))
+                self._undo = None
+        elif self._answer is not None and self._now >= self._answer.due:
             if self._presses.allows():
                 self._press(self._answer.picture, answers=True)
             # Beyond the limit the robot stands and waits.
         elif self._correction is not None and self._now >= self._correction.due:
-            if self._presses.allows():
+            if self._presses.allows(_REWIND_PRESSES if self._profile.corrects_by == "rewind" else 1):
                 self._press(self._correction.picture, answers=False)
             else:
                 self._forget()  # the moment passes
@@ -197,6 +227,12 @@ class ScriptedPerson(BasicTeacher):
         if (profile.answers_by if answers else profile.corrects_by) == "hold":
             self._begin_hold(action, is_right=action == right)
             return
+        if not answers and profile.corrects_by == "rewind":
+            error_ticks = round(self._moments.gauss(0.0, self._person.look_back.moment_spread_s) / self._period_s)
+            mistake = Mistake(max(0, picture.tick + error_ticks), action)
+            self._look_back = LookBack(mistake, self._look_back_delay, self._period_s)
+            self._look_back_errs = action != right
+            return
         seen_tick = picture.tick if self._seen is None else self._seen.tick
         command: Command
         if answers:
@@ -207,8 +243,32 @@ class ScriptedPerson(BasicTeacher):
             command = Correct(
                 self._next_id(), SCRIPTED, action, decision_tick=tick, put_back=by_delay, seen_tick=seen_tick
             )
+        if action != right:
+            self._plan_undo(command.command_id)
+        self._send(command)
+
+    def _plan_undo(self, lesson: str) -> None:
+        """Plan the undo of an own wrong press, if the person notices it."""
+        if self._slips.random() < self._person.errors.undone:
+            self._undo = _PlannedUndo(self._now + self._mistake_delay.draw(self._now), lesson)
+
+    def _send(self, command: Command) -> None:
+        """Send a press, and look away from pictures from before its effect."""
         self._sent.put(self._now, command)
         self._ignore_until = self._now + self._effect_ticks
+
+    def _go_on_looking_back(self, look_back: LookBack, picture: TeacherView) -> None:
+        """Send the next press of a correction by rewind."""
+        command = look_back.update(self._now, picture, self._next_id)
+        if command is not None:
+            if not isinstance(command, Resume):
+                self._presses.count()
+            self._send(command)
+        if look_back.over:
+            if self._look_back_errs:
+                self._plan_undo(look_back.lesson)
+            self._look_back = None
+            self._ignore_until = self._now
 
     def _begin_hold(self, action: str, *, is_right: bool) -> None:
         self._press_id += 1
@@ -227,8 +287,7 @@ class ScriptedPerson(BasicTeacher):
             self._sent.put(self._now, HoldAction(SCRIPTED, picture.tick, hand.press_id, hand.action))
             return
         self._hand = None
-        self._sent.put(self._now, Stop(self._next_id(), SCRIPTED, hand.press_id))
-        self._ignore_until = self._now + self._effect_ticks
+        self._send(Stop(self._next_id(), SCRIPTED, hand.press_id))
 
     def _forget(self) -> None:
         self._answer = self._correction = None

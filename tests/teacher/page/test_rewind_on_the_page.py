@@ -51,6 +51,16 @@ def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> 
     assert lesson.phone.shows("#rewind-bar"), "another moment may be wrong, too"
 
 
+def test_then_go_lets_the_robot_drive_on_after_the_lesson(lesson: Lesson) -> None:
+    enter(lesson)
+    lesson.phone.touch("#rewind-go")
+    lesson.phone.touch("[data-action=spin_left]")
+    lesson.phone.wait(lambda: lesson.robot.told_of("resume"), "the robot is told to drive on")
+    names = [command[0] for command in lesson.robot.told]
+    assert names.index("correct") < names.index("resume")
+    lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
+
+
 @pytest.mark.parametrize("button", ["#rewind-close", "#go"])
 def test_leaving_the_past_corrects_the_present_again(lesson: Lesson, button: str) -> None:
     enter(lesson)

@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
+    CorrectRequest,
     HelloRequest,
     HoldRequest,
     PhaseRequest,
@@ -281,6 +282,26 @@ async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInR
             tasks.cancel_scope.cancel()
     assert held.action != "back"
     assert released.press_id == held.press_id
+
+
+async def test_teach_by_script_rewinding_teacher_stops_corrects_and_resumes(
+    robot: StandInRobot, client: TeacherClient
+) -> None:
+    robot.mind = Mind(robot)
+    task = taught_by(short(each_phase_s=2.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
+            await robot.hears(PhaseRequest, 2)
+            wrong = robot.show(cause="rla", action="back", rla=1)
+            (stop, *_) = await robot.hears(StopRequest)
+            robot.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.SAID_STOP, "auto"))
+            (correction, *_) = await robot.hears(CorrectRequest)
+            await robot.hears(ResumeRequest)
+            tasks.cancel_scope.cancel()
+    assert stop.press_id is None
+    assert correction.action != "back"
+    assert correction.decision_tick == wrong.tick
 
 
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:

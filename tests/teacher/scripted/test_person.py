@@ -14,12 +14,13 @@ from kurt2rt.core.teacher_settings import (
     LapseSettings,
     LinkSettings,
     LogNormalDelay,
+    LookBackSettings,
     NoticeSettings,
     PersonSettings,
     TeacherProfile,
     load_teacher,
 )
-from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Stop, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 
@@ -270,6 +271,72 @@ def test_update_question_is_answered_by_a_hold() -> None:
     commands = given(teacher, [asking()] * 230)
     assert set(held(commands).values()) == {"a"}
     assert not any(isinstance(each, Teach) for each in commands.values())
+
+
+REWINDS = {"corrects_by": "rewind"}
+
+
+def standing() -> TeacherView:
+    return TeacherView(asking=False, driving=False, action=None, infrared_counts=(FAR,))
+
+
+def rewound(teacher: ScriptedPerson, drives: int = 120) -> list[Command]:
+    """Return the commands to a robot that does b for some ticks and stands from then on."""
+    return list(given(teacher, [doing("b")] * drives + [standing()] * 600).values())
+
+
+def test_update_rewind_stops_corrects_the_begin_and_resumes() -> None:
+    stop, correction, resume, *_ = rewound(person(profile=REWINDS, look_back=LookBackSettings(moment_spread_s=0.0)))
+    assert isinstance(stop, Stop)
+    assert stop.press_id is None
+    assert isinstance(correction, Correct)
+    assert (correction.action, correction.decision_tick) == ("a", 1)
+    assert isinstance(resume, Resume)
+
+
+def test_update_rewind_moment_has_an_error() -> None:
+    moments = set()
+    for seed in range(5):
+        teacher = person(profile=REWINDS, seed=seed, look_back=LookBackSettings(moment_spread_s=0.3))
+        views = [doing("a")] * 200 + [doing("b")] * 120 + [standing()] * 600
+        (correction,) = (each for each in given(teacher, views).values() if isinstance(each, Correct))
+        moments.add(correction.decision_tick)
+    assert len(moments) > 1
+
+
+def test_update_rewind_needs_two_presses_of_the_limit() -> None:
+    teacher = person(profile=REWINDS, presses_per_minute=3)
+    pressed = [tick for tick, each in given(teacher, [doing("b")] * 100 + rewind_forever()).items() if counts(each)]
+    assert len(pressed) >= 4
+    assert all(later - sooner >= 6000 for sooner, later in zip(pressed, pressed[3:], strict=False))
+
+
+def rewind_forever() -> list[TeacherView]:
+    """Return a robot that stands for 5 s and does the wrong thing for 5 s, again and again."""
+    return ([standing()] * 500 + [doing("b")] * 500) * 15
+
+
+def counts(command: Command) -> bool:
+    return not isinstance(command, Resume)
+
+
+@pytest.mark.parametrize(("undone", "undos"), [(0.0, 0), (1.0, 1)])
+def test_update_own_wrong_press_is_undone_if_noticed(undone: float, undos: int) -> None:
+    errors = ErrorSettings(answers=1.0, corrections=0.0, undone=undone)
+    commands = list(given(person(Phase.SUPERVISED, errors=errors), [asking()] * 110 + [doing("a")] * 200).values())
+    answer = commands[0]
+    assert isinstance(answer, Teach)
+    taken_back = [each for each in commands if isinstance(each, Undo)]
+    assert [each.lesson for each in taken_back] == [answer.command_id] * undos
+
+
+def test_update_own_wrong_rewind_is_undone() -> None:
+    errors = ErrorSettings(answers=0.0, corrections=1.0, undone=1.0)
+    teacher = person(profile=REWINDS, errors=errors)
+    commands = list(given(teacher, [doing("b")] * 120 + [standing()] * 400 + [doing("a")] * 300).values())
+    (correction,) = (each for each in commands if isinstance(each, Correct))
+    (undo,) = (each for each in commands if isinstance(each, Undo))
+    assert undo.lesson == correction.command_id
 
 
 def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:

@@ -130,7 +130,7 @@ function showHold({ hold: told }) {
 function teach(action) {
   if (!link.state) return;
   if (rewind.open) {
-    sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
+    correctEarlier(action);
     return;
   }
   // Beyond R, at a withdrawn action and in doubt the touch is an answer: it also confirms the action of the RLA.
@@ -138,6 +138,16 @@ function teach(action) {
   // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
   const asks = at === BASIC && (cause === "doubt" || nearest === null || its === WITHDRAWN || distance === null || distance > radius);
   sendLesson(actionPad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
+}
+
+// Corrects the picked moment; with "then go" the robot drives on, unless it was stopped since this touch.
+async function correctEarlier(action) {
+  const { picture } = link;
+  const answer = await sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
+  if (!answer?.accepted || !rewind.open || !rewind.drivesOn) return;
+  const went = await link.command("resume", {}, picture);
+  if (went.accepted) rewind.leave();
+  else showAnswer(went);
 }
 
 // Teaches the mid level; `meant`: teach (right here), also (an alternative) or once (no lesson).
@@ -154,17 +164,18 @@ function teachBehaviour(behaviour, meant) {
   else sendLesson(midPad, behaviour, "correct", { level: MID }, false);
 }
 
-// Sends a lesson of a pad's button; `asks`: it answers a question.
+// Sends a lesson of a pad's button and returns the answer; `asks`: it answers a question.
 async function sendLesson(pad, action, name, args, asks) {
-  if (refuseEarly(action)) return;
+  if (refuseEarly(action)) return null;
   if (asks) setAnswering(true);
   pad.markOutcome(action, "pending");
   const answer = await sendCommand(name, { action, ...args }, `${name}: ${words(action)}`);
   pad.markOutcome(action, answer.accepted ? "saved" : "refused");
   setTimeout(() => pad.markOutcome(action, null), 900);
-  if (!asks) return;
+  if (!asks) return answer;
   if (answer.accepted || answer.why === "unknown") await stateAfter(answer.tick ?? -1);
   setAnswering(false);
+  return answer;
 }
 
 // Refuses a second answer to a question, which would make a second RLA, and an answer to one that has just changed.

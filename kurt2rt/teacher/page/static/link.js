@@ -65,11 +65,11 @@ export class Link extends EventTarget {
     return this.open && this.stateAgeMs < STALE_MS;
   }
 
-  // Sends a command; resolves with its answer, or with a refusal without one.
-  command(name, args = {}) {
+  // Sends a command, given on the state `picture`; resolves with its answer, or with a refusal without one.
+  command(name, args = {}, picture = this.picture) {
     if (!this.fresh) return Promise.resolve({ accepted: false, why: "no picture", text: text("commandWithoutPicture") });
     if (name === "resume") this.#setStopPending(false);
-    return this.#request({ kind: "order", name, arguments: args, picture: this.picture });
+    return this.#request({ kind: "order", name, arguments: args, picture });
   }
 
   // Asks for the facts of the newest decision; allowed without control.

@@ -10,6 +10,7 @@ const PICK_M = 0.6; // farthest touch from the path
 export class Rewind {
   #bar = document.getElementById("rewind-bar");
   #time = document.getElementById("rewind-time");
+  #go = document.getElementById("rewind-go");
   #says = document.getElementById("rewind-says");
   #boot = null;
   #states = []; // of driving, oldest first
@@ -26,6 +27,7 @@ export class Rewind {
       this.enter();
     });
     document.getElementById("rewind-close").addEventListener("click", () => this.leave());
+    this.#go.addEventListener("click", () => this.#go.setAttribute("aria-pressed", String(!this.drivesOn)));
     this.#time.addEventListener("input", () => this.#show());
   }
 
@@ -37,6 +39,11 @@ export class Rewind {
     this.#boot = boot;
     this.#states = [];
     this.leave();
+  }
+
+  // True if the robot is to drive on after the lesson, as after an answer; the teacher chose it with "then go".
+  get drivesOn() {
+    return this.#go.getAttribute("aria-pressed") === "true";
   }
 
   // True once the robot was seen to drive.

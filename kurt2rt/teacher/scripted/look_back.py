@@ -1,0 +1,66 @@
+"""Correction by rewind: a person stops the robot, looks back for the moment that went wrong, and names the action."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.teaching.commands import Command, Correct, Resume, Stop
+from kurt2rt.teacher.scripted.basic_teacher import TeacherView
+from kurt2rt.teacher.scripted.human_limits import DelaySampler
+
+_LOOKS_AGAIN_S = 1.0
+"""A robot that does not drive so long after a resume gets another one."""
+
+
+_Step = Literal["stop", "stopped", "looks", "taught", "resumed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """Mistake as its teacher sees it."""
+
+    tick: int
+    """Tick in which the teacher believes that it began."""
+    action: str
+    """Action that the teacher names."""
+
+
+class LookBack:
+    """The two presses of one correction: stop, and the right action at the moment of the mistake.
+
+    After the second the page lets the robot drive on, as after the answer to a question.
+    """
+
+    def __init__(self, mistake: Mistake, takes: DelaySampler, period_s: float) -> None:
+        """Plan the presses; `takes` draws the time to find the moment, `period_s` is the length of a tick."""
+        self._mistake = mistake
+        self._takes = takes
+        self._looks_again_ticks = round(_LOOKS_AGAIN_S / period_s)
+        self._step: _Step = "stop"
+        self._due = 0
+        self.lesson = ""
+        """Command id of the lesson, once it was given."""
+        self.over = False
+        """True once the robot was seen to drive or to ask after the resume."""
+
+    def update(self, now: int, picture: TeacherView, next_id: Callable[[], str]) -> Command | None:
+        """Take a picture in tick `now`; return the command that is due, if any. `next_id` gives its id."""
+        moves = picture.driving or picture.asking
+        if self._step == "resumed" and moves:
+            self.over = True
+        elif self._step == "stopped" and not moves:
+            self._step, self._due = "looks", now + self._takes.draw(now)
+        if self._step == "stop":
+            self._step = "stopped"
+            return Stop(next_id(), SCRIPTED)
+        if now < self._due or self.over:
+            return None
+        if self._step == "looks":
+            self._step = "taught"
+            self.lesson = next_id()
+            return Correct(self.lesson, SCRIPTED, self._mistake.action, decision_tick=self._mistake.tick)
+        if self._step in ("taught", "resumed"):
+            self._step, self._due = "resumed", now + self._looks_again_ticks
+            return Resume(next_id(), SCRIPTED, seen_tick=picture.tick)
+        return None

@@ -1,0 +1,96 @@
+"""Correction by rewind: stop, look back, name the action; the robot drives on."""
+
+from itertools import count
+
+from kurt2rt.core.teacher_settings import LogNormalDelay
+from kurt2rt.core.teaching.commands import Command, Correct, Resume, Stop
+from kurt2rt.teacher.scripted.basic_teacher import TeacherView
+from kurt2rt.teacher.scripted.human_limits import DelaySampler
+from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
+
+PERIOD_S = 0.01
+TAKES_S = 2.0
+
+
+def drives(tick: int) -> TeacherView:
+    return TeacherView(asking=False, driving=True, action="a", infrared_counts=(), tick=tick)
+
+
+def stands(tick: int) -> TeacherView:
+    return TeacherView(asking=False, driving=False, action=None, infrared_counts=(), tick=tick)
+
+
+def asks(tick: int) -> TeacherView:
+    return TeacherView(asking=True, driving=False, action=None, infrared_counts=(), tick=tick)
+
+
+class Rewinding:
+    """A person who looks back for a mistake that began in tick 40."""
+
+    def __init__(self) -> None:
+        takes = LogNormalDelay(kind="log_normal", median_s=TAKES_S, spread=0.0, longest_s=60.0)
+        delay = DelaySampler(takes, slower_per_minute=0.0, period_s=PERIOD_S, seed="s")
+        self.look_back = LookBack(Mistake(40, "b"), delay, PERIOD_S)
+        self._ids = (f"s-{number}" for number in count(1))
+
+    def see(self, picture: TeacherView) -> Command | None:
+        return self.look_back.update(picture.tick, picture, lambda: next(self._ids))
+
+    def wait_for_command(self, start: int) -> tuple[int, Command]:
+        """Show a standing robot from a tick on; return the tick of the next command, and the command."""
+        for tick in range(start, start + 1000):
+            command = self.see(stands(tick))
+            if command is not None:
+                return tick, command
+        raise AssertionError("no command within 10 s")
+
+
+def test_update_begins_with_a_stop() -> None:
+    assert isinstance(Rewinding().see(drives(100)), Stop)
+
+
+def test_update_waits_until_the_robot_stands() -> None:
+    person = Rewinding()
+    person.see(drives(100))
+    assert [person.see(drives(tick)) for tick in range(101, 500)] == [None] * 399
+
+
+def test_update_names_the_action_of_the_moment_after_looking() -> None:
+    person = Rewinding()
+    person.see(drives(100))
+    tick, command = person.wait_for_command(110)
+    assert tick == 110 + round(TAKES_S / PERIOD_S)
+    assert isinstance(command, Correct)
+    assert (command.action, command.decision_tick) == ("b", 40)
+    assert person.look_back.lesson == command.command_id
+
+
+def test_update_lets_the_robot_drive_on_at_once() -> None:
+    person = Rewinding()
+    person.see(drives(100))
+    taught, _ = person.wait_for_command(110)
+    tick, command = person.wait_for_command(taught + 1)
+    assert tick == taught + 1
+    assert isinstance(command, Resume)
+    assert command.seen_tick == tick
+    assert not person.look_back.over
+
+
+def test_update_resumes_again_if_the_robot_still_stands() -> None:
+    person = Rewinding()
+    person.see(drives(100))
+    taught, _ = person.wait_for_command(110)
+    first, _ = person.wait_for_command(taught + 1)
+    again, command = person.wait_for_command(first + 1)
+    assert again == first + 100
+    assert isinstance(command, Resume)
+
+
+def test_update_is_over_when_the_robot_drives_or_asks() -> None:
+    for view in (drives, asks):
+        person = Rewinding()
+        person.see(drives(100))
+        taught, _ = person.wait_for_command(110)
+        resumed, _ = person.wait_for_command(taught + 1)
+        assert person.see(view(resumed + 1)) is None
+        assert person.look_back.over
