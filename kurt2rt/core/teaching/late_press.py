@@ -27,7 +27,7 @@ class LatePresses:
             return command
         seen = command.seen_tick if command.decision_tick is None else command.decision_tick
         given = self._recent.newest if seen is None else min(seen, self._recent.newest)
-        back_ticks = self._delay.ticks(command.teacher, speed)
+        back_ticks = self._delay.correction_ticks(command.teacher, speed)
         return replace(command, seen_tick=given, decision_tick=self._decision(given, back_ticks))
 
     def described(self, command: Command, outcome: Outcome) -> Outcome:

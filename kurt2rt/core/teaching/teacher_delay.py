@@ -12,6 +12,12 @@ HAND_PART = 4
 Chosen on wall following, seeds 900 and 901, by an ordinary person with a hand of 0.3 s who answers after 1.25 s:
 held lessons put back by 0, 0.3, 0.6 and 1.25 s passed 0 of 6, 4 of 6, 3 of 6 and 0 of 3 exams.
 """
+CORRECTION_PART = 0.75
+"""Delay of a correction from the moment in which its mistake was noticed, as a fraction of that of an answer.
+
+A person who watches and sees a mistake knows the right action already. Chosen by the tests on search seeds that
+docs/results-and-limits.md names.
+"""
 _WINDOW = 16
 _LEAST_ANSWERS = 4
 _LONGEST_TICKS = 500
@@ -66,8 +72,15 @@ class TeacherDelay:
         """
         return self.ticks(teacher, speed) // HAND_PART
 
+    def correction_ticks(self, teacher: str, speed: int) -> int:
+        """Return the delay of a teacher's correction, in ticks of the robot.
+
+        `speed`: robot seconds in one second.
+        """
+        return round(self.ticks(teacher, speed) * CORRECTION_PART)
+
     def ticks(self, teacher: str, speed: int) -> int:
-        """Return the delay of a teacher in ticks of the robot, at most BACK_TICKS of real time.
+        """Return the delay of a teacher's answer in ticks of the robot, at most BACK_TICKS of real time.
 
         `speed`: robot seconds in one second.
         """

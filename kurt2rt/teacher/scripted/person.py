@@ -5,10 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviors.policies.policy import ReferencePolicy
+from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
+from kurt2rt.teacher.scripted.action_groups import STAND
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit
@@ -112,6 +114,8 @@ class ScriptedPerson(BasicTeacher):
         self._profile = profile
         self._person = person
         self._sense = sense
+        # No slip of the finger teaches standing: the page asks for a second touch.
+        self._slip_actions = [each for each in sense.actions if sense.groups.get(each, each) != STAND]
 
         def stream(name: str) -> str:
             return f"{name} of {session}, seed {seed}"
@@ -275,7 +279,11 @@ class ScriptedPerson(BasicTeacher):
         ends = self._now + self._hold_ticks
         hand = _Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
         if not is_right:  # a wrong button is a mistake to be noticed
-            hand.stay(self._now + self._mistake_delay.draw(self._now))
+            noticed = self._now + self._mistake_delay.draw(self._now)
+            hand.stay(noticed)
+            if self._slips.random() < self._person.errors.undone:
+                hand.ends = noticed
+                self._undo = _PlannedUndo(noticed + self._effect_ticks, hold_id(SCRIPTED, self._press_id))
         self._hand = hand
         if self._seen is not None:
             self._hold_on(hand, self._seen)
@@ -299,4 +307,4 @@ class ScriptedPerson(BasicTeacher):
     def _choose(self, right: str, error_rate: float) -> str:
         if self._errors.random() >= error_rate:
             return right
-        return self._errors.choice([action for action in self._sense.actions if action != right])
+        return self._errors.choice([action for action in self._slip_actions if action != right])

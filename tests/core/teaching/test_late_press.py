@@ -4,11 +4,12 @@ import pytest
 
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Correct, Undo
+from kurt2rt.core.teaching.teacher_delay import CORRECTION_PART, DEFAULT_TICKS
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_holding import condition
 from tests.teacher.helpers import resume, stop, teach
 
-DELAY = 100
+DELAY = round(DEFAULT_TICKS * CORRECTION_PART)
 
 
 @pytest.fixture
@@ -16,7 +17,7 @@ def driving() -> Corridor:
     """Return a robot that drove forward for a second at 100 counts, for 0.5 s at 130 and 0.5 s at 132."""
     corridor = Corridor()
     corridor.run(100, teach("forward", "first"))
-    for counts, ticks in ((100, 100), (130, DELAY // 2 + 1), (132, DELAY // 2)):
+    for counts, ticks in ((100, 100), (130, DELAY - DELAY // 2 + 1), (132, DELAY // 2)):
         for _ in range(ticks):
             assert corridor.run(counts).decision.action == "forward"
     return corridor
@@ -80,7 +81,7 @@ def test_answers_of_a_teacher_set_their_delay(driving: Corridor) -> None:
     for _ in range(120):
         driving.run()
     result = given(driving, press(driving))
-    assert result.outcome.fields["put_back_ticks"] == 60
+    assert result.outcome.fields["put_back_ticks"] == round(60 * CORRECTION_PART)
 
 
 def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:

@@ -7,6 +7,7 @@ import pytest
 from kurt2rt.channel.protocol.state import HoldState
 from kurt2rt.core.decision.standing import Standing, StandReason
 from tests.teacher.page.classroom import Classroom
+from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, SMALL, Phone
 from tests.teacher.page.test_browser import assert_handy, begin
@@ -52,6 +53,28 @@ def test_tap_on_a_button_is_a_late_correction(lesson: Lesson) -> None:
     assert (told[1], told[3]) == ("spin_left", "late")
     waited(lesson, 400)
     assert lesson.told("hold") == []
+
+
+def with_stand(robot: FakeRobot) -> None:
+    robot.greeting = replace(robot.greeting, actions=("forward", "stand"))
+
+
+def test_standing_is_taught_by_a_second_touch_only(a_lesson: Lesson) -> None:
+    a_lesson.begin(with_stand, standing=Standing())
+    stand = "[data-action=stand]"
+    a_lesson.phone.touch(stand)
+    a_lesson.phone.wait(lambda: a_lesson.phone.has("#said.asks"), "the page asks for another touch")
+    assert a_lesson.told("correct") == []
+    a_lesson.phone.touch(stand)
+    a_lesson.phone.wait(lambda: a_lesson.told("correct") == ["stand"], "the second touch teaches")
+
+
+def test_standing_is_not_held(a_lesson: Lesson) -> None:
+    a_lesson.begin(with_stand, standing=Standing())
+    a_lesson.phone.finger_down(*a_lesson.phone.middle("[data-action=stand]"))
+    waited(a_lesson, 600)
+    a_lesson.phone.finger_up()
+    assert a_lesson.told("hold") == []
 
 
 def test_page_counts_the_lessons_and_undoes_them_together(lesson: Lesson) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import (
@@ -260,6 +261,15 @@ def test_update_wrong_button_is_held_until_it_is_noticed() -> None:
     assert actions[-1] == "a"
 
 
+def test_update_wrong_button_that_is_noticed_ends_the_hold_and_is_undone() -> None:
+    wrong = person(profile=HOLDS, errors=ErrorSettings(answers=0.0, corrections=1.0, undone=1.0))
+    commands = list(given(wrong, [doing("b")] * 180 + [doing("a")] * 100).values())
+    (stop,) = (each for each in commands if isinstance(each, Stop))
+    (undo,) = (each for each in commands if isinstance(each, Undo))
+    assert (stop.press_id, undo.lesson) == (1, hold_id(SCRIPTED, 1))
+    assert commands.index(stop) < commands.index(undo)
+
+
 def test_update_hold_counts_as_one_press() -> None:
     teacher = person(profile=HOLDS, presses_per_minute=2)
     presses = {each.press_id for each in given(teacher, [doing("b")] * 5000).values() if isinstance(each, HoldAction)}
@@ -345,7 +355,7 @@ def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:
     sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
     teacher = ScriptedPerson(profile, profile.person, sense, period_s=PERIOD_S, seed=seed, session="s")
     teacher.begin_phase(Phase.CORRECTIONS)
-    yield from given(teacher, ([asking()] * 300 + [doing("c")] * 400) * 10).items()
+    yield from given(teacher, ([asking()] * 600 + [doing("c")] * 400 + [standing()] * 1500) * 6).items()
 
 
 @pytest.mark.parametrize("name", ["attentive", "ordinary", "slow"])

@@ -4,6 +4,7 @@
 import { glyph } from "./glyphs.js";
 import { holdButton } from "./hold_to_correct.js";
 
+export const STAND = "stand"; // the action that turns no wheel
 export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
 
 // Grid place of each known action: row, first column, number of columns. Left is left.

@@ -1,6 +1,6 @@
 // The teacher's page: it shows the robot's messages and sends the teacher's touches.
 
-import { ActionPad, WITHDRAWN, words } from "./actions.js";
+import { ActionPad, STAND, WITHDRAWN, words } from "./actions.js";
 import { Bubbles } from "./bubbles.js";
 import { onTheme } from "./canvas.js";
 import { Critic, CRITIC } from "./critic.js";
@@ -100,9 +100,9 @@ function showMessage(outcome, sentence) {
 
 let heldHere = null; // id of the lessons of this page's last hold
 
-// A hold does not let a stopped robot drive; a long touch is a tap there.
-function mayHold() {
-  return inControl() && link.fresh && !rewind.open && !link.state.stands.needs_go;
+// A hold does not let a stopped robot drive; a long touch is a tap there, and for the action that stands.
+function mayHold(action) {
+  return action !== STAND && inControl() && link.fresh && !rewind.open && !link.state.stands.needs_go;
 }
 
 hold.addEventListener("change", ({ detail }) => {
@@ -129,6 +129,10 @@ function showHold({ hold: told }) {
 
 function teach(action) {
   if (!link.state) return;
+  if (action === STAND && !touchedAgain()) {
+    showMessage("asks", text("standAgain"));
+    return;
+  }
   if (rewind.open) {
     correctEarlier(action);
     return;
@@ -138,6 +142,15 @@ function teach(action) {
   // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
   const asks = at === BASIC && (cause === "doubt" || nearest === null || its === WITHDRAWN || distance === null || distance > radius);
   sendLesson(actionPad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
+}
+
+let standTouchedMs = -Infinity;
+
+// True for the second touch within a few seconds: a rule to stand is one that a robot alone never leaves.
+function touchedAgain() {
+  const before = standTouchedMs;
+  standTouchedMs = performance.now();
+  return standTouchedMs - before < MESSAGE_MS;
 }
 
 // Corrects the picked moment; with "then go" the robot drives on, unless it was stopped since this touch.

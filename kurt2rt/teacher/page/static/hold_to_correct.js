@@ -63,7 +63,7 @@ export class TapOrHold {
     this.#pressed = action;
     this.#timer = setTimeout(() => {
       this.#timer = null;
-      if (this.#mayHold()) this.#hold.press(action);
+      if (this.#mayHold(action)) this.#hold.press(action);
       else this.#pressed = null;
     }, HOLD_MS);
   }
