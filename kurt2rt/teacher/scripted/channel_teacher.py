@@ -237,7 +237,7 @@ async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
                 await robot.resume()
                 return 0
             case Undo():
-                await robot.undo()  # its own wrong lesson is the last one: nobody else teaches
+                await robot.undo()  # its own wrong lesson is the last one, because no other teacher is in charge
                 return 0
             case Stop():
                 released = await robot.let_go()

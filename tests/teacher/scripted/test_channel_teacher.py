@@ -284,9 +284,7 @@ async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInR
     assert released.press_id == held.press_id
 
 
-async def test_teach_by_script_rewinding_teacher_stops_corrects_and_resumes(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
+async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandInRobot, client: TeacherClient) -> None:
     robot.mind = Mind(robot)
     task = taught_by(short(each_phase_s=2.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
     with anyio.fail_after(10.0):

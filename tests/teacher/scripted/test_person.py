@@ -261,7 +261,7 @@ def test_update_wrong_button_is_held_until_it_is_noticed() -> None:
     assert actions[-1] == "a"
 
 
-def test_update_wrong_button_that_is_noticed_ends_the_hold_and_is_undone() -> None:
+def test_update_wrong_button_that_is_noticed_is_undone() -> None:
     wrong = person(profile=HOLDS, errors=ErrorSettings(answers=0.0, corrections=1.0, undone=1.0))
     commands = list(given(wrong, [doing("b")] * 180 + [doing("a")] * 100).values())
     (stop,) = (each for each in commands if isinstance(each, Stop))

@@ -23,7 +23,7 @@ const TEXTS = {
   takeRobot: "Take the robot",
   takeControl: "Take control",
   rewound: "{seconds} s before it stood: {sentence}. Touch the action that was right there.",
-  standAgain: "Touch stand once more to teach it: by this rule the robot stays there until somebody drives it on.",
+  standAgain: "Touch stand once more to teach it: by this rule the robot stays there until a teacher drives it on.",
   holding: "{action} is held, lessons: {lessons}",
   held: "{action} was held, lessons: {lessons}",
   holdEnded: "the hold was ended; press again",
