@@ -44,8 +44,8 @@ def lesson(options: LessonOptions) -> None:
 
         kurt2rt lesson --teacher ordinary --seeds 100-119
 
-    With --controls the same seeds are also taught by a press, by a hold, by the
-    superhuman teacher, and by one that answers only, to compare.
+    With --controls the same seeds are also taught by a press, by a hold, by a
+    rewind, by the superhuman teacher, and by one that answers only, to compare.
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a

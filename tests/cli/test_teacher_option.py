@@ -47,11 +47,12 @@ def test_lesson_controls_compare_teachers(kurt2rt: CommandLine, tmp_path: Path) 
     words = ("lesson", "--task", task, "--teacher", "slow", "--seeds", "1", "--jobs", "1", "--controls")
     done = kurt2rt(*words)
     assert done.exit_code == 0, done.err
-    for label in ("slow, press", "slow, hold", "superhuman, press", "answers_only, nothing"):
+    controls = ["slow, press", "slow, hold", "superhuman, press", "answers_only, nothing"]
+    for label in ("slow, rewind", *controls):
         assert label in done.out
     data = json.loads(kurt2rt(*words, "--json").out)
     assert data["teacher"] == "slow"
-    assert list(data["controls"]) == ["slow, hold", "superhuman, press", "answers_only, nothing"]
+    assert list(data["controls"]) == controls
     assert [each["lesson"]["corrections"] for each in data["controls"]["answers_only, nothing"]] == [0]
 
 

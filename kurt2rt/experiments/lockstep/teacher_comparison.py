@@ -14,13 +14,12 @@ _MINUTE_S = 60.0
 def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
     """Return the task with its own teacher and its controls, by label.
 
-    The controls are the other way to correct, the superhuman teacher, and the one that answers only. Raises
+    The controls are the other ways to correct, the superhuman teacher, and the one that answers only. Raises
     hal.settings.SettingsError.
     """
     own = task.teaching.profile
     ways: Sequence[TeacherProfile] = (
-        own.model_copy(update={"corrects_by": "press"}),
-        own.model_copy(update={"corrects_by": "hold"}),
+        *(own.model_copy(update={"corrects_by": way}) for way in ("press", "hold", "rewind")),
         QUICK_TEACHER,
         load_teacher("answers_only"),
     )
