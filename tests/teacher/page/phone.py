@@ -20,7 +20,8 @@ PATIENCE_S = 10.0
 """Ends a story whose event never comes."""
 
 # Each page gets a process of its own, and the next one has its process already, unless it is told not to: starting
-# them was most of what the stories took. A transition is painted many times.
+# them was most of what the stories took. A transition is painted many times. Optimising the page's scripts takes
+# longer than it saves in the seconds of a story.
 _FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -36,6 +37,7 @@ _FLAGS = (
     "--renderer-process-limit=1",
     "--disable-features=SpareRendererForSitePerProcess,BackForwardCache,site-per-process,IsolateOrigins",
     "--force-prefers-reduced-motion",
+    "--js-flags=--no-opt,--no-maglev",
 )
 
 # What WebDriver's own questions come to, each in one short command.

@@ -12,6 +12,7 @@ PAD = """
 window.pad = {index: 0, id: "pad", connected: true, mapping: "standard", axes: [0, 0, 0, 0], timestamp: 0,
   buttons: Array.from({length: 17}, () => ({pressed: false, touched: false, value: 0}))};
 window.pads = [null];
+window.away = false;
 navigator.getGamepads = () => pads;
 window.tellPad = (kind) => {
   const event = new Event(kind);
@@ -23,17 +24,24 @@ document.hasFocus = () => !window.away;
 """
 
 
+UNPLUG = "pads[0] = null; delete document.visibilityState; tellPad('gamepaddisconnected');"
+
+
 @pytest.fixture
 def driving(a_lesson: Lesson) -> Iterator[Lesson]:
-    """Return a page with a new gamepad."""
+    """Return a page with a new gamepad, whose buttons the page has seen released.
+
+    The page stays loaded between tests: loading it takes most of a test's time.
+    """
     phone = a_lesson.phone
-    phone.leave()
-    with phone.before_scripts(PAD):
-        a_lesson.begin()
-        phone.run("pads[0] = pad; tellPad('gamepadconnected');")
-        a_lesson.reads("#said", "gamepad: hold a shoulder button")
-        yield a_lesson
-    phone.leave()
+    a_lesson.begin()
+    phone.run(PAD)
+    phone.run("pads[0] = pad; tellPad('gamepadconnected');")
+    a_lesson.reads("#said", "gamepad: hold a shoulder button")
+    polled(phone)
+    yield a_lesson
+    phone.run(UNPLUG)
+    phone.wait(lambda: not a_lesson.robot.pressing, "it lets go of the robot of this test")
 
 
 def presses(lesson: Lesson) -> list[tuple[object, ...]]:
