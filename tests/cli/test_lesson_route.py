@@ -9,7 +9,7 @@ from tests.cli.helpers import CommandLine, unknown_name
 from tests.experiments.helpers import teach
 from tests.experiments.route.test_summary import short
 
-SHORT = ("--set", "teaching.corrections_s=3", "--set", "exam.duration_s=2", "--set", "course.starts=1")
+SHORT = ("--set", "teaching.corrections_s=1.5", "--set", "exam.duration_s=1", "--set", "course.starts=1")
 
 
 @pytest.fixture(scope="module")

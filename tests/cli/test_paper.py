@@ -14,8 +14,8 @@ def short_task(folder: Path, **teaching: Any) -> Path:
     """Write the task circle with seconds of teaching and exam; return its path."""
     content = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())
     content["name"] = "short_circle"
-    content["teaching"] |= {"supervised_s": 4.0, "corrections_s": 2.0} | teaching
-    content["exam"]["duration_s"] = 2.0
+    content["teaching"] |= {"supervised_s": 2.0, "corrections_s": 1.0} | teaching
+    content["exam"]["duration_s"] = 1.0
     path = folder / "short.yaml"
     path.write_text(yaml.safe_dump(content))
     return path
@@ -42,7 +42,7 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
     assert "kurt2rt paper --seeds 100 --task short.yaml --no-plain" in report
     assert str(tmp_path) not in report
 
-    short_task(tmp_path, supervised_s=5.0)
+    short_task(tmp_path, supervised_s=3.0)
     line = kurt2rt.refused(*words)
     assert " made: results/shipped/short_circle-100.json " in line
     assert ": task)" in line  # what differs

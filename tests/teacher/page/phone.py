@@ -51,6 +51,21 @@ const box = e?.getBoundingClientRect();
 return Boolean(e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) && box.width && box.height);
 """
 
+_MIDDLE = """
+const [selector, done] = arguments;
+let before = "";
+const look = () => {
+  const e = document.querySelector(selector);
+  e.scrollIntoView({block: "nearest"});
+  const b = e.getBoundingClientRect();
+  const middle = [b.x + b.width / 2, b.y + b.height / 2];
+  if (String(middle) === before) return done(middle);
+  before = String(middle);
+  requestAnimationFrame(look);
+};
+look();
+"""
+
 _TIDY = """
 for (const each of document.querySelectorAll("dialog[open]")) each.close();
 document.querySelector("#tab-teach").click();
@@ -149,12 +164,11 @@ class Phone:
         self.finger_up()
 
     def middle(self, selector: str) -> tuple[float, float]:
-        """Middle of an element on the screen; it is scrolled there first."""
-        script = (
-            "const e = document.querySelector(arguments[0]); e.scrollIntoView({block: 'nearest'});"
-            "const b = e.getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2];"
-        )
-        x, y = self.run(script, selector)
+        """Return the middle of an element on the screen, scrolled there, once it stands still for a frame.
+
+        A new state may move what stands below its text, and a finger would touch what has come there instead.
+        """
+        x, y = self.driver.execute_async_script(_MIDDLE, selector)
         return float(x), float(y)
 
     def finger_down(self, x: float, y: float) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import socket
+import threading
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, field, replace
@@ -110,6 +111,7 @@ class RobotStub:
 async def console_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> AsyncIterator[Console]:
     reading, writing = os.pipe()
     clock = Clock()
+    other_readers = reading_threads()
     with os.fdopen(reading) as lines:
         try:
             async with (
@@ -123,6 +125,14 @@ async def console_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) ->
                 tasks.cancel_scope.deadline = anyio.current_time() + 2.0
         finally:
             os.close(writing)
+            # The thread that reads the pipe sees its end; it must not find the file closed instead.
+            for each in reading_threads() - other_readers:
+                each.join(10.0)
+
+
+def reading_threads() -> set[threading.Thread]:
+    """Return the threads that read a terminal."""
+    return {each for each in threading.enumerate() if each.name == "terminal"}
 
 
 @pytest.fixture
