@@ -68,7 +68,7 @@ class Junctions:
 
     @property
     def progress(self) -> float:
-        """Number of junctions left through the required side."""
+        """Count of junctions left through the required side."""
         return float(self._right.total())
 
     @property

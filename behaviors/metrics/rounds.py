@@ -58,7 +58,7 @@ class Rounds:
 
     @property
     def progress(self) -> float:
-        """Number of rounds in the required direction."""
+        """Count of rounds in the required direction."""
         return self._sign * self._swept.rounds
 
     @property

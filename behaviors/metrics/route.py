@@ -123,7 +123,7 @@ class FixedRoute:
 
     @property
     def progress(self) -> float:
-        """Number of junctions passed in the required way."""
+        """Count of junctions passed in the required way."""
         return float(sum(each.taken == each.right for each in self.passages))
 
     @property

@@ -43,7 +43,7 @@ class TaskMetric(Protocol):
 
     @property
     def progress(self) -> float:
-        """Progress in `unit`."""
+        """Progress in `unit`, a count or m."""
         ...
 
     @property

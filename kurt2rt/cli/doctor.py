@@ -23,8 +23,8 @@ def doctor(
 ) -> None:
     """Check this machine: what it offers the robot, what is missing, what to do.
 
-    Measures how late the timer is compared with asyncio.sleep, and how long the disk
-    takes to keep a lesson; looks at clock, real-time priority, memory lock,
+    Measures how late the timer is compared with asyncio.sleep, and how long the
+    disk takes to keep a lesson; looks at clock, real-time priority, memory lock,
     cores, CAN, SQLite and the simulator's packages. Changes nothing, and needs
     neither a robot nor a display.
 

@@ -44,7 +44,7 @@ class FaultyInterface(InterfaceWrapper):
             self._inward.carry(frame, self._on_delivered)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - nothing here waits
-        """Return the oldest frame that the inward link delivered, or None; never waits."""
+        """Return the oldest frame that the inward link delivered, or None without waiting `timeout` s."""
         return self._waiting.popleft() if self._waiting else None
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002

@@ -123,7 +123,7 @@ class WorldSettings(Settings):
 
     @property
     def free_space(self) -> shapely.Polygon | shapely.MultiPolygon:
-        """Inside of the outline without walls and obstacles, in m, in one or several pieces."""
+        """Area within the outline without walls and obstacles, in m, in one or several pieces."""
         free = shapely.Polygon(self.outline).difference(shapely.union_all(self.shapes))
         # If sides only touch, the difference may contain lines.
         return free if isinstance(free, shapely.Polygon) else shapely.MultiPolygon(polygons_of(free))

@@ -48,7 +48,10 @@ class DoubtJob:
 
 
 def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
-    """Return the quality of doubt at its threshold, and of distance / R with no more questions, of drives on end."""
+    """Return the quality of doubt at its threshold, and of distance / R with no more questions, of drives on end.
+
+    `threshold`: score of doubt, dimensionless.
+    """
     doubt, distance = [log.doubt for log in logs], [log.distance for log in logs]
     minutes = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
     collisions = sum(len(log.collisions) for log in logs)
