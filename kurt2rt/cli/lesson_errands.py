@@ -51,7 +51,7 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         controls=options.controls,
     )
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
-        run_missing(plan, results, options.jobs, bar.look)
+        run_missing(plan, results, options.jobs, bar.update)
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []

@@ -113,7 +113,7 @@ def many_routes(setup: LessonSetup, options: LessonOptions, command: str) -> Non
         basic_folder=options.basic,
     )
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
-        run_missing(plan, results, options.jobs, bar.look)
+        run_missing(plan, results, options.jobs, bar.update)
         bar.say("pictures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, factory, results.folder))

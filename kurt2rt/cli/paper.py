@@ -107,7 +107,7 @@ def _run_study(options: _Options) -> None:
     )
     command = _command(options, typed_seeds)
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
-        run_missing(plan, results, options.jobs, bar.look)
+        run_missing(plan, results, options.jobs, bar.update)
         bar.say("figures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, stage, results.folder))

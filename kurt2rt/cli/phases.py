@@ -79,7 +79,7 @@ def phases(options: _Options) -> None:
 
     plan, results = _plan(options)
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
-        run_missing(plan, results, options.jobs, bar.look)
+        run_missing(plan, results, options.jobs, bar.update)
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))

@@ -46,7 +46,7 @@ class OneBar:
         self._progress = progress
         self._id = progress.add_task("", total=whole_s)
 
-    def look(self, progress: PoolProgress) -> None:
+    def update(self, progress: PoolProgress) -> None:
         """Show the progress of the jobs: their robot time, and the names of running jobs."""
         first, *others = progress.running or ("",)
         # One name and a number, so that the times next to it have room.

@@ -203,7 +203,7 @@ def fields_of(code: Code) -> frozenset[str]:
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher, in the words of a surface. Raises KeyError for a missing field."""
     text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
-    return text + _put_back_text(outcome.fields)
+    return text + _late_press_text(outcome.fields)
 
 
 def event_error_text(error: InvalidEventError) -> str:
@@ -211,7 +211,7 @@ def event_error_text(error: InvalidEventError) -> str:
     return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
 
 
-def _put_back_text(fields: Mapping[str, Field]) -> str:
+def _late_press_text(fields: Mapping[str, Field]) -> str:
     """Return the end of the sentence of a late press: the decision that it was given to; empty for other outcomes."""
     back, rla = fields.get("put_back_ticks"), fields.get("decided_by")
     if not isinstance(back, int) or back == 0:

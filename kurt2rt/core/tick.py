@@ -480,6 +480,6 @@ def _needs_present_situation(command: Command) -> bool:
     """Return whether a command is about the present sensor readings; the mid level's situation needs none."""
     if not isinstance(command, Teach | Correct):
         return False
-    if isinstance(command, Correct) and command.put_back:
+    if isinstance(command, Correct) and command.late:
         return False
     return command.level == BASIC and command.decision_tick is None

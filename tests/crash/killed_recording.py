@@ -52,7 +52,7 @@ def _read(run: Run, *, replayed: bool) -> KilledRecording:
     for entry in run.entries():
         ticks += 1
         until_s = entry.now_s
-    assert run.whole, run.trouble
+    assert run.has_no_gap, run.trouble
     assert run.trouble, "a run that was killed ended as it should"
     if replayed:
         for entry, record in Replay(run):

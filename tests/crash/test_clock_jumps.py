@@ -68,7 +68,7 @@ def require_even(run_folder: Path) -> None:
     run = read_run(run_folder)
     for entry, record in Replay(run):
         assert compare(entry, record) == []
-    assert run.whole
+    assert run.has_no_gap
     assert not run.trouble
 
 

@@ -236,14 +236,14 @@ class CommandHandler:
             why = Outcome.of(RefusalCode.RESERVED_ID, command_id=command.command_id, sign=DERIVED)
             return CommandResult(command.command_id, why), ()
         was_free = self.authority.teacher is None
-        meant = self._late.put_back(command, self.authority.speed)
+        dated = self._late.assign(command, self.authority.speed)
         try:
-            outcome, event, before = self._carry_out(meant, situation, tick)
+            outcome, event, before = self._carry_out(dated, situation, tick)
             events = before if event is None else (*before, event)
             for each in events:
                 self.updater.apply(each)
-            self._notify_mid_level(meant)
-            self._note_answer(meant, tick, taught=event is not None)
+            self._notify_mid_level(dated)
+            self._note_answer(dated, tick, taught=event is not None)
         except (CommandRefusedError, InvalidEventError) as error:
             if was_free and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # a refused command gives no authority
@@ -254,7 +254,7 @@ class CommandHandler:
             )
             return CommandResult(command.command_id, why), ()
         self.updater.handled_ids.add(command.command_id)
-        outcome = self._late.described(meant, outcome)
+        outcome = self._late.described(dated, outcome)
         return CommandResult(command.command_id, outcome, lesson=event is not None), events
 
     def _note_answer(self, command: Command, tick: int, *, taught: bool) -> None:

@@ -105,7 +105,7 @@ class Correct:
     """Tick of the wrong decision; None: the present one."""
     level: str = BASIC
     """Level of the wrong decision, as in `Teach`."""
-    put_back: bool = False
+    late: bool = False
     """True for a person's press: it is about the decision before `decision_tick`, or else before `seen_tick`, by the
     teacher's delay."""
     seen_tick: int | None = None

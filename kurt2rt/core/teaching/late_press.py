@@ -16,11 +16,11 @@ class LatePresses:
         self._recent = recent
         self._delay = delay
 
-    def put_back(self, command: Command, speed: int) -> Command:
-        """Return a late press with the tick of its decision, and any other command unchanged.
+    def assign(self, command: Command, speed: int) -> Command:
+        """Return a late press with the tick of the decision that it reacts to, and any other command unchanged.
 
         Args:
-            command: a press is late if it is a correction of the basic level with `put_back`.
+            command: a press is late if it is a correction of the basic level with `late`.
             speed: robot seconds in one second.
         """
         if not isinstance(command, Correct) or not _is_late(command) or self._recent.newest < 0:
@@ -33,7 +33,7 @@ class LatePresses:
     def described(self, command: Command, outcome: Outcome) -> Outcome:
         """Return the outcome of a late press with the tick and RLA that it was given to, and by how many ticks.
 
-        `command`: as `put_back` returned it. The outcome of any other command is returned unchanged.
+        `command`: as `assign` returned it. The outcome of any other command is returned unchanged.
         """
         if not isinstance(command, Correct) or not _is_late(command):
             return outcome
@@ -57,4 +57,4 @@ class LatePresses:
 
 
 def _is_late(command: Correct) -> bool:
-    return command.put_back and command.level == BASIC
+    return command.late and command.level == BASIC

@@ -126,37 +126,37 @@ class LessonBuilder:
             if self._mid is None:
                 raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
             require_behaviour(command.action, self._level.active_behaviour.behaviours)
-            meant = self._mid.context_of(command.decision_tick)
+            context = self._mid.context_of(command.decision_tick)
         elif command.level == BASIC:
             require_action(command.action, self._level.repertoire)
-            meant = self._basic_context(command.decision_tick, situation)
+            context = self._basic_context(command.decision_tick, situation)
         else:
             raise CommandRefusedError(RefusalCode.NO_LEVEL, level=command.level, known=(BASIC, MID))
-        nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
+        nearest = self._system.match(context.vector, context.behaviour, context.level)
         if isinstance(command, Teach) and command.alternative:
-            return self._add_alternative(command.action, meant, nearest, origin)
-        if isinstance(command, Correct) and command.put_back:
-            agreeing = self._agreeing(nearest, meant, command.action)
+            return self._add_alternative(command.action, context, nearest, origin)
+        if isinstance(command, Correct) and command.late:
+            agreeing = self._agreeing(nearest, context, command.action)
             if agreeing is not None:  # an earlier press was about the same mistake
                 return LessonResult(rla_outcome(ResultCode.RLA_AGREES, agreeing, action=command.action))
         # A second RLA on the same condition would never win, because the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
             self.corrections_at[command.level] += 1
-            replace_within_share = meant.insert_beyond_share
-        elif meant.touched or (nearest is not None and nearest.rla.is_withdrawn):
-            replace_within_share = meant.insert_beyond_share  # it waits for this answer
-        elif meant.level == MID and nearest is not None and _is_at_known_place(nearest, meant):
-            return self._add_alternative(command.action, meant, nearest, origin)
-        return self._corrected(command.action, nearest, meant, replace_within_share, origin)
+            replace_within_share = context.insert_beyond_share
+        elif context.touched or (nearest is not None and nearest.rla.is_withdrawn):
+            replace_within_share = context.insert_beyond_share  # it waits for this answer
+        elif context.level == MID and nearest is not None and _is_at_known_place(nearest, context):
+            return self._add_alternative(command.action, context, nearest, origin)
+        return self._corrected(command.action, nearest, context, replace_within_share, origin)
 
     def _corrected(
-        self, action: str, nearest: Match | None, meant: LessonContext, replace_within_share: float, origin: Origin
+        self, action: str, nearest: Match | None, context: LessonContext, replace_within_share: float, origin: Origin
     ) -> LessonResult:
         """Replace the action of the nearest RLA within a share of its radius, else create another one."""
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
-            return self._create(action, meant, origin)
-        rla = self._corrected_rla(nearest.rla, meant)
+            return self._create(action, context, origin)
+        rla = self._corrected_rla(nearest.rla, context)
         if rla.action == action:
             return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
         other = self._competitor_with(action, rla)
@@ -164,11 +164,11 @@ class LessonBuilder:
             return LessonResult(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=action))
         return self._replace(rla, action, origin)
 
-    def _agreeing(self, nearest: Match | None, meant: LessonContext, action: str) -> Rla | None:
+    def _agreeing(self, nearest: Match | None, context: LessonContext, action: str) -> Rla | None:
         """Return the RLA that would do an action in a known situation already; None if it would be another action."""
         if nearest is None or not nearest.known:
             return None
-        rla = self._corrected_rla(nearest.rla, meant)
+        rla = self._corrected_rla(nearest.rla, context)
         return rla if rla.action == action else None
 
     def _basic_context(self, decision_tick: int | None, situation: Situation | None) -> LessonContext:
@@ -193,39 +193,41 @@ class LessonBuilder:
         )
 
     def _add_alternative(
-        self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin
+        self, action: str, context: LessonContext, nearest: Match | None, origin: Origin
     ) -> LessonResult:
         """Create another RLA on the condition of those that know the situation, or the first one there."""
-        if meant.level != MID:
+        if context.level != MID:
             raise CommandRefusedError(RefusalCode.NO_OTHER_WAY)
         if nearest is None or not nearest.known:
-            return self._create(action, meant, origin)
+            return self._create(action, context, origin)
         for rla in self._system.competitors(nearest.rla):
             if rla.action == action:
                 return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
-        return self._create(action, meant, origin, competitor=nearest.rla)
+        return self._create(action, context, origin, competitor=nearest.rla)
 
-    def _corrected_rla(self, nearest: Rla, meant: LessonContext) -> Rla:
+    def _corrected_rla(self, nearest: Rla, context: LessonContext) -> Rla:
         """Return which of several RLAs on one condition is meant: the one that drove, or else the one that would."""
         group = self._system.competitors(nearest)
         if len(group) == 1 or nearest.is_withdrawn:
             return nearest
         for rla in group:
-            if rla.rla_id == meant.drove:
+            if rla.rla_id == context.drove:
                 return rla
-        if meant.level != BASIC or self._reinforcement is None:
+        if context.level != BASIC or self._reinforcement is None:
             return nearest
         return self._reinforcement.choice.best(group)
 
-    def _create(self, action: str, meant: LessonContext, origin: Origin, competitor: Rla | None = None) -> LessonResult:
+    def _create(
+        self, action: str, context: LessonContext, origin: Origin, competitor: Rla | None = None
+    ) -> LessonResult:
         rla = Rla(
             rla_id=self._system.next_id,
-            condition=tuple(meant.vector.tolist()) if competitor is None else competitor.condition,
+            condition=tuple(context.vector.tolist()) if competitor is None else competitor.condition,
             action=action,
             radius=None if competitor is None else competitor.radius,
             origin=origin,
-            behaviour=meant.behaviour,
-            level=meant.level,
+            behaviour=context.behaviour,
+            level=context.level,
         )
         if competitor is None:
             outcome = rla_outcome(ResultCode.RLA_TAUGHT, rla, action=action)
@@ -330,12 +332,12 @@ class LessonBuilder:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
-def _is_at_known_place(nearest: Match, meant: LessonContext) -> bool:
+def _is_at_known_place(nearest: Match, context: LessonContext) -> bool:
     """Return whether a situation is so near to a known place that a second one would be the same place."""
     return (
-        meant.insert_beyond_share > 0.0
+        context.insert_beyond_share > 0.0
         and nearest.known
-        and (nearest.distance <= meant.insert_beyond_share * nearest.radius)
+        and (nearest.distance <= context.insert_beyond_share * nearest.radius)
     )
 
 

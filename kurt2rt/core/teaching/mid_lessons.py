@@ -62,8 +62,8 @@ class MidLessons:
             mid.override(command.action)
 
 
-def _known(meant: LessonContext) -> LessonContext:
+def _known(context: LessonContext) -> LessonContext:
     """Return the context; raise CommandRefusedError if its place is unknown, because it has no distances."""
-    if np.isnan(meant.vector).any():
+    if np.isnan(context.vector).any():
         raise CommandRefusedError(RefusalCode.PLACE_UNKNOWN)
-    return meant
+    return context

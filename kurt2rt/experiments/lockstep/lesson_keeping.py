@@ -36,7 +36,7 @@ class LessonKeeping:
         opened = self.opened
         return TrainingStore(self.writer, opened.events, opened.counter, opened.saved)
 
-    def look(self) -> None:
+    def check(self) -> None:
         """Pass each new acknowledgement of a durable lesson on. Raises LessonLostError for one that failed."""
         for acknowledgement in self.writer.acknowledged():
             if acknowledgement.error is not None:
@@ -52,7 +52,7 @@ class LessonKeeping:
         """
 
         def on_progress(done_s: float) -> None:
-            self.look()
+            self.check()
             report(what, done_s, whole_s)
 
         return on_progress
@@ -65,7 +65,7 @@ class LessonKeeping:
         self.writer.submit_statistics(counted)
         if not self.writer.flush(timeout_s=30.0):
             raise LessonLostError(self.writer.saving_error or f"{self._file}: the disk did not answer within 30 s")
-        self.look()
+        self.check()
 
 
 @contextmanager

@@ -25,7 +25,7 @@ class Scoring:
         self._judge = judge
         self._ticks: Counter[tuple[int, int | None]] = Counter()
 
-    def look(self, record: TickRecord) -> None:
+    def on_tick(self, record: TickRecord) -> None:
         """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
         if record.appraisal_features is None or not record.decision.driving:
             return
@@ -93,7 +93,9 @@ class Examiner:
         """
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
-        await self._drive(self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.look)
+        await self._drive(
+            self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.on_tick
+        )
         return tuple(scoring.judgements)
 
     async def _drive(

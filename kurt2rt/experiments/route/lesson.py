@@ -106,7 +106,7 @@ async def teach_route(
             settings,
             task,
             events,
-            ExamSetup(world, seed, on_tick=watching.look),
+            ExamSetup(world, seed, on_tick=watching.on_tick),
             lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
         )
     watching.end()

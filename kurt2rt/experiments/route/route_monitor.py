@@ -30,7 +30,7 @@ class RouteMonitor:
         """True if at that entry the robot had noticed exactly the turns that it had made."""
         self._last: tuple[TickRecord, FixedRoute] | None = None
 
-    def look(self, record: TickRecord, course: TaskMetric) -> None:
+    def on_tick(self, record: TickRecord, course: TaskMetric) -> None:
         """Compare one tick: note junctions that the robot noticed or entered, and judge each that it left.
 
         Call it on every tick, after the metric `course`, a FixedRoute, was updated. Errors are appended to `wrong`.

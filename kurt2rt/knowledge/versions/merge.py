@@ -226,7 +226,7 @@ class Merger:
             sides = StackPair(here.get(key, ()), there.get(key, ()))
             if sides.mine == sides.theirs:
                 continue
-            resolution = diff.resolve(key, sides)
+            resolution = diff.resolution_of(key, sides)
             if resolution is Resolution.CONFLICT and self._has_equal_result(key):
                 resolution = Resolution.KEEP_MINE
             change = _StackChange(key, sides, resolution, diff.new_rewards(sides), diff.withdrawn_rewards(sides))

@@ -136,7 +136,7 @@ class ThreeWayDiff:
         self._undone_unseen = _undone_since(seen, theirs)
         """Lessons undone there after the last row that mine has seen."""
 
-    def resolve(self, stack: StackKey, sides: StackPair) -> Resolution:
+    def resolution_of(self, stack: StackKey, sides: StackPair) -> Resolution:
         """Return whether a stack of mine stays, becomes as in theirs, or is a conflict; rewards do not count.
 
         `stack`: its key. `sides`: its lessons in both files.

@@ -15,7 +15,7 @@ _NAMES: dict[type[Any], str] = {
     PairingRenewed: "PressesForgotten",
     RobotRepositioned: "SetDown",
 }
-_FIELD_NAMES = {"press_id": "hold", "alternative": "beside"}
+_FIELD_NAMES = {"press_id": "hold", "alternative": "beside", "late": "put_back"}
 """Names of fields in recordings, if they differ from the command's."""
 _RECORDED = {name: field for field, name in _FIELD_NAMES.items()}
 _ADAPTERS: dict[str, TypeAdapter[Any]] = {name: TypeAdapter(kind) for kind, name in _NAMES.items()}

@@ -97,7 +97,7 @@ class Run:
         return 0.0 if self.began_s is None else entry.now_s - self.began_s
 
     @property
-    def whole(self) -> bool:
+    def has_no_gap(self) -> bool:
         """Return whether the ticks read so far had no gap; the end may be missing."""
         return not self._gap
 

@@ -46,7 +46,7 @@ class RecentRuns:
     @property
     def notes(self) -> tuple[str, ...]:
         """Lines on runs that were not replayed, with reasons; a gap is known after the replay."""
-        gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.whole)
+        gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.has_no_gap)
         return (*self.left_out, *gaps)
 
 

@@ -50,4 +50,4 @@ def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> R
             on_tick(tick)
     if not ticks and not differences:
         raise empty_run_error(run)
-    return ReplayVerdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)
+    return ReplayVerdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.has_no_gap)

@@ -223,7 +223,7 @@ async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
         match command:
             case Teach(action=action, decision_tick=of):
                 answer = await robot.answer(action, of=tick if of is None else of)
-            case Correct(action=action, put_back=True):
+            case Correct(action=action, late=True):
                 answer = await robot.correct(action, late=True)
             case Correct(action=action, decision_tick=of):
                 answer = await robot.correct(action, of=tick if of is None else of)

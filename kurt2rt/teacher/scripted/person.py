@@ -244,9 +244,7 @@ class ScriptedPerson(BasicTeacher):
         else:
             by_delay = profile.corrects_tick == "by_delay"
             tick = None if by_delay or profile.corrects_tick == "pressed" else picture.tick
-            command = Correct(
-                self._next_id(), SCRIPTED, action, decision_tick=tick, put_back=by_delay, seen_tick=seen_tick
-            )
+            command = Correct(self._next_id(), SCRIPTED, action, decision_tick=tick, late=by_delay, seen_tick=seen_tick)
         if action != right:
             self._plan_undo(command.command_id)
         self._send(command)

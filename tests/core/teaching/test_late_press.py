@@ -24,7 +24,7 @@ def driving() -> Corridor:
 
 
 def press(corridor: Corridor, action: str = "back", *, name: str = "late", age: int = 0) -> Correct:
-    return Correct(name, "Ann", action, put_back=True, seen_tick=corridor.ticks - age)
+    return Correct(name, "Ann", action, late=True, seen_tick=corridor.ticks - age)
 
 
 def given(corridor: Corridor, command: Correct, counts: int | None = None) -> CommandResult:
@@ -109,6 +109,6 @@ def test_correction_without_the_option_is_about_the_present(driving: Corridor) -
 
 def test_late_press_on_a_named_state_counts_from_that_state(driving: Corridor) -> None:
     shown = driving.ticks - 5
-    named = Correct("named", "Ann", "back", shown, put_back=True, seen_tick=driving.ticks)
+    named = Correct("named", "Ann", "back", shown, late=True, seen_tick=driving.ticks)
     fields = given(driving, named).outcome.fields
     assert (fields["decision_tick"], fields["put_back_ticks"]) == (shown - DELAY, DELAY)

@@ -51,7 +51,7 @@ class Watched:
         situation = Situation(np.zeros(1), history_frozen=False)
         grant = GuardResult(STANDSTILL, (), latched=False)
         record = TickRecord(self.tick, 0.01 * self.tick, sensed(100), situation, decision, grant, (), behaviour)
-        self.watching.look(record, self.course)
+        self.watching.on_tick(record, self.course)
 
     def junction(
         self, right: int, wanted: int, taken: int | None, noticed: int | None, within: int | None = None

@@ -164,7 +164,7 @@ def part_of(run: Run, lost: range) -> Run:
 def test_replay_ends_at_a_gap_and_reports_it() -> None:
     run = part_of(stored("walls"), range(201, 204))
     assert differences(run) == (200, [])
-    assert not run.whole
+    assert not run.has_no_gap
     assert run.trouble.startswith("3 ticks ")
     assert "(tick 204)" in run.trouble
 

@@ -36,7 +36,7 @@ def holding(scene: Scene, record: TickRecord) -> None:
         case 605:
             say(lambda name: Stop(name, NAME, 1))
         case 620:
-            say(lambda name: Correct(name, NAME, "curve_left", put_back=True, seen_tick=tick))
+            say(lambda name: Correct(name, NAME, "curve_left", late=True, seen_tick=tick))
         case 660:
             say(lambda name: Undo(name, NAME, f"{NAME}-hold-1"))
 

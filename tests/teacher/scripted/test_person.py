@@ -133,10 +133,10 @@ def test_update_corrected_tick_is_as_set(named: str, decision_tick: int | None) 
     assert correction.decision_tick == decision_tick
 
 
-def test_update_press_put_back_by_delay_names_the_newest_picture() -> None:
+def test_update_late_press_names_the_newest_picture() -> None:
     ((tick, correction),) = given(person(profile={"corrects_tick": "by_delay"}), [doing("b")] * 130).items()
     assert isinstance(correction, Correct)
-    assert correction.put_back
+    assert correction.late
     assert correction.seen_tick is not None
     assert 0 <= tick - correction.seen_tick - 2 * LINK_TICKS < PICTURE_TICKS
 
