@@ -1,7 +1,9 @@
 """Golden files of the texts that users read: `tests/golden/<surface>_texts.txt`, one file per surface.
 
-Tests assert codes, numbers and types; English stands in these files only. `python -m tests.golden_texts` rewrites
-them from the text tables; review the diff and commit it with the change.
+The sentences of the tables in `SURFACES` stand in these files; tests elsewhere assert the codes, numbers and types of
+these texts. Texts without a table, such as most errors of settings files and help texts, are still asserted in the
+tests of their modules. `python -m tests.golden_texts` rewrites the files from the text tables; review the diff and
+commit it with the change.
 
 To add a table of texts:
 
