@@ -1,8 +1,10 @@
 """Settings files: every shipped one loads, and whatever is wrong with one is told in one line."""
 
 import copy
+import errno
 import json
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -82,7 +84,7 @@ def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) 
     for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
         with pytest.raises(
             SettingsError,
-            match=r"no such file in robots; give a path to a \.yaml file or one of: kurt2(; did you mean kurt2\?)?$",
+            match=r"\brobots\b.*: kurt2(;.* kurt2\?)?$",
         ):
             find_config("robots", missing)
 
@@ -160,11 +162,12 @@ def test_misspelt_key_is_refused_with_the_allowed_keys(some: list[Place], tmp_pa
         right = str(place.path[-1])
         line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
         if right == "kind":  # it says which schema the item has
-            assert line.startswith(f"{'.'.join(map(str, place.path[:-1]))}: the key 'kind' is missing"), place
+            assert line.startswith(f"{'.'.join(map(str, place.path[:-1]))}: "), place
+            assert "'kind'" in line, place
             continue
         assert named(line)[-1] == f"{right}x", place
         assert set(map(str, place.path[:-1])) <= set(named(line)), place
-        allowed = line.split("no such key; allowed here: ")[1].split(" (and ")[0].split(", ")
+        allowed = line.split(": ")[2].split(" (and ")[0].split(", ")
         assert right in allowed, place
         inside = CONTENTS[place.kind]
         for part in place.path[:-1]:
@@ -185,62 +188,62 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("cycle_s: 0.01 ", "cycle_s: .nan ", "can.cycle_s: Input should be a finite number (found nan)"),
-        ("cycle_s: 0.01 ", "cycle_s: .inf ", "can.cycle_s: Input should be a finite number (found inf)"),
-        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", "can.cycle_s: Input should be a valid number (found '10 ms')"),
-        ("cycle_s: 0.01 ", "cycle_s: '0.01' ", "can.cycle_s: Input should be a valid number (found '0.01')"),
-        ("cycle_s: 0.01 ", "cycle_s: true ", "can.cycle_s: Input should be a valid number (found True)"),
-        ("cycle_s: 0.01 ", "cycle_s: 10.1 ", "can.cycle_s: Input should be less than or equal to 10 (found 10.1)"),
-        ("cycle_s: 0.01 ", "cycle_s: 0 ", "can.cycle_s: Input should be greater than 0 (found 0)"),
+        ("cycle_s: 0.01 ", "cycle_s: .nan ", r"^can\.cycle_s: .*nan\)"),
+        ("cycle_s: 0.01 ", "cycle_s: .inf ", r"^can\.cycle_s: .*inf\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", r"^can\.cycle_s: .*'10 ms'\)"),
+        ("cycle_s: 0.01 ", "cycle_s: '0.01' ", r"^can\.cycle_s: .*'0.01'\)"),
+        ("cycle_s: 0.01 ", "cycle_s: true ", r"^can\.cycle_s: .*True\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10.1 ", r"^can\.cycle_s: .*10\.1\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 0 ", r"^can\.cycle_s: .*0\)"),
         (
             "floor_counts: 70",
             "floor_counts: 70.5",
-            "infrared.floor_counts: Input should be a valid integer (found 70.5)",
+            r"^infrared\.floor_counts: .*70\.5\)",
         ),
         (
             "floor_counts: 70",
             "floor_counts: .nan",
-            "infrared.floor_counts: Input should be a valid integer (found nan)",
+            r"^infrared\.floor_counts: .*nan\)",
         ),
-        ("floor_counts: 70", "floor_counts: 1024", "infrared.floor_counts: Input should be less than or equal to 1023"),
-        ("mode: SPEED_CM", "mode: FAST", "can.speed_mode: Input should be 'RAW', 'SPEED' or 'SPEED_CM' (found 'FAST')"),
+        ("floor_counts: 70", "floor_counts: 1024", r"^infrared\.floor_counts: .*1023"),
+        ("mode: SPEED_CM", "mode: FAST", r"^can\.speed_mode: .*'FAST'\)"),
         (
             "channel: ADC07",
             "channel: ADC15",
-            "infrared.sensors.0.channel: Value error, channel must be ADC00 to ADC11, ADC14 or BDC00 to BDC15",
+            r"^infrared\.sensors\.0\.channel: .*ADC14",
         ),
         *(
             (
                 "channel: ADC07",
                 f"channel: {current}",
-                f"infrared.sensors.0.channel: Value error, channel {current} carries a motor current; use another one",
+                rf"^infrared\.sensors\.0\.channel: .*{current}",
             )
             for current in ("ADC12", "ADC13")
         ),
-        ("channel: ADC07", "channel: ADC08", "infrared: Value error, two sensors share the channel ADC08"),
-        ("name: s1,", "name: s2,", "infrared: Value error, two sensors share the name s2"),
-        ("far_m: 0.60", "far_m: 0.05", "must hold: fold_back_to_m < fold_back_from_m <= near_m < far_m"),
-        ("raw_drive: [0, 400", "raw_drive: [400, 0", "motors: Value error, raw_drive must rise"),
+        ("channel: ADC07", "channel: ADC08", "^infrared: .*channel ADC08"),
+        ("name: s1,", "name: s2,", "^infrared: .*name s2"),
+        ("far_m: 0.60", "far_m: 0.05", "^infrared: .*near_m < far_m"),
+        ("raw_drive: [0, 400", "raw_drive: [400, 0", "^motors: .*raw_drive"),
         (
             "raw_drive: [0, 400",
             "raw_drive: [400",
-            "motors: Value error, raw_drive and raw_speed_m_s must be of the same",
+            "^motors: .*raw_drive .*raw_speed_m_s",
         ),
-        ("  maximum_speed_m_s: 0.6", "  maximum_speed_m_s: 1.0", "allowed is at most motors.maximum_speed_m_s (0.9)"),
+        ("  maximum_speed_m_s: 0.6", "  maximum_speed_m_s: 1.0", r"motors\.maximum_speed_m_s \(0\.9\)"),
         (
             "  - {name: front left, end: front}",
             "  - front left",
-            "bumpers.0: Input should be an object (found 'front left'",
+            r"^bumpers\.0: .*'front left'",
         ),
-        ("end: front}", "end: side}", "bumpers.0.end: Input should be 'front' or 'rear' (found 'side')"),
-        ("  cycle_s: 0.01 ", "  #", "can.cycle_s: this key is missing"),
+        ("end: front}", "end: side}", r"^bumpers\.0\.end: .*'front' .*'rear' .*'side'"),
+        ("  cycle_s: 0.01 ", "  #", r"^can\.cycle_s: "),
     ],
 )
 def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: str, told: str, tmp_path: Path) -> None:
     assert old in ROBOT
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace(old, new, 1))
-    assert told in refusal(path, RobotSettings)
+    assert re.search(told, refusal(path, RobotSettings))
 
 
 @pytest.mark.parametrize(
@@ -249,24 +252,24 @@ def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: 
         (
             "gain_per_m",
             "gian_per_m",
-            "no such key; allowed here: kind, name, front_sensor, back_sensor, distance_m, speed_m_s",
+            "gian_per_m: .*: kind, name, front_sensor, back_sensor,",
         ),
-        ("angle_deg", "angle", "no such key; allowed here: kind, name, angle_deg, speed_m_s"),
+        ("angle_deg", "angle", "angle: .*: kind, name, angle_deg, speed_m_s"),
         (
             "kind: motor",
             "kind: motr",
-            "actions.0: Input tag 'motr' found using 'kind' does not match any of the expected",
+            r"^actions\.0: .*'motr'",
         ),
-        ("kind: motor", "knd: motor", "actions.0: the key 'kind' is missing"),
-        ("name: back,", "name: forward,", "two actions share the name forward"),
-        ("name: back,", "name: ask,", "actions.7.motor.name: Value error, ask stands for an action that was withdrawn"),
-        ("name: back,", "name: go back,", "actions.7.motor.name: String should match pattern"),
+        ("kind: motor", "knd: motor", r"^actions\.0: .*'kind'"),
+        ("name: back,", "name: forward,", r"\bforward\b"),
+        ("name: back,", "name: ask,", r"^actions\.7\.motor\.name: .*\bask\b"),
+        ("name: back,", "name: go back,", r"^actions\.7\.motor\.name: "),
     ],
 )
 def test_a_wrong_action_is_explained_by_its_own_kind(old: str, new: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "repertoire.yaml"
     path.write_text(REPERTOIRE.replace(old, new, 1))
-    assert told in refusal(path, RepertoireSettings)
+    assert re.search(told, refusal(path, RepertoireSettings))
 
 
 def test_reserved_action_name_is_the_name_of_a_withdrawn_action() -> None:
@@ -279,14 +282,14 @@ def test_reserved_action_name_is_the_name_of_a_withdrawn_action() -> None:
         ("[]", "behaviours: "),
         ("['']", "behaviours.0: "),
         ("[turn_left, Turn left]", "behaviours.1: "),
-        ("[turn_left, turn_left]", "each name may stand here once"),
+        ("[turn_left, turn_left]", "^behaviours: "),
         ("turn_left", "behaviours: "),
     ],
 )
 def test_task_with_bad_behaviour_names_is_refused(behaviours: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "task.yaml"
     path.write_text(TASK.replace("repertoire: basic", f"repertoire: basic\nbehaviours: {behaviours}", 1))
-    assert told in refusal(path, TaskSettings)
+    assert re.search(told, refusal(path, TaskSettings))
 
 
 @pytest.mark.parametrize(
@@ -294,10 +297,10 @@ def test_task_with_bad_behaviour_names_is_refused(behaviours: str, told: str, tm
     [
         (
             ["straight_on", "about_turn"],
-            "policy: Value error, streets knows the behaviours straight_on, turn_left, ",
+            "^policy: .*straight_on, turn_left, ",
         ),
-        (None, "turn_right, and not ''"),
-        ([f"turn_{number}" for number in range(65)], "behaviours: Tuple should have at most 64 items"),
+        (None, "^policy: .*turn_right, .*''"),
+        ([f"turn_{number}" for number in range(65)], "^behaviours: .*64"),
     ],
 )
 def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, told: str, tmp_path: Path) -> None:
@@ -307,7 +310,7 @@ def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, 
         del task["behaviours"]
     path = tmp_path / "task.yaml"
     path.write_text(yaml.safe_dump(task))
-    assert told in refusal(path, TaskSettings)
+    assert re.search(told, refusal(path, TaskSettings))
 
 
 @pytest.mark.parametrize("name", ["wall_following", "streets"])
@@ -329,8 +332,8 @@ def test_task_without_behaviours_has_one_without_a_name(tmp_path: Path) -> None:
     [
         ("turns", ""),
         ("Turns", "mid.name: "),
-        ("", "mid: Value error, give a name or settings, or leave the key out where there is no mid level"),
-        ("{name: mine}", "mid.settings.junctions: this key is missing"),
+        ("", "^mid: "),
+        ("{name: mine}", r"^mid\.settings\.junctions: "),
     ],
 )
 def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: str, tmp_path: Path) -> None:
@@ -338,7 +341,7 @@ def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: 
     task = (CONFIG_DIR / "tasks" / "streets.yaml").read_text()
     path.write_text(f"{task}mid: {mid}\n")
     if told:
-        assert told in refusal(path, TaskSettings)
+        assert re.search(told, refusal(path, TaskSettings))
     else:
         assert load_task(str(path)).mid == mid
         written_out = load_task(str(path)).model_copy(update={"mid": load_mid_level(mid)})
@@ -349,7 +352,7 @@ def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: 
 def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None:
     path = tmp_path / "task.yaml"
     path.write_text(f"{TASK}mid: turns\n")
-    assert "mid: Value error, a mid level commands behaviours by their names" in refusal(path, TaskSettings)
+    assert refusal(path, TaskSettings).startswith("mid: ")
 
 
 def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
@@ -366,19 +369,19 @@ def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
         (
             "kind: wall_following",
             "kind: wall_folowing",
-            "policy.kind: there is no kind 'wall_folowing'; give one of: circle, eight, fleeing, streets, wall",
+            r"^policy\.kind: .*'wall_folowing'; .*: circle, eight, fleeing, streets, wall",
         ),
-        ("kind: wall_following", "kind: policy", "policy.kind: there is no kind 'policy'; give one of: circle, eight"),
-        ("kind: wall_following", "kind: 7", "policy.kind: Input should be a valid string (found 7)"),
+        ("kind: wall_following", "kind: policy", r"^policy\.kind: .*'policy'; .*: circle, eight"),
+        ("kind: wall_following", "kind: 7", r"^policy\.kind: .*7\)"),
         (
             "kind: laps",
             "kind: lap",
-            "course.kind: there is no kind 'lap'; give one of: eights, ",
+            r"^course\.kind: .*'lap'; .*: eights, ",
         ),
-        ("front_m: 0.25", "front_m: 2.5", "policy.front_m: Input should be less than or equal to 0.6 (found 2.5)"),
-        ("front_m: 0.25", "fornt_m: 0.25", "policy.fornt_m: no such key; allowed here: kind, wanted_m, tolerance_m"),
-        ("  wanted_m: 0.365", "  #", "course.wanted_m: this key is missing"),
-        ("course:\n", "course: laps\nplaces:\n", "places: no such key; allowed here: name"),
+        ("front_m: 0.25", "front_m: 2.5", r"^policy\.front_m: .*2\.5\)"),
+        ("front_m: 0.25", "fornt_m: 0.25", r"^policy\.fornt_m: .*: kind, wanted_m, tolerance_m"),
+        ("  wanted_m: 0.365", "  #", r"^course\.wanted_m: "),
+        ("course:\n", "course: laps\nplaces:\n", "^places: .*: name"),
     ],
 )
 def test_a_policy_or_a_course_is_explained_by_its_own_kind(old: str, new: str, told: str, tmp_path: Path) -> None:
@@ -386,7 +389,7 @@ def test_a_policy_or_a_course_is_explained_by_its_own_kind(old: str, new: str, t
     assert old in task
     path = tmp_path / "task.yaml"
     path.write_text(task.replace(old, new, 1))
-    assert told in refusal(path, TaskSettings)
+    assert re.search(told, refusal(path, TaskSettings))
 
 
 def test_plain_reading_replaces_the_learning_settings_only() -> None:
@@ -402,7 +405,7 @@ def test_plain_reading_replaces_the_learning_settings_only() -> None:
 
 @pytest.mark.parametrize("key", ["learning.radius", "learning"])
 def test_setting_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
-    with pytest.raises(SettingsError, match=rf"streets.yaml: {key} changes nothing .*; give plain"):
+    with pytest.raises(SettingsError, match=rf"streets\.yaml: {key} .*; give plain"):
         load_task("streets", plain=True, changes={key: "300"})
     assert load_task("streets", plain=True, changes={"plain.radius": "300"}).learning.radius == 300.0
 
@@ -424,7 +427,7 @@ def test_misspelt_kind_is_refused_though_another_fails_to_import(
     (package / "broken.py").write_text("import no_such_module\n\n\nclass BrokenSettings(PolicySettings):\n    ...\n")
     (package / "helpers.py").write_text("")
     monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(ValueError, match=r"there is no kind 'brokn'; give one of: broken$"):
+    with pytest.raises(ValueError, match=r"'brokn'; .*: broken$"):
         find_kind("some_policies", "brokn", PolicySettings)  # type: ignore[type-abstract]
 
 
@@ -438,33 +441,33 @@ def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "told"),
     [
-        ("learning.radios", "3", "learning.radios: no such key; allowed here: radius"),
+        ("learning.radios", "3", r"learning\.radios: .*: radius"),
         (
             "learning.radius",
             "near",
-            "learning.radius: Input should be a valid number (found 'near'); --set learning.radius says so",
+            r"learning\.radius: .*'near'.*--set learning\.radius",
         ),
-        ("learning", "{radius: 3}", "learning.past_weight: this key is missing (and 2 more); --set learning says so"),
-        ("policy.kind", "walls", "policy.kind: there is no kind 'walls'; give one of: circle, "),
-        ("learning.radius", "-1", "learning.radius: Input should be greater than 0 (found -1)"),
-        ("names.first", "x", "names: no such key; allowed here: name"),
-        ("name.first", "x", "name.first: no such key; nothing stands within name"),
-        ("exam.worlds.0", "a", "exam.worlds.0: no such key; nothing stands within exam.worlds"),
-        ("learning.radius", "[", "learning.radius: the value '[' of --set is not valid YAML: "),
+        ("learning", "{radius: 3}", r"learning\.past_weight: .* 2 .*--set learning"),
+        ("policy.kind", "walls", r"policy\.kind: .*'walls'; .*: circle, "),
+        ("learning.radius", "-1", r"learning\.radius: .*-1\)"),
+        ("names.first", "x", "names: .*: name"),
+        ("name.first", "x", r"name\.first: .*name"),
+        ("exam.worlds.0", "a", r"exam\.worlds\.0: .*exam\.worlds"),
+        ("learning.radius", "[", r"learning\.radius: .*'\['.*--set.*YAML"),
     ],
 )
 def test_a_value_from_elsewhere_is_checked_as_the_file_s_own(key: str, value: str, told: str) -> None:
     with pytest.raises(SettingsError) as caught:
         load_task("streets", changes={key: value})
     assert "streets.yaml: " in str(caught.value)
-    assert told in str(caught.value)
+    assert re.search(told, str(caught.value))
     assert "\n" not in str(caught.value)
 
 
 def test_several_mistakes_are_counted(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace("cycle_s: 0.01 ", "cycle_s: x ").replace("far_m: 0.60", "far_m: x"))
-    assert refusal(path, RobotSettings).endswith("(found 'x') (and 1 more)")
+    assert refusal(path, RobotSettings).endswith(" 1 more)")
 
 
 # Whole files
@@ -473,44 +476,44 @@ def test_several_mistakes_are_counted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (b"", "holds NoneType, allowed is a mapping with the keys: name, can, geometry"),
-        (b"- 1\n- 2\n", "holds list, allowed is a mapping with the keys: name, can, geometry"),
-        (b"hello\n", "holds str, allowed is a mapping"),
-        (b"a: 1\nb: 2\na: 3\n", "not valid YAML: key 'a' stands twice"),
-        (b"b: {a: 1, c: {d: 1, d: 1}}\n", "key 'd' stands twice"),
-        (b"1: x\n", "key 1 is not a text"),
-        (b"2020-01-01: x\n", "is not a text"),
-        (b"? [a, b]\n: x\n", "key ['a', 'b'] is not a text"),
-        (b"? !!binary aGk=\n: x\n", "key b'hi' is not a text"),
-        (b'"a\\nb": 1\n', "a b: no such key"),
-        (b"name: 2020-99-99\n", 'month must be in 1..12 in "<unicode string>", line 1'),
+        (b"", "NoneType.*: name, can, geometry"),
+        (b"- 1\n- 2\n", "list.*: name, can, geometry"),
+        (b"hello\n", "str.*: name, can, geometry"),
+        (b"a: 1\nb: 2\na: 3\n", "YAML: key 'a' "),
+        (b"b: {a: 1, c: {d: 1, d: 1}}\n", "YAML: key 'd' "),
+        (b"1: x\n", "YAML: key 1 "),
+        (b"2020-01-01: x\n", "YAML: key .*2020"),
+        (b"? [a, b]\n: x\n", r"YAML: key \['a', 'b'\]"),
+        (b"? !!binary aGk=\n: x\n", "YAML: key b'hi'"),
+        (b'"a\\nb": 1\n', "^a b: "),
+        (b"name: 2020-99-99\n", "YAML: .*month.* line 1"),
         (b"name: !!int one\n", "line 1, column 7"),
         (b"name: " + b"1" * 5000, "line 1, column 7"),
-        (b"name: 0x" + b"f" * 5000, "not valid YAML: "),
-        (b"[" * 600, "not valid YAML: "),
-        (b"[\n" * 20_000, "not valid YAML: "),
-        pytest.param(b"[" * 20_000, "not valid YAML: ", marks=pytest.mark.deep),
-        (b"- " * 20_000, "not valid YAML: "),
-        (b"name: &x [*x]\n", "found unconstructable recursive node"),
-        (b"name: [1\n", "not valid YAML: while parsing a flow sequence"),
-        (b"\tname: x\n", "not valid YAML: while scanning"),
-        (b"name: x\n---\nname: y\n", "expected a single document"),
-        (b"name: !!python/object:os.system x\n", "could not determine a constructor"),
-        (b'name: "\\ud800"\n', "invalid Unicode character escape code"),
-        (b"\xff\xfe\x00\x01", "cannot be read ('utf-8' codec can't decode byte 0xff"),
-        (b"\x7fELF\x02\x01\x01\x00\x00", "control characters are not allowed"),
-        (bytes(range(256)), "cannot be read"),
+        (b"name: 0x" + b"f" * 5000, "YAML: "),
+        (b"[" * 600, "YAML: "),
+        (b"[\n" * 20_000, "YAML: "),
+        pytest.param(b"[" * 20_000, "YAML: ", marks=pytest.mark.deep),
+        (b"- " * 20_000, "YAML: "),
+        (b"name: &x [*x]\n", "YAML: .*recursive"),
+        (b"name: [1\n", "YAML: .*flow"),
+        (b"\tname: x\n", "YAML: .*scanning"),
+        (b"name: x\n---\nname: y\n", "YAML: .*document"),
+        (b"name: !!python/object:os.system x\n", "YAML: .*constructor"),
+        (b'name: "\\ud800"\n', "YAML: .*escape"),
+        (b"\xff\xfe\x00\x01", "utf-8.*0xff"),
+        (b"\x7fELF\x02\x01\x01\x00\x00", "YAML: .*control"),
+        (bytes(range(256)), "utf-8"),
     ],
 )
 def test_a_file_that_holds_something_else_is_refused_in_one_line(content: bytes, told: str, tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_bytes(content)
-    assert told in refusal(path, RobotSettings)
+    assert re.search(told, refusal(path, RobotSettings))
 
 
 def test_a_file_that_cannot_be_read_is_refused_in_one_line(tmp_path: Path) -> None:
-    assert "Is a directory" in refusal(tmp_path, RobotSettings)
-    assert "No such file" in refusal(tmp_path / "gone.yaml", RobotSettings)
+    assert os.strerror(errno.EISDIR) in refusal(tmp_path, RobotSettings)
+    assert os.strerror(errno.ENOENT) in refusal(tmp_path / "gone.yaml", RobotSettings)
 
 
 def test_settings_are_frozen() -> None:
@@ -526,14 +529,14 @@ def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> N
     bomb = tmp_path / "bomb.yaml"
     nine = "".join(f"a{n}: &a{n} [{','.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, 10))
     bomb.write_text(f"a0: &a0 [x,x,x,x,x,x,x,x,x]\n{nine}", encoding="utf-8")
-    assert "its aliases repeat values more than 100000 times; write the values out" in refusal(bomb, RobotSettings)
+    assert "100000" in refusal(bomb, RobotSettings)
 
 
 @pytest.mark.parametrize("long", ["x" * 10_000, "{" + "k" * 1000 + ": 1}"], ids=["text", "key"])
 def test_text_that_aliases_repeat_is_refused_before_expansion(tmp_path: Path, long: str) -> None:
     bomb = tmp_path / "bomb.yaml"
     bomb.write_text(f"a0: &a0 {long}\na1: &a1 [{'*a0,' * 100}]\na2: [{'*a1,' * 100}]\n", encoding="utf-8")
-    assert "its aliases repeat values more than 100000 times" in refusal(bomb, RobotSettings)
+    assert "100000" in refusal(bomb, RobotSettings)
 
 
 def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
@@ -553,11 +556,11 @@ def test_an_asterisk_that_is_no_alias_is_read(tmp_path: Path) -> None:
 def test_a_fifo_given_as_settings_is_refused(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo.yaml"
     os.mkfifo(fifo)
-    assert "is a pipe, not a file" in refusal(fifo, RobotSettings)
+    assert "pipe" in refusal(fifo, RobotSettings)
 
 
 def test_a_settings_file_too_large_is_refused_unread(tmp_path: Path) -> None:
     large = tmp_path / "large.yaml"
     with large.open("wb") as file:
         file.truncate(10**12)
-    assert "has 1000000000000 bytes, allowed are 1000000" in refusal(large, RobotSettings)
+    assert re.findall(r"\d{7,}", refusal(large, RobotSettings)) == ["1000000000000", "1000000"]
