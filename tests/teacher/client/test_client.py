@@ -1,6 +1,7 @@
 """A teacher's device over real sockets and real keys, against a robot whose mind is the test's."""
 
 import asyncio
+import re
 import socket
 import subprocess
 import sys
@@ -87,7 +88,7 @@ HELLO = {
 
 
 HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
-NOT_SAVED = Outcome.of(RefusalCode.NOT_SAVED, says="the disk is full")
+NOT_SAVED = Outcome.of(RefusalCode.NOT_SAVED, says="ENOSPC")
 
 
 class Clock:
@@ -174,14 +175,14 @@ async def test_client_without_device_file_uses_folder_name(pairing: Pairing, rob
 
 async def test_client_pairing_in_use_or_missing_raises(client: TeacherClient, pairing: Pairing, tmp_path: Path) -> None:
     assert client.state is not None
-    with pytest.raises(CredentialsError, match="another program uses this pairing"):
+    with pytest.raises(CredentialsError, match=re.escape(str(pairing.device.folder))):
         await TeacherClient(pairing.device.folder).__aenter__()
-    with pytest.raises(CredentialsError, match="there is no pairing to open"):
+    with pytest.raises(CredentialsError, match="missing"):
         await TeacherClient(tmp_path / "missing").__aenter__()
 
 
 def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
-    with pytest.raises(RuntimeError, match="use it as: async with"):
+    with pytest.raises(RuntimeError, match="async with"):
         TeacherClient(pairing.device.folder).press(0.1, 0.1)
 
 
@@ -262,7 +263,7 @@ async def test_correct_earlier_counts_back_from_the_last_drive(client: TeacherCl
 
 @pytest.mark.parametrize("seconds", [-0.1, 10.1, float("nan")])
 async def test_correct_earlier_beyond_what_is_kept_raises(client: TeacherClient, seconds: float) -> None:
-    with pytest.raises(ValueError, match="the last 10 s"):
+    with pytest.raises(ValueError, match="10 s"):
         await client.correct_earlier("spin_left", seconds)
 
 
@@ -270,7 +271,7 @@ async def test_correct_earlier_before_the_robot_drove_raises(client: TeacherClie
     robot.showing = False
     stands = robot.show(boot=b"next", left_m_s=0.0, right_m_s=0.0)
     await seen(client, lambda: client.state == stands)
-    with pytest.raises(ValueError, match="not seen the robot drive"):
+    with pytest.raises(ValueError, match="drive"):
         await client.correct_earlier("spin_left", 1.0)
 
 
@@ -398,7 +399,7 @@ async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: Stand
             refusal("held", HELD, 5),
             Answer(False, "held", text_of(HELD), 5, outcome=HELD),
         ),
-        (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "the disk is full", 5, outcome=NOT_SAVED)),
+        (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "ENOSPC", 5, outcome=NOT_SAVED)),
         (Reply(ReplyStatus.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
     ],
 )
@@ -409,7 +410,8 @@ async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot
 
 async def test_command_invalid_value_is_refused_locally(client: TeacherClient, robot: StandInRobot) -> None:
     answer = await client.reward(3)
-    assert (answer.accepted, answer.why, answer.text) == (False, "malformed", "value has to be one of 1, -1")
+    assert (answer.accepted, answer.why) == (False, "malformed")
+    assert answer.text.startswith("value ")
     assert robot.orders() == []
 
 
@@ -468,7 +470,7 @@ async def test_command_without_answer_raises_and_leaves_nothing(pairing: Pairing
         lost_before = link.up.lost
         results = await asyncio.gather(*(client.reward(1) for _ in range(100)), return_exceptions=True)
         assert all(isinstance(each, NoAnswerError) for each in results)
-        assert "not known whether it counted" in str(results[0])
+        assert {each.code for each in results if isinstance(each, NoAnswerError)} == {NoAnswer.NO_REPLY}
         await link.until(lambda: link.up.lost - lost_before >= 100)
         clock.ahead_s += 2.0
         # What is left is the observation, or the one that is being registered in its place.
@@ -496,8 +498,8 @@ async def test_without_a_robot_it_says_what_the_network_says(pairing: Pairing) -
         port = taken.getsockname()[1]
     async with TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client:
         await eventually(lambda: client.trouble != "")
-        assert "nothing is heard of 127.0.0.1" in client.trouble
-        with pytest.raises(NoAnswerError, match="nothing is heard of"):
+        assert "127.0.0.1" in client.trouble
+        with pytest.raises(NoAnswerError, match=r"127\.0\.0\.1"):
             await client.stop()
 
 
@@ -939,7 +941,7 @@ async def test_a_press_ends_when_no_picture_comes_for_half_a_second(pairing: Pai
 
 
 async def test_speeds_that_no_robot_takes_are_an_error_of_the_program(client: TeacherClient) -> None:
-    with pytest.raises(WireError, match="left_m_s has to be a number from -2 to 2 m/s"):
+    with pytest.raises(WireError, match=r"left_m_s .*-2 .*2"):
         client.press(3.0, 0.0)
     assert not client.pressing
 
@@ -991,7 +993,7 @@ async def test_robot_without_pairing_is_told_from_silence(tmp_path: Path) -> Non
         forger(unauthorised) as port,
         TeacherClient(stranger.device.folder, port=port, patience_s=0.1) as client,
     ):
-        with pytest.raises(NoAnswerError, match="does not know this device; pair it: kurt2rt pair"):
+        with pytest.raises(NoAnswerError, match="kurt2rt pair"):
             await client.stop()
 
 
@@ -1067,5 +1069,5 @@ def test_only_who_asks_for_the_client_loads_its_network_library() -> None:
         "assert 'aiocoap' in sys.modules",
     )
     subprocess.run([sys.executable, "-c", "; ".join(lines)], check=True)
-    with pytest.raises(AttributeError, match="has no attribute 'Missing'"):
+    with pytest.raises(AttributeError, match="'Missing'"):
         _ = kurt2rt.teacher.Missing

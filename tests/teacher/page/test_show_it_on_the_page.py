@@ -22,7 +22,7 @@ def lesson(a_lesson: Lesson) -> Lesson:
 
 def test_shown_segments_are_taught_but_for_those_left_out(lesson: Lesson) -> None:
     phone = lesson.phone
-    assert phone.text("#teach-shown") == "Teach what I showed"
+    assert "Teach" in phone.text("#teach-shown")
     phone.touch("#shown-list button:nth-child(2)")
     assert phone.text("#teach-shown") == "Teach 2 of 3"
     phone.touch("#teach-shown")

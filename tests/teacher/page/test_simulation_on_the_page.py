@@ -60,7 +60,7 @@ def test_back_to_start_is_one_touch_and_new_knowledge_two(lesson: Lesson) -> Non
     phone.touch("#sim-back")
     phone.wait(lambda: ("put_back",) in lesson.robot.told, "the robot is put back")
     phone.touch("#sim-fresh")
-    assert phone.text("#sim-fresh") == "Sure? The old file is kept"
+    assert "Sure?" in phone.text("#sim-fresh")
     assert not lesson.told("next_run")
     phone.touch("#sim-fresh")
     phone.wait(lambda: ("next_run", None, None, True) in lesson.robot.told, "the next run is wanted")

@@ -3,6 +3,7 @@
 import pytest
 
 from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.standing_text import question_text
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, SMALL
 
@@ -49,8 +50,8 @@ def test_robot_at_a_bumper_asks_and_is_corrected(lesson: Lesson) -> None:
     phone = lesson.phone
     stands = {"cause": "touches", "action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
     lesson.show(standing=TOUCHES, nearest=1, nearest_action="forward", distance=90.0, bumpers=7, **stands)
-    lesson.reads("#sentence", "I touch something in front of me; what now?")
-    assert phone.text("#nearest") == "nearest: RLA 1, forward"
+    lesson.reads("#sentence", question_text(TOUCHES))
+    assert "RLA 1, forward" in phone.text("#nearest")
     assert phone.run("return document.querySelector('#why').className;") == "stands asks"
     assert phone.run(_GO) == [True, "none"]
     look(lesson, "touches")

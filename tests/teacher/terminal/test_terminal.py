@@ -42,7 +42,8 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.teaching.question import FeatureDifference
+from kurt2rt.core.rla.rla import rla_title
+from kurt2rt.core.teaching.question import FeatureDifference, Question
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import (
@@ -188,7 +189,7 @@ async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing,
         mind.may_answer.set()
         await console.reads("/phase is done")
         for line in ("go", "step forward", "phase 5"):
-            assert f"not done, you stopped the robot after you typed it: {line}" in console.said
+            assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
         assert robot.all_of(ResumeRequest) == []
         assert [each.phase for each in robot.all_of(PhaseRequest)] == [Phase.CORRECTIONS]
 
@@ -316,7 +317,8 @@ async def test_quit_without_a_robot_ends_at_once(pairing: Pairing) -> None:
     with anyio.fail_after(5.0):
         async with console_at(pairing, 9, patience_s=0.2) as console:
             console.type("quit")
-    assert [each.split(" yet")[0] for each in console.said] == ["no robot at 127.0.0.1:9"]
+    (said,) = console.said
+    assert "127.0.0.1:9" in said
 
 
 @pytest.mark.parametrize("teacher", [None, "anna"])
@@ -379,13 +381,14 @@ async def test_question_names_places_and_centimetres(pairing: Pairing, robot: St
 
 
 def test_build_question_has_the_selected_behaviour() -> None:
-    told = str(build_question(state(nearest=None, behaviour="turn_left")))
-    assert told == "I know nothing of turn_left yet, teach me"
+    question = build_question(state(nearest=None, behaviour="turn_left"))
+    assert isinstance(question, Question)
+    assert (question.nearest_rla, question.behaviour) == (None, "turn_left")
 
 
 def test_format_state_names_the_behaviour_of_the_rla() -> None:
-    assert format_state(state(action="forward", rla=3)) == "forward by RLA 3"
-    assert format_state(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"
+    assert rla_title(3, "") in format_state(state(action="forward", rla=3))
+    assert rla_title(3, "turn_left") in format_state(state(action="forward", rla=3, behaviour="turn_left"))
 
 
 async def test_appraisal_by_name_teaches_the_critic(pairing: Pairing, robot: StandInRobot) -> None:
@@ -430,11 +433,9 @@ async def test_action_at_a_withdrawn_rla_is_an_answer(pairing: Pairing, robot: S
 
 def test_format_opinion_and_change_are_one_line_each() -> None:
     appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
-    assert format_opinion(state(agreement=0.799), appraisals) == (
-        "critic: does not know this situation · agrees with you 0.79 (not trusted)"
-    )
-    changed = LessonLine("c", "RLA 7 corrected: back instead of stand", "critic", 5, 9, "", False)
-    assert format_critic_change(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"
+    assert " 0.79 " in format_opinion(state(agreement=0.799), appraisals)
+    changed = LessonLine("c", "RLA 7: stand", "critic", 5, 9, "", False)
+    assert format_critic_change(changed).endswith(changed.text)
     assert format_critic_change(changed._replace(undone=True)).endswith("stand, undone")
 
 
@@ -460,11 +461,9 @@ async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: 
         robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
         await console.reads("straight_on, because a teacher said so, until it has finished")
         console.type("way")
-        assert "came by left, straight, right" in await console.reads("; mid-level RLA 12 knows left, straight, left")
+        assert "left, straight, right, " in await console.reads("RLA 12 knows left, straight, left")
         robot.show(surprise=replace(SURPRISED, tick=robot.state.tick, new=True))
-        assert "took over, which had never followed it" in await console.reads(
-            "surprise: 3.5 times as far off as usual"
-        )
+        assert "never followed" in await console.reads("surprise: 3.5 times as far off as usual")
 
 
 async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot) -> None:
