@@ -41,7 +41,10 @@ class InfraredWatch:
         return self._boards[channel[:3]]
 
     def check_frozen(self, now_s: float, *, driving: bool) -> str:
-        """Return one line about a frozen board; empty while all boards work. Time in s."""
+        """Return one line about a frozen board; empty while all boards work. Call it in each tick.
+
+        `now_s`: time of the tick in s. `driving`: whether the wheels are told to turn.
+        """
         looked_at_s, self._looked_at_s = self._looked_at_s, now_s
         if not driving:
             return ""

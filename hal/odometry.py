@@ -23,7 +23,7 @@ class PlanePose(NamedTuple):
     heading_rad: float = 0.0
 
     def moved(self, forward_m: float, turn_rad: float) -> "PlanePose":
-        """Return the pose after an arc, taken along its middle heading. The heading counts whole turns."""
+        """Return the pose after an arc of `forward_m`, taken along its middle heading, which counts whole turns."""
         middle_rad = self.heading_rad + turn_rad / 2
         return PlanePose(
             x_m=self.x_m + forward_m * math.cos(middle_rad),

@@ -26,7 +26,10 @@ KindT = TypeVar("KindT", bound=KindSettings)
 
 
 def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
-    """Return the settings class of a kind. Raises ValueError that lists the kinds."""
+    """Return the settings class of a kind: a subclass of `base` in the module `kind` of `package`.
+
+    Raises ValueError that lists the kinds.
+    """
     found = _settings_in(package, kind, base) if kind in _modules(package) else None
     if found is None:
         # Read, not imported: a kind that is broken or being written is no reason to hide that another was misspelled.

@@ -93,6 +93,7 @@ class SimulatedRobot:
 
     @property
     def pose(self) -> Pose:
+        """True pose of the robot, in m and rad."""
         return self._body.pose
 
     @property
@@ -107,10 +108,12 @@ class SimulatedRobot:
 
     @property
     def touching(self) -> bool:
+        """Return whether the robot touches a wall or obstacle."""
         return self._body.touching
 
     @property
     def bumped(self) -> bool:
+        """Return whether a bumper is pressed."""
         return self._pressed != 0
 
     @property
@@ -125,6 +128,7 @@ class SimulatedRobot:
 
     @property
     def infrared_counts(self) -> tuple[int, ...]:
+        """Newest readings of all sensors in counts, in the order of the sensor table."""
         return tuple(self._infrared.counts)
 
     def state_hash(self) -> str:

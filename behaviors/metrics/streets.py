@@ -23,7 +23,7 @@ class Side(IntEnum):
 
     @property
     def heading_rad(self) -> float:
-        """Heading of a robot in this direction, counter-clockwise from the x axis."""
+        """Heading of a robot in this direction in rad, counter-clockwise from the x axis."""
         return self * math.pi / 2
 
 
@@ -77,7 +77,7 @@ class Lane:
     half_width_m: float
 
     def deviation_m(self, pose: Pose) -> float | None:
-        """Return the distance of a pose from the middle; None off the street."""
+        """Return the distance in m of a pose from the middle; None off the street."""
         along_m, across_m = (pose.x_m, pose.y_m) if self.level else (pose.y_m, pose.x_m)
         away_m = abs(across_m - self.line_m)
         return away_m if away_m <= self.half_width_m and self.from_m <= along_m <= self.to_m else None
@@ -95,7 +95,7 @@ class StreetMap:
         return next((each for each in self.junctions if each.holds(pose)), None)
 
     def deviation_m(self, pose: Pose) -> float | None:
-        """Return the distance of a pose from the middle of its street; None in junctions and off the streets."""
+        """Return the distance in m of a pose from the middle of its street; None in junctions and off streets."""
         if self.junction_at(pose) is not None:
             return None
         deviations_m = [away_m for lane in self.lanes if (away_m := lane.deviation_m(pose)) is not None]

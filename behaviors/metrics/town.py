@@ -21,7 +21,7 @@ class Street:
 
     @property
     def length_m(self) -> float:
-        """Distance between the centers of both junctions."""
+        """Distance in m between the centres of both junctions."""
         return math.hypot(self.ahead.x_m - self.behind.x_m, self.ahead.y_m - self.behind.y_m)
 
     @property

@@ -31,7 +31,7 @@ class Circle:
         self._left = Distances(infrared).of(*LEFT_FRONT_TO_BACK)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action."""
+        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
         want = self._settings
         left = self._left(infrared_counts)
         nearest = min(left)

@@ -58,7 +58,7 @@ class Eight:
         self._right = distances.of(*RIGHT_WITH_EDGES)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action."""
+        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
         left, right = self._column(self._left(infrared_counts)), self._column(self._right(infrared_counts))
         if min(self._front(infrared_counts)) < self._settings.front_m:
             to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)

@@ -30,7 +30,7 @@ class Fleeing:
         self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action."""
+        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
         want = self._settings
         left, right = self._edges(infrared_counts)
         if min(self._front(infrared_counts)) < want.front_m or min(left, right) < want.edge_m:

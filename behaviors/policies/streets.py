@@ -65,7 +65,7 @@ class Streets:
         self._half_across = 0.5 * math.sin(math.radians(edge.heading_deg))
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
-        """Return the name of the action."""
+        """Return the name of the action for the counts of all sensors and the selected taught behaviour."""
         want = self._settings
         front = self._front(infrared_counts)
         left, right = self._left(infrared_counts), self._right(infrared_counts)

@@ -55,7 +55,7 @@ class WallFollowing:
         self._baseline_m = front_m - back_m
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action."""
+        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
         want = self._settings
         left = self._left(infrared_counts)
         left_edge, right_edge = self._edges(infrared_counts)

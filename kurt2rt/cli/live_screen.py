@@ -27,7 +27,7 @@ class LiveScreen:
         self._troubles: tuple[str, ...] = ()
 
     def print(self, text: str, style: str | None = None) -> None:
-        """Print a line above the lines in place."""
+        """Print a line of text above the lines in place; `style` is one of rich, None: plain."""
         self._console.print(text, style=style, markup=False, highlight=False)
 
     def pin(self, pages: ServedPages) -> None:

@@ -29,7 +29,19 @@ class LiveQuestion(NamedTuple):
 def ask_why(
     device: Device, host: str, port: int, robot: RobotSettings, *, patience_s: float = ANSWER_WITHIN_S
 ) -> LiveQuestion:
-    """Ask over the teacher's channel as a client that does not teach. Raises NoAnswerError, CredentialsError."""
+    """Ask a robot, as a client that does not teach, for the facts behind its newest decision.
+
+    Args:
+        device: paired device of this machine.
+        host: address of the robot.
+        port: UDP port of the robot.
+        robot: settings, for the sensors.
+        patience_s: time to wait for the answer, in s.
+
+    Raises:
+        NoAnswerError: no robot answers.
+        CredentialsError: the pairing cannot be opened.
+    """
 
     async def ask() -> DecisionFacts:
         async with ObserverClient(device.folder, host, port, patience_s=patience_s) as client:

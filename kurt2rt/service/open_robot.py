@@ -44,8 +44,8 @@ def open_robot(
 ) -> Iterator[OpenedRobot]:
     """Open the robot for a run in real time, with its watchdog: the simulated robot for `sim`, else the one on `bus`.
 
-    `tap` sees each frame at the runtime's end of the bus; `wire` is the simulated robot's (config/wires). Raises
-    BusError, CodecError and SettingsError, and at the end the error that ended the simulation.
+    `world`, `seed` and `wire` (config/wires) are the simulated robot's. `tap` sees each frame at the runtime's end of
+    the bus. Raises BusError, CodecError and SettingsError, and at the end the error that ended the simulation.
     """
     if bus == SIMULATED:
         # Here, because a robot carries no simulator: the packages it needs are an extra.

@@ -132,6 +132,7 @@ class LongRunRig:
 
     @property
     def collisions(self) -> int:
+        """Number of contacts with walls and obstacles so far."""
         return self.simulation.collisions
 
     @property

@@ -85,7 +85,7 @@ class FaultyWheels(Wheels):
     def turn(
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False
     ) -> None:
-        """Simulate one cycle towards the targets in m/s."""
+        """Simulate one cycle towards the targets in m/s, as the motors execute them; a braked side slows down."""
         if "left_motor" in self._disturbed:
             left_target_m_s, left_brake = self._disturbed["left_motor"].apply(SideCommand(left_target_m_s, left_brake))
         if "right_motor" in self._disturbed:

@@ -34,7 +34,10 @@ def part_of(target: str) -> Part | None:
 def faulty_telemetry_link(
     part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
 ) -> FrameLink | None:
-    """Return the link from the robot's boards to the bus; None if the part does not affect it."""
+    """Return the link from the robot's boards to the bus; None if the part does not affect it.
+
+    `part`: with the fault; None: no part. `time`: of the fault. `chance`: of its garbage. `codec`: of the messages.
+    """
     if part == "encoders":
         encoder = codec.message("ENCODER")
         return FaultyLink(
@@ -61,7 +64,10 @@ def faulty_telemetry_link(
 def faulty_rx_link(
     part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random, codec: Codec
 ) -> FrameLink | None:
-    """Return the link from the bus to the driver; None if the part does not affect it."""
+    """Return the link from the bus to the driver; None if the part does not affect it.
+
+    `part`: with the fault; None: no part. `time`: of the fault. `chance`: of its garbage. `codec`: of the messages.
+    """
     if part != "bus_in":
         return None
     last_of_a_cycle = codec.message("BUMPERC").frame_id
@@ -75,5 +81,8 @@ def faulty_rx_link(
 def faulty_tx_link(
     part: Part | None, fault: TimedFault, time: EventScheduler, chance: random.Random
 ) -> FrameLink | None:
-    """Return the link from the driver to the bus; None if the part does not affect it."""
+    """Return the link from the driver to the bus; None if the part does not affect it.
+
+    `part`: with the fault; None: no part. `time`: of the fault. `chance`: of its garbage.
+    """
     return FaultyTxLink(fault, time, chance) if part == "bus_out" else None

@@ -118,6 +118,7 @@ class Body:
 
     @property
     def touching(self) -> bool:
+        """Return whether the body touched a wall or obstacle in this cycle."""
         return bool(self._points)
 
     def contacts(self) -> list[Contact]:

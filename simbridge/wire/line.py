@@ -89,7 +89,10 @@ class WiredLine:
 
 
 def open_line(wire: str, cycle_s: float, seed: int) -> Line:
-    """Return a line over a wire given by name in config/wires or by path, or `none`. Raises SettingsError."""
+    """Return a line over a wire given by name in config/wires or by path, or `none`. Raises SettingsError.
+
+    `cycle_s`: duration of a simulated cycle in s. `seed`: of noise and losses.
+    """
     if wire == NO_WIRE:
         return DirectLine()
     return WiredLine(load_wire(wire), cycle_s, seed)

@@ -53,6 +53,7 @@ class WireNode:
 
     @property
     def is_bus_off(self) -> bool:
+        """Return whether the node left the bus after too many errors."""
         return self.state is ErrorState.BUS_OFF
 
     def enqueue(self, frame: can.Message) -> None:

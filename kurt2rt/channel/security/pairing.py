@@ -90,7 +90,15 @@ class PairingInfo:
 def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
     """Make a new pairing; a running robot accepts it within a second.
 
-    Raises CredentialsError for a name that is taken, reserved, or invalid.
+    Args:
+        teachers: folder of the robot's sides.
+        devices: folder of the devices' sides.
+        name: of the device and its teacher.
+        host: address of the robot, for the device.
+        port: UDP port of the robot.
+
+    Raises:
+        CredentialsError: the name is taken, reserved or invalid, or a folder cannot be written.
     """
     _require_free_name(name)
     if name in OF_THIS_MACHINE:
@@ -107,7 +115,15 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
 def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
     """Give a pairing new secrets, ids and token; the old ones are refused from now on.
 
-    Raises CredentialsError if neither side exists, or for a reserved name.
+    Args:
+        teachers: folder of the robot's sides.
+        devices: folder of the devices' sides.
+        name: of the device.
+        host: address of the robot, for the device.
+        port: UDP port of the robot.
+
+    Raises:
+        CredentialsError: neither side exists, the name is reserved, or a folder cannot be written.
     """
     _require_free_name(name)
     with _changing(teachers, devices):
@@ -116,9 +132,10 @@ def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", 
 
 
 def revoke(teachers: Path, devices: Path, name: str) -> None:
-    """Delete both sides, the robot's first; a running robot refuses the device within a second.
+    """Delete both sides of a device's pairing; a running robot refuses the device within a second.
 
-    Raises CredentialsError if neither side exists.
+    `teachers`, `devices`: folders of the robot's and of the devices' sides. Raises CredentialsError if neither side
+    exists.
     """
     _require_name(name)
     with _changing(teachers, devices):

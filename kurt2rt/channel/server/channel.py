@@ -152,7 +152,10 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
 
 
 def describe_robot(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:
-    """Return the body of /hello, but for the tick; `boot` is the id of this start."""
+    """Return the body of /hello, without its tick; `boot` is the id of this start of the program.
+
+    `simulated`: whether the robot is simulated.
+    """
     robot, sensors = runtime.robot, runtime.robot.infrared.sensors
     critic = None if runtime.handler.critic is None else runtime.handler.critic.settings
     mid = None if runtime.mid is None else runtime.mid.settings

@@ -30,12 +30,15 @@ class Reply:
 
 
 def refusal(why: str, outcome: Outcome, tick: int) -> Reply:
-    """Return the reply to a request that is understood and refused; `why` is a word of the wire contract."""
+    """Return the reply to a request that is understood and refused.
+
+    `why`: word of the wire contract, such as stale. `outcome`: code and fields for the teacher. `tick`: newest tick.
+    """
     return Reply(ReplyStatus.CONFLICT, {"t": tick, "why": why, **plain_outcome(outcome)})
 
 
 def restarted(tick: int) -> Reply:
-    """Return the refusal of a request for an earlier start of the robot program."""
+    """Return the refusal of a request for an earlier start of the robot program; `tick` is the newest tick."""
     return refusal("boot", Outcome(RefusalCode.RESTARTED), tick)
 
 
@@ -50,14 +53,17 @@ def not_simulated() -> Reply:
 
 
 def unsaved(outcome: Outcome, tick: int) -> Reply:
-    """Return the reply to a lesson or a copy that is not durable, or not known to be."""
+    """Return the reply to a lesson or a copy that is not durable, or not known to be.
+
+    `outcome`: code and fields for the teacher. `tick`: newest tick.
+    """
     return Reply(ReplyStatus.UNSAVED, {"t": tick, "why": "unsaved", **plain_outcome(outcome)})
 
 
 def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
     """Return the reply to a request that was carried out, and is durable if it has to be.
 
-    `more`: further keys of the answer.
+    `tick`: newest tick. `outcome`: code and fields for the teacher; None: no text. `more`: further keys of the answer.
     """
     shown = {"text": ""} if outcome is None else plain_outcome(outcome)
     return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **shown, **more})

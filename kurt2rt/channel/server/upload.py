@@ -15,9 +15,10 @@ class Upload:
         self._content = bytearray()
 
     def add(self, device: str, upload: bytes, offset: int, part: bytes) -> int:
-        """Append a part and return the size so far in bytes; a repeated part changes nothing.
+        """Append a part to a device's upload and return the size so far in bytes; a repeated part changes nothing.
 
-        Raises CommandRefusedError for a gap, too many bytes, or a repeated part that differs.
+        `upload`: id of the upload. `offset`: position of the part in bytes. Raises CommandRefusedError for a gap, too
+        many bytes, or a repeated part that differs.
         """
         if self._of != (device, upload):
             if offset != 0:
@@ -33,7 +34,10 @@ class Upload:
         return len(self._content)
 
     def pop(self, device: str, upload: bytes, sha256: bytes) -> bytes:
-        """Return the whole file and drop it. Raises CommandRefusedError if it is another upload, or not whole."""
+        """Return the whole file of a device's upload and drop it; `sha256` is the hash that it must have.
+
+        Raises CommandRefusedError if it is another upload, or not whole.
+        """
         if self._of != (device, upload) or hashlib.sha256(self._content).digest() != sha256:
             raise CommandRefusedError(RefusalCode.UPLOAD_INCOMPLETE)
         content = bytes(self._content)

@@ -82,7 +82,7 @@ class Browser:
 
 
 async def main(port: int, cookie: str) -> None:
-    """Run jobs until the input ends."""
+    """Connect to the page on the local TCP `port` with this cookie, and run jobs until standard input ends."""
     host = f"127.0.0.1:{port}"
     async with connect(
         f"ws://{host}/robot", origin=Origin(f"http://{host}"), additional_headers={"Cookie": cookie}, compression=None

@@ -115,7 +115,10 @@ def _require(answer: Answer) -> None:
 
 
 async def main(folder: Path, port: int) -> None:
-    """Do jobs until the input ends."""
+    """Run the jobs of a `BenchDevice` until standard input ends.
+
+    `folder`: of the pairing. `port`: UDP port of the robot on this machine.
+    """
     device = BenchDevice(folder, port)
     try:
         await run_jobs(

@@ -37,14 +37,17 @@ class PressStart(NamedTuple):
 
 
 def press_schedules(seed: int) -> Iterator[PressSchedule]:
-    """Yield random schedules without end."""
+    """Yield random schedules of presses without end; equal seeds give equal schedules."""
     chance = random.Random(seed)
     while True:
         yield PressSchedule(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
 
 
 def waits_ns(presses: Sequence[PressTime], starts: Sequence[PressStart]) -> list[int]:
-    """Return the times from presses to the start of the wheels, if that came before the next press."""
+    """Return the times in ns from presses to the start of the wheels, if that came before the next press.
+
+    `presses` and `starts`: in order of time, with times in ns.
+    """
     waits = []
     for number, press in enumerate(presses):
         until_ns = presses[number + 1].at_ns if number + 1 < len(presses) else None

@@ -50,7 +50,10 @@ class RealTimeRun:
 async def run_in_real_time(
     fixture: BenchFixture, folder: Path, turns: RealTimeTurns, on_progress: OnProgress
 ) -> RealTimeRun:
-    """Drive like the service, with its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
+    """Drive as the service does, with its journal in `folder`, and return the measurements.
+
+    Raises KnowledgeError, OSError without a timerfd.
+    """
     period_s = fixture.settings.can.cycle_s
     asyncio_ledger = TickTimer()
     driving = 0
@@ -98,7 +101,7 @@ async def run_in_real_time(
 
 
 async def sleep_bare(clock: Clock, ticks: int, period_s: float, ledger: TickTimer) -> None:
-    """Sleep to multiples of the period in s and record how late each sleep ended."""
+    """Sleep to `ticks` multiples of the period in s, and record in `ledger` how late each sleep ended."""
     start_s = clock.now_s()
     number = 0
     for _ in range(ticks):

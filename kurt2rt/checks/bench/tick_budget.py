@@ -17,7 +17,10 @@ def tick_results(run: RealTimeRun, period_s: float) -> tuple[BenchResult, ...]:
 
 
 def share_result(bench: str, what: str, tick: Percentiles, period_s: float, note: str) -> BenchResult:
-    """Return the sum of a tick's stages against the period in s."""
+    """Return the sum of a tick's stages against the period in s.
+
+    `bench`, `what`: names of the result. `note`: line below the table.
+    """
     return BenchResult(
         bench,
         what,

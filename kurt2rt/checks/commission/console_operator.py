@@ -29,7 +29,7 @@ class ConsoleOperator:
         self._console = console
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """Print a line."""
+        """Print a line, in the colour of its tone."""
         self._line(_MARKS[tone] + text, _STYLES.get(tone, ""))
 
     async def answer(self, question: OperatorQuestion) -> str:

@@ -35,7 +35,7 @@ def required_speed_mode(findings: Findings) -> SpeedMode:
 
 
 def steady_speeds(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
-    """Return the measured wheel speeds before the brake."""
+    """Return the mean wheel speeds that were measured before the brake of a test drive, in m/s."""
     return drive.heard.wheel_speeds(robot, STEADY_FRAMES)
 
 
@@ -49,7 +49,10 @@ def standstill_cause(drive: TestDrive) -> str | None:
 
 
 def require_rest(stand: TestStand, drive: TestDrive, result: StepResult) -> bool:
-    """Return whether the brake stopped the wheels; otherwise alarm the operator, and the step must end."""
+    """Return whether the brake stopped the wheels after a test drive.
+
+    If not, a fault is added to `result` and the operator is alarmed; the step must end then.
+    """
     if drive.rested_after_s is not None:
         return True
     fault = StepFault(FaultCode.BRAKE_FAILS if drive.after.encoder else FaultCode.BRAKE_UNHEARD)

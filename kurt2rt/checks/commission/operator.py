@@ -82,7 +82,7 @@ class Operator(Protocol):
         ...
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """Show a line."""
+        """Show a line of text to the operator; `tone` tells how important it is."""
         ...
 
 

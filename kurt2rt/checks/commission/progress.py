@@ -40,7 +40,7 @@ class Progress(Settings):
     """Records by step name."""
 
     def with_step(self, name: str, record: StepRecord, findings: Findings) -> Self:
-        """Return a copy of the progress with the record of a step, and with its findings."""
+        """Return a copy of the progress with the record of the step `name`, and with all findings so far."""
         return self.model_copy(update={"steps": {**self.steps, name: record}, "findings": findings})
 
     def save(self, path: Path) -> None:

@@ -95,7 +95,7 @@ class TestStand:
         self._listener.close()
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """Show a line to the operator."""
+        """Show a line of text to the operator; `tone` tells how important it is."""
         self._operator.tell(text, tone)
 
     async def ask(self, question: OperatorQuestion) -> str:

@@ -44,7 +44,7 @@ STILL = Motion(0, 0)
 
 
 def single_side(side: WheelSide, sign: int) -> Motion:
-    """Return the motion of one side."""
+    """Return the motion of one side alone; `sign`: 1 forward, -1 back."""
     return Motion(sign, 0) if side is WheelSide.LEFT else Motion(0, sign)
 
 

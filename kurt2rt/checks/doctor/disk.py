@@ -43,7 +43,10 @@ def _check_folder(folder: Path, place: Path) -> CheckResult:
 
 
 def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> CheckResult:
-    """Check the space for knowledge and recorded runs."""
+    """Check the space for knowledge and recorded runs on the disk of `folder`.
+
+    Below `least_bytes` the robot cannot run; below `wanted_bytes` the check warns.
+    """
     free_bytes = shutil.disk_usage(folder).free
     values = {"free_gb": free_bytes / 1e9}
     if free_bytes < wanted_bytes:
@@ -53,7 +56,7 @@ def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes:
 
 
 def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> CheckResult:
-    """Measure the time until a page is durable, against a limit in s."""
+    """Measure the time until a page is durable in `folder`, against a limit in s."""
     with (folder / "sync").open("wb", buffering=0) as file:
         took_s = [fsync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
     median_s = statistics.median(took_s)

@@ -14,7 +14,7 @@ CPU_FOLDER = Path("/sys/devices/system/cpu")
 
 
 def check_cores(usable: int | None = None) -> CheckResult:
-    """Check for a core for the ticks and another for everything else."""
+    """Check for a core for the ticks and another for everything else. `usable`: number of cores; None: measure."""
     if usable is None:
         usable = len(os.sched_getaffinity(0))
     values = {"usable": usable, "cores": os.cpu_count() or usable}

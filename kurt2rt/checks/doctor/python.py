@@ -19,9 +19,10 @@ def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckRes
 
 
 def check_package(name: str, used_for: str, python: str = sys.executable) -> CheckResult:
-    """Check that a package of the `simulation` extra can be imported.
+    """Check that a package of the `simulation` extra can be imported by the interpreter `python`.
 
-    The import runs in another process, because a broken native library may crash the interpreter.
+    `used_for`: for the advice. The import runs in another process, because a broken native library may crash the
+    interpreter.
     """
     fault = _import_fault(name, python)
     if fault:

@@ -34,7 +34,7 @@ class Lateness:
 
 
 async def measure_lateness(clock: Clock, ticks: int, period_s: float) -> Lateness:
-    """Wait for periodic deadlines (s) and return how late each wait ended."""
+    """Wait for `ticks` deadlines, a period in s apart, and return how late each wait ended."""
     start_s = clock.now_s()
     late_s = []
     for number in range(1, ticks + 1):

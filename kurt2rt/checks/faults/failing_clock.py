@@ -20,7 +20,7 @@ class RigClock:
         self._waits = 0
 
     def now_s(self) -> float:
-        """Return simulated time."""
+        """Return the simulated time in s."""
         return self._time.now_s()
 
     async def wait_until(self, deadline_s: float) -> None:

@@ -57,7 +57,7 @@ def format_memory_growth(minutes: Sequence[SoakMinute], starts: Sequence[SoakSta
 
 
 def steady_check(minutes: Sequence[SoakMinute]) -> SoakCheck:
-    """Compare the open files and threads at the end with the first minute."""
+    """Check that open files and threads at the end are no more than in the first minute."""
     if len(minutes) < 2:
         return SoakCheck(CheckCode.FILES_AND_THREADS, passed=True, values={}, judged=False)
     first, last = minutes[0], minutes[-1]

@@ -92,13 +92,19 @@ class SoakObserver(BusObserver):
         rig.on_control = self._on_arrival
 
     def begin_program(self, robot: Robot, period_s: float) -> None:
-        """Observe a restarted program, which must stand until it is resumed."""
+        """Observe the driver `robot` of a restarted program, which must stand until it is resumed.
+
+        `period_s`: of its ticks, in s.
+        """
         self.attach(robot)
         self._period_s = period_s
         self._must_stand = "the program was started"
 
     def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
-        """Check a tick. `begun_s`: start of the program's loop on its own clock."""
+        """Check a tick; violations are added to the complaints.
+
+        `ledger`: lateness and missed ticks. `begun_s`: start of the program's loop on its own clock, in s.
+        """
         now_s = self._time.now_s()
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:

@@ -16,7 +16,7 @@ _MOODS = ("#edf2f7", "#fefcbf", "#fed7d7", "#e9d8fd", "#c6f6d5", "#bee3f8", "#fe
 
 
 def draw_soak(result: SoakResult, limits: LimitSettings, path: Path) -> None:
-    """Write a PNG. Raises OSError."""
+    """Draw memory, drives and faults of a soak against time, with its limits, and write a PNG. Raises OSError."""
     figure = Figure(figsize=(13.0, 11.0), layout="constrained")
     memory, robot, late, faults = figure.subplots(4, 1, sharex=True, height_ratios=(3, 3, 1.6, 3.4))
     hours = [each.at_s / HOUR_S for each in result.minutes]

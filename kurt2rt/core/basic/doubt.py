@@ -66,7 +66,7 @@ class NewObstacle(NamedTuple):
 
 
 def features_ahead(definition: SituationDefinition, infrared: InfraredSettings) -> tuple[int, ...]:
-    """Return the indices of the readings in a situation whose sensors look ahead."""
+    """Return the indexes of the readings in a situation vector whose sensors look ahead, within 60 degrees."""
     headings = {sensor.name: sensor.heading_deg for sensor in infrared.sensors}
     return tuple(
         index
@@ -120,7 +120,10 @@ class DoubtMeter:
         self._taught = self._nearest = None
 
     def score(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> float:
-        """Return the doubt about `action` in a situation (d,): 0 none, 1 as at 1 % of the ticks of a usual drive."""
+        """Return the doubt about `action` in a situation (d,): 0 none, 1 as at 1 % of the ticks of a usual drive.
+
+        `match`: nearest RLA of the situation. `behaviour`: active taught behaviour, whose lessons count.
+        """
         rla, distance, radius, _, _ = match
         off = distance / radius - self._usual if radius > 0.0 else 0.0
         score = off * self._per_distance if off > 0.0 else 0.0
@@ -134,7 +137,11 @@ class DoubtMeter:
         return score
 
     def obstacle(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> NewObstacle | None:
-        """Return the sensor ahead that exceeds the lessons most in a situation (d,); None if none does."""
+        """Return the sensor ahead that exceeds the lessons most in a situation (d,); None if none does.
+
+        `match`: nearest RLA of the situation. `action`: None too if it does not drive on. `behaviour`: whose lessons
+        count.
+        """
         if action not in self.actions:
             return None
         limits = self._limits(match.rla.rla_id, behaviour)

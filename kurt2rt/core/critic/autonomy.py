@@ -33,7 +33,7 @@ class ActivationMonitor:
         return self._bad / self._weight if self._weight else 0.0
 
     def update(self, *, driving: bool, bad: bool) -> None:
-        """Count one tick of phase 5; only driving ticks change the mean."""
+        """Count one tick of phase 5; only driving ticks change the mean. `bad`: whether the critic finds it bad."""
         self._ticks += 1
         if driving:
             self._bad = self._kept * self._bad + bad

@@ -137,7 +137,10 @@ HELD_TICKS = 10
 
 
 def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: float | None = None) -> Standing:
-    """Return the standing after an emergency stop of the guard for `reasons`, after a stall of `stall_s`, in s."""
+    """Return the standing after an emergency stop of the guard for `reasons`, after a stall of `stall_s`, in s.
+
+    `asks`: whether the robot also asks its teacher. `stall_s`: None if no stall caused the stop.
+    """
     word = reasons[0] if reasons else ""
     reason = LATCHED.get(word, StandReason.HALTED)
     if reason is StandReason.HALTED:
@@ -171,7 +174,10 @@ class BumperWatch:
         self._held_ticks = self._free_ticks = 0
 
     def update(self, decision: Decision, guard_result: GuardResult) -> bool:
-        """Count one tick; return whether a bumper blocks the robot now and has for ASKS_AFTER_TICKS."""
+        """Count one tick; return whether a bumper blocks the robot now and has for ASKS_AFTER_TICKS.
+
+        `decision`: of the tick. `guard_result`: set points that the guard applied to it, and why.
+        """
         pushes = decision.cause in BY_RLA and not guard_result.latched
         held = pushes and touched_bumper(guard_result.wheel_speeds, guard_result.reasons) is not None
         if held:

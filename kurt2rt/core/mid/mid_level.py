@@ -21,9 +21,9 @@ class TieBreaker(Protocol):
     """Choice among RLAs with an equal condition, for instance by a plan."""
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """Return one RLA of the group, oldest first, at a situation (d,); None: the nearest one commands.
+        """Return an RLA of a group with equal conditions, oldest first; None: the nearest one commands.
 
-        Called in each tick in which the mid level knows its situation.
+        `vector`: mid-level situation, shape (d,). Called in each tick in which the mid level knows its situation.
         """
         ...
 

@@ -122,7 +122,7 @@ class Navigator:
         return chosen
 
     def step(self) -> None:
-        """Refresh and do one tick of planning; call it in each tick."""
+        """Process a new situation or changed knowledge, and do one tick of planning; call it in each tick."""
         self._ticks += 1
         self.refresh()
         if self._outdated:
@@ -138,7 +138,7 @@ class Navigator:
             self._publish()
 
     def refresh(self) -> None:
-        """Process a new situation or changed knowledge; begin a plan if necessary."""
+        """Process a new situation or changed knowledge; begin a plan if necessary. Does nothing without a goal."""
         if self._pursuit.goal is None:
             return
         vector, changes = self._mid.vector, self._system.changes

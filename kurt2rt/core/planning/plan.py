@@ -26,7 +26,7 @@ class Plan:
         return self.edges[0] if self.edges else None
 
     def after_first(self) -> "Plan":
-        """Return the rest of the plan after its first edge."""
+        """Return the rest of the plan after its first edge; empty after the last edge."""
         return Plan(self.edges[1:])
 
 

@@ -54,7 +54,7 @@ class EdgeWeights:
         )
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
-        """Multiply (+1) or divide (-1) the weights of the last transitions by the factors."""
+        """Multiply (`value` +1) or divide (-1) the weights of the trace's transitions by their factors."""
         self._history.present.update(self._weights_after(value, trace))
 
     def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:

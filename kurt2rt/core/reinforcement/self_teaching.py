@@ -104,7 +104,10 @@ class SelfTeaching:
             self._reinforcement.signal(signal.value, signal.tick, signal.trace_s, signal=CRITIC, teacher=CRITIC)
 
     def roll_back(self, tick: int, decision: Decision, opinion: Opinion | None) -> Iterator[LessonUndone]:
-        """Count the tick; after a bad window, yield the undos; apply each before requesting the next."""
+        """Count the tick; after a bad window, yield the undos; apply each before requesting the next.
+
+        `decision`, `opinion`: of the tick; `opinion` None: the critic had none.
+        """
         rollback = self.rollback
         said = None if opinion is None else opinion.said
         # The critic changes the basic level only; questions of other levels do not count.

@@ -83,12 +83,12 @@ class TdLambda:
         return self._history.depth(rla_id)
 
     def reset(self, rla_id: int) -> None:
-        """Start V of a new action at the first value, without a trace."""
+        """Start V of an RLA that got another action at the first value, without a trace."""
         self._history.reset(rla_id)
         self._drop_trace(rla_id)
 
     def restore_previous(self, rla_id: int) -> None:
-        """Restore V of the previous action, without a trace."""
+        """Restore V of an RLA's previous action, without a trace."""
         self._history.restore_previous(rla_id)
         self._drop_trace(rla_id)
 

@@ -50,6 +50,7 @@ class ActiveRlas:
         """Return the RLA nearest to a situation (d,), and the runner-up; None if the level and behaviour have no RLA.
 
         All distances are infinite if the situation holds NaN: the robot does not know its position.
+        `include_withdrawn`: False skips RLAs without an action.
         """
         index = self._indexes.get((level, behaviour))
         nearest = None if index is None else index.index.nearest(situation * index.weights)

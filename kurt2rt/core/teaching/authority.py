@@ -61,7 +61,10 @@ class ControlAuthority:
             self._set_teacher(teacher)
 
     def take_over(self, teacher: str, tick: int) -> Outcome | None:
-        """Give authority to `teacher` in place of another; return a refusal while that one drives by hand."""
+        """Give authority to `teacher` in place of another; return a refusal while that one drives by hand.
+
+        Returns None if `teacher` has authority now. `tick`: present tick.
+        """
         if self.teacher not in (None, teacher) and self.is_manual(tick):
             return Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher=self.teacher)
         if self.teacher != teacher:
@@ -94,7 +97,7 @@ class ControlAuthority:
         return not self.attended or tick < self._present_until
 
     def drives_by_later_press(self, teacher: str, press_id: int, tick: int) -> bool:
-        """Return whether this teacher drives by a later press than `press_id`."""
+        """Return whether this teacher drives in `tick` by a later press than `press_id`."""
         return self.is_manual(tick) and self.teacher == teacher and self._press_ids.get(teacher, -1) > press_id
 
     def reset_sequence(self, teacher: str) -> None:
@@ -205,5 +208,5 @@ class ControlAuthority:
 
 
 def name_refusal(name: str) -> Outcome | None:
-    """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
+    """Return the refusal of a teacher's name that the journal would take for the critic's; None if it is allowed."""
     return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None

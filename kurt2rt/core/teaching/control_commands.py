@@ -37,7 +37,7 @@ class ControlCommands:
         self._stops.begin(stop, by)
 
     def carry_out(self, command: ControlCommand, tick: int) -> Outcome:
-        """Carry out a command and return the outcome. Raises CommandRefusedError."""
+        """Carry out a command in `tick` and return the outcome. Raises CommandRefusedError if it must not be."""
         match command:
             case Stop():
                 return self._stop(command, tick)

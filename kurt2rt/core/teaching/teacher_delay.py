@@ -40,7 +40,10 @@ class TeacherDelay:
         self._answered = False
 
     def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
-        """Note whether the robot asked in a tick; an answer tells no delay if its teacher came after the question."""
+        """Note whether the robot asked (`asks`) in a tick; call it on every tick.
+
+        `present`: whether its teacher was there; an answer tells no delay if its teacher came after the question.
+        """
         if not asks:
             self.asked_tick = None
         elif self.asked_tick is None:

@@ -103,8 +103,21 @@ async def run_exams(
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
 
-    Returns one result per world, in order. Raises SettingsError if task and world do not fit, LessonLostError if the
-    robot refused a command.
+    Args:
+        factory: opens the simulations.
+        settings: of the robot.
+        task: that was taught.
+        events: its lessons.
+        worlds: names of the worlds.
+        seed: of robot and start pose.
+        report: progress callback.
+
+    Returns:
+        One result per world, in order.
+
+    Raises:
+        SettingsError: task and world do not fit.
+        LessonLostError: the robot refused a command.
     """
 
     async def drive(world: str, *, teacher_policy: bool) -> ExamResult:

@@ -19,7 +19,10 @@ _CARRIED_M = 0.2
 
 
 def draw_curriculum(result: CurriculumResult, task: TaskSettings, factory: SimulationFactory, path: Path) -> None:
-    """Write a PNG: the lesson, each exam over the teacher's own drive, and the number of RLAs against time."""
+    """Write a PNG: the lesson, each exam over the teacher's own drive, and the number of RLAs against time.
+
+    Raises OSError, and SettingsError for an unknown world.
+    """
     panels = 2 + len(result.exams)
     columns = (panels + 1) // 2
     figure = Figure(figsize=(5.2 * columns, 10.0), layout="constrained")
@@ -37,7 +40,10 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, factory: Simul
 
 
 def draw_exams(exams: Sequence[WorldResult], factory: SimulationFactory, path: Path) -> None:
-    """Write a PNG: the panels of the exams that `draw_curriculum` draws, one below the other as a phone shows them."""
+    """Write a PNG: each exam over the teacher's own drive, one below the other as a phone shows them.
+
+    Raises OSError, and SettingsError for an unknown world.
+    """
     figure = Figure(figsize=(5.2, 5.2 * len(exams)), layout="constrained")
     for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
         _draw_exam(panel, each, factory)

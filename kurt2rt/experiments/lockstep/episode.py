@@ -136,7 +136,7 @@ class Episode(ABC):
         self.runtime.inbox.put(command)
 
     def next_id(self, name: str) -> str:
-        """Return a new command id, such as `exam-1`."""
+        """Return a new command id, `name` with a number, such as exam-1."""
         self._sent += 1
         return f"{name}-{self._sent}"
 

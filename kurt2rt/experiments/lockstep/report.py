@@ -52,7 +52,7 @@ _JSON_NAMES = {"distance_travelled_m": "way_m"}
 
 
 def curriculum_as_data(result: CurriculumResult, task: TaskSettings) -> dict[str, Any]:
-    """Return the numbers of one lesson and its exams, for JSON; units as in `LessonResult` and `ExamResult`."""
+    """Return the numbers of one lesson and its exams, for JSON. Keys tell units, as in teaching_s."""
     lesson = result.lesson
     numbers = ("seed", "world", "teacher", "teaching_s", "asks", "corrections", "presses", "rescues", "alarms")
     taught = {name: getattr(lesson, name) for name in (*numbers, "repositions", "deletions")}
@@ -180,7 +180,7 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
 
 
 def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
-    """Return lower quartile, median and upper quartile, by linear interpolation."""
+    """Return lower quartile, median and upper quartile by linear interpolation, in the unit of the values."""
     ordered = sorted(values)
 
     def at(share: float) -> float:

@@ -88,7 +88,7 @@ class TeacherWorkload:
         self._minutes[place] = now
 
     def count_manual(self, tick: int, what: Hands) -> None:
-        """Count a manual act."""
+        """Count a manual act of a kind, such as a rescue, in the minute of `tick`."""
         place = self._place(tick)
         now = self._minutes[place]
         self._minutes[place] = now._replace(**{what: getattr(now, what) + 1})

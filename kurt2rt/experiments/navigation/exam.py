@@ -37,7 +37,7 @@ class RandomChooser:
         self._way: Rla | None = None
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """Return one RLA of the group; the same until the next place.
+        """Return one RLA of the group, never None; the same until the next place.
 
         Args:
             group: RLAs that are possible at the place.

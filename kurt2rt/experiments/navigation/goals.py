@@ -38,7 +38,13 @@ def choose_goals(
 ) -> tuple[GoalChosen, ...]:
     """Return successive goals, the first from `start`; fewer than required if there are none.
 
-    `led`: streets of the tour; None before each repositioning.
+    Args:
+        town: streets of the world.
+        named: street of each named place.
+        led: streets of the tour; None before each repositioning.
+        start: street of the robot.
+        settings: number of goals, and limits.
+        chance: source of the choice.
     """
     chosen: list[GoalChosen] = []
     here = start

@@ -87,6 +87,14 @@ async def guided_tour(
 
     The basic level is answered and corrected meanwhile, as in its own training run.
 
+    Args:
+        simulation: that the robot drives in.
+        settings: of the robot.
+        task: with errands.
+        training: destination of the lessons, and the knowledge to continue from.
+        seed: random choices of guide and teacher.
+        on_progress: called once a second with the simulated seconds.
+
     Raises:
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: the task has no goals, or the world no streets.

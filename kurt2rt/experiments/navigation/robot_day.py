@@ -36,6 +36,15 @@ async def teach_and_send(
 ) -> ErrandsOutcome:
     """Teach into a file that holds the streets, and send the robot to its goals once by each strategy.
 
+    Args:
+        factory: opens the simulations.
+        settings: of the robot.
+        task: with errands.
+        knowledge: path of the file.
+        seed: of robot, guide and teacher.
+        strategies: ways to choose the next street.
+        report: progress callback.
+
     Raises:
         KnowledgeError: the file cannot be read.
         hal.settings.SettingsError: the task has no goals, or the world no streets.

@@ -26,7 +26,10 @@ _TITLES: dict[Strategy, str] = {
 def all_tables(
     outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teacher: str = SUPERHUMAN
 ) -> Iterator[Table]:
-    """Yield all tables; `teacher` is the name of the scripted teacher."""
+    """Yield all tables of the outcomes, one outcome per robot.
+
+    `course`: settings of the errands. `teacher`: name of the scripted teacher.
+    """
     yield targets_table(outcomes, course)
     runs = runs_table(outcomes, course)
     yield replace(runs, note=f"{runs.note} Taught by the scripted teacher {teacher}.")
@@ -34,7 +37,7 @@ def all_tables(
 
 
 def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of requirements and measured values."""
+    """Return the table of requirements and measured values, over all robots. `course`: settings of the errands."""
     runs = _runs(outcomes, "planning")
     goals = sum(len(run.errands) for run in runs)
     good = sum(run.good(course.detour_at_most) for run in runs)
@@ -74,7 +77,7 @@ def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -
 
 
 def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of the runs by planning, and of the controls."""
+    """Return the table of the drives by planning and of the controls. `course`: settings of the errands."""
     rows = []
     for how in (*PLANNING, *CONTROLS):
         runs = _runs(outcomes, how)
@@ -112,7 +115,7 @@ def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> T
 
 
 def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of single robots."""
+    """Return the table of single robots, a row for each. `course`: settings of the errands."""
     rows = []
     for each in outcomes:
         run = each.run_of("planning")

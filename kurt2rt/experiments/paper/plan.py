@@ -86,6 +86,11 @@ def make_plan(
     """Check every task and world, and return the jobs.
 
     Args:
+        paper: settings of the study.
+        extent: limits of tasks, worlds and times.
+        seeds: one robot each.
+        readings: readings of the paper to study.
+        parts: factory, robot and results of the jobs.
         source_of: returns the hash of the program's source.
         tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
 
@@ -146,7 +151,7 @@ class _JobMaker:
 
 
 def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
-    """Return the generated worlds of one seed; 20 successive seeds share all of them."""
+    """Return the names of the generated worlds of one seed; 20 successive seeds share all of them."""
     return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
 
 

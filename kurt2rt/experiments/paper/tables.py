@@ -45,7 +45,10 @@ def all_tables(study: PaperStudy) -> Iterator[Table]:
 
 
 def paper_targets_table(summaries: Sequence[PaperSummary], title: str, not_judged_because: Sequence[str] = ()) -> Table:
-    """Return the table of all targets."""
+    """Return the table of all targets with their results, a row for each.
+
+    `not_judged_because`: reasons against judging; with any, all results are `not judged`.
+    """
     return targets_table(
         [((each.label,), verdict) for each in summaries for verdict in verdicts(each)],
         not_judged_because,

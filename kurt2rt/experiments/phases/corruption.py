@@ -27,7 +27,7 @@ def corrupt(
 
 
 def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
-    """Yield the lessons of the critic, and the appraisals of its agreement."""
+    """Yield those of the events that are lessons of the critic, or appraisals of its agreement."""
     ids: set[int] = set()
     for event in events:
         match event:
@@ -43,7 +43,10 @@ def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
 def shuffled(
     appraisals: Sequence[Rla], settings: CriticSettings, seed: int, period_s: float
 ) -> Iterator[TeachingEvent]:
-    """Yield the appraisal RLAs with shuffled opinions, and appraisals that make the robot trust them."""
+    """Yield the appraisal RLAs with shuffled opinions, and appraisals that make the robot trust them.
+
+    `seed`: of the shuffle. `period_s`: duration of a tick in s.
+    """
     opinions = [rla.action for rla in appraisals]
     random.Random(f"shuffled critic, seed {seed}").shuffle(opinions)
     for rla, opinion in zip(appraisals, opinions, strict=True):

@@ -60,7 +60,10 @@ def stage_outcome(
     exams: tuple[ExamOutcome, ...],
     judgements: tuple[Judgement, ...] = (),
 ) -> StageOutcome:
-    """Return the outcome of a stage, with the counts of `system`; `teaching`: None without a training run."""
+    """Return the outcome of the stage `name`, with the counts of `system`; `teaching`: None without a training run.
+
+    `judgements`: opinions of critic and judge, if they were compared.
+    """
     return StageOutcome(
         name=name,
         rlas=len(system),

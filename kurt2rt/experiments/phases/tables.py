@@ -107,7 +107,7 @@ def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
 
 
 def exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str) -> Table:
-    """Return the table of exams at each stage, world by world."""
+    """Return the table of the exams at these stages, by name, world by world; `note` stands below it."""
     rows = []
     for name in stages:
         rlas = quartiles([stage.rlas for stage in study.stages[name]])[1]
@@ -153,7 +153,7 @@ def exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str)
 
 
 def paired_table(title: str, pairs: Sequence[Paired], note: str) -> Table:
-    """Return the table of the same robots at two stages."""
+    """Return the table of the changes of the same robots between two stages; `note` stands below it."""
     rows = []
     for each in pairs:
         sure = "better" if each.surely_better else "worse" if each.surely_worse else ""

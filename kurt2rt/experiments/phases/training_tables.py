@@ -33,7 +33,7 @@ def taught_of(stages: Sequence[StageOutcome]) -> list[TeachingOutcome]:
 
 
 def workload_table(title: str, stages: Sequence[str], study: PhasesStudy) -> Table:
-    """Return the table of the teacher's commands, in total and for each minute."""
+    """Return the table of the teacher's commands at these stages, by name: in total and for each minute."""
     rows = []
     for name in stages:
         taught = taught_of(study.stages[name])

@@ -24,7 +24,7 @@ _BESIDE_M = 0.13
 
 
 def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each length and way of teaching into the folder: route-<way>-<decisions>.png."""
+    """Draw each length and variant into the folder and yield it: route-<variant>-<decisions>.png. Raises OSError."""
     world = study.plan.task.exam.worlds[0]
     for summary in study.summaries:
         variant, decisions = summary.experiment.variant, summary.experiment.decisions

@@ -86,6 +86,15 @@ async def teach_route(
 ) -> TaughtRoute:
     """Teach the task's route into a file that holds the streets, and examine it.
 
+    Args:
+        factory: opens the simulations.
+        settings: of the robot.
+        task: with the route.
+        variant: way of teaching.
+        knowledge: path of the file.
+        seed: of robot and teacher.
+        report: progress callback.
+
     Raises:
         KnowledgeError: the file cannot be used.
         SettingsError: the task teaches no route, or does not fit the world.

@@ -70,8 +70,13 @@ def make_plan(
     """Check tasks, worlds and routes, and return the jobs.
 
     Args:
+        task: that teaches the route.
         basic: the task that teaches the streets.
-        basic_folder: knowledge files of that task, as `kurt2rt lesson` leaves them; None: the streets are taught first.
+        seeds: one robot each.
+        decisions: lengths of the routes.
+        variants: ways of teaching.
+        parts: factory, robot and results of the jobs.
+        basic_folder: knowledge files of `basic`, by `kurt2rt lesson`; None: the streets are taught first.
         source_of: returns the hash of the program's source.
 
     Raises:

@@ -13,7 +13,10 @@ _TITLE = "KURT2: routes that its mid level was taught"
 
 
 def write_report(study: RouteStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:
-    """Write the report. `command`: what was typed, without what belongs to the machine alone. Raises OSError."""
+    """Write the report of a study with its pictures as an HTML page to `path`. Raises OSError.
+
+    `command`: typed words, without those that belong to the machine alone.
+    """
     plan = study.plan
     write_page(
         path,

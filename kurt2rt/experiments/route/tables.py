@@ -32,7 +32,7 @@ def all_tables(study: RouteStudy) -> Iterator[Table]:
 
 
 def taught_table(summaries: Sequence[RouteSummary]) -> Table:
-    """Return the table of the training runs."""
+    """Return the table of the training runs, a row for each length and variant."""
     rows = []
     for each in summaries:
         low, median, high = each.quartiles("mid_rlas")
@@ -66,7 +66,7 @@ def _taught_by(summaries: Sequence[RouteSummary]) -> str:
 
 
 def exam_table(summaries: Sequence[RouteSummary]) -> Table:
-    """Return the table of the exams."""
+    """Return the table of the exams, a row for each length and variant."""
     rows = []
     for each in summaries:
         low, high = wilson_interval(each.without_error, each.robots)

@@ -15,7 +15,7 @@ RIGHT = 0.99
 
 
 def verdicts(summary: RouteSummary, paper: PaperResult) -> Iterator[Verdict]:
-    """Yield the verdicts on routes of one length; none for controls and for other lengths."""
+    """Yield the verdicts on routes of one length, by the paper's results; none for controls and other lengths."""
     experiment = summary.experiment
     share = WITHOUT_ERROR.get(experiment.decisions)
     if experiment.variant != TAUGHT or share is None:

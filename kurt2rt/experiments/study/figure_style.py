@@ -16,5 +16,5 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def legend_below(axes: Axes, columns: int = 3) -> None:
-    """Draw the legend below the floor plan, where it hides no wall."""
+    """Draw the legend below the floor plan, in so many columns, where it hides no wall."""
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, fontsize="small", frameon=False)

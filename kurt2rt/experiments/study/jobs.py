@@ -69,7 +69,7 @@ class StudyJob(ABC):
 
     @property
     def knowledge(self) -> Path:
-        """Path of the knowledge file."""
+        """Path of the stored knowledge file in the folder of results; it exists after the job."""
         return self.results.folder / f"knowledge/{self.stem}.knowledge"
 
     def run(self, on_progress: Progress) -> None:

@@ -21,7 +21,10 @@ class StudyPlan(Protocol):
 
 
 def missing_time_s(plan: StudyPlan, results: Results) -> float:
-    """Return the robot time of all jobs without a result, in s. Raises StudyError."""
+    """Return the robot time of all jobs without a result, in s.
+
+    Raises StudyError if there are results of other settings, source or versions, or damaged files.
+    """
     return sum(wave[place].robot_time_s for wave in plan.waves for place in results.missing(wave))
 
 

@@ -66,7 +66,10 @@ def pack(about: Mapping[str, Any], files: Mapping[str, bytes], key: Ed25519Priva
 
 
 def unpack(path: Path) -> Archive:
-    """Read and check an archive. Raises KnowledgeError: truncated, changed or of another kind."""
+    """Read an archive and check its hashes and signature.
+
+    Raises KnowledgeError if it is unreadable, truncated, changed or of another kind.
+    """
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):

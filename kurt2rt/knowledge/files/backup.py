@@ -61,7 +61,7 @@ class BackupService:
         self._made: dict[str, Path] = {}
 
     async def save(self, label: str) -> SavedCopy:
-        """Save a copy of the knowledge file. Raises KnowledgeError."""
+        """Save a copy of the knowledge file, with `label` in its name. Raises KnowledgeError."""
         return await self._copied("saved", lambda folder: save_copy(self._knowledge, folder, label, utc_now()))
 
     async def export(self) -> SavedCopy:

@@ -29,6 +29,14 @@ def create_knowledge(
 ) -> None:
     """Make a knowledge file at `path`, where no file may be, from the content of the file `source`.
 
+    Args:
+        path: of the new file.
+        binding: features and task of the content.
+        entries: lessons with their stamps, in order.
+        statistics: counts and values after them.
+        notes: texts about the file as a whole, by name.
+        source: for errors.
+
     Raises:
         KnowledgeError: the file cannot be written, or, naming `source`, its lessons do not fit or one is in it twice.
     """

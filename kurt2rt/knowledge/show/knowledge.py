@@ -175,7 +175,10 @@ def _rla_as_data(
 
 
 def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
-    """Return the lessons that `render_lessons` shows, for JSON. Raises KnowledgeError."""
+    """Return the lessons, newest first, at most `limit` of them, for JSON. Raises KnowledgeError.
+
+    `taught_by`: only those of that teacher; None: all.
+    """
     records, stamps, undone_by = _read_lessons(journal, taught_by)
     shown = records[:limit]
     return {

@@ -30,7 +30,7 @@ class KnowledgeDiff:
 
 
 def compare(a: KnowledgeContent, b: KnowledgeContent) -> KnowledgeDiff:
-    """Compare two files of the same features: RLAs are the same if the same lesson created them."""
+    """Return the difference of two files of the same features. RLAs are the same if the same lesson created them."""
     rlas_a = {a.rla_keys[rla.rla_id]: rla for rla in active_rlas(a)}
     rlas_b = {b.rla_keys[rla.rla_id]: rla for rla in active_rlas(b)}
     return KnowledgeDiff(

@@ -158,7 +158,7 @@ def decision_entry(decision: Decision) -> DecisionEntry:
 
 
 def match_entry(match: Match | None) -> MatchEntry | None:
-    """Return a match with ids instead of RLAs."""
+    """Return a match with ids instead of RLAs; None for None."""
     if match is None:
         return None
     runner_up = None if match.runner_up is None else match.runner_up.rla_id

@@ -56,7 +56,7 @@ def timestamp(time_ns: int) -> Timestamp:
 
 
 def pose_in(frame: str, pose: PlanePose, time_ns: int) -> PoseInFrame:
-    """Return a pose on the floor in a frame."""
+    """Return a pose on the floor in the frame of this name; `time_ns` in ns since 1970."""
     return PoseInFrame(timestamp=timestamp(time_ns), frame_id=frame, pose=_pose(pose))
 
 

@@ -131,7 +131,7 @@ class Topics:
         self._health.log(_json(report), log_time=time_ns)
 
     def log_world(self, world: WorldPlan, tick: int, time_ns: int) -> None:
-        """Log the simulated world every 5 s."""
+        """Log the simulated world if 5 s have passed since the last time; call it on every tick."""
         if tick >= self._next_ground:
             self._next_ground = tick + self._ground_ticks
             self._ground.log(world_scene(world, time_ns), log_time=time_ns)

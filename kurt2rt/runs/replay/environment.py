@@ -22,7 +22,7 @@ class ReplayEnvironment:
         """Discard the event: the record has it (LessonKeeper)."""
 
     def now_s(self) -> float:
-        """Return the recorded time (Clock)."""
+        """Return the recorded time in s (Clock)."""
         return self._entry.now_s
 
     async def wait_until(self, deadline_s: float) -> None:

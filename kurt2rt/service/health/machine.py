@@ -38,7 +38,10 @@ class MachineMonitor:
 
 
 def battery_of(power: Path) -> tuple[float | None, bool]:
-    """Return the charge of the emptiest battery, 0 to 1, and whether it is discharging; None and False without one."""
+    """Return the charge of the emptiest battery, 0 to 1, and whether it is discharging; None and False without one.
+
+    `power`: folder of the kernel's power supplies.
+    """
     found = []
     for supply in sorted(power.glob("*")):
         # Mice and keyboards have batteries as well, with the scope Device.

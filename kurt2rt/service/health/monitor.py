@@ -82,7 +82,10 @@ class HealthMonitor:
         drops: Mapping[str, Callable[[], int]] | None = None,
         errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> None:
-        """Add parts of the program to the report, such as a channel that opened later."""
+        """Add parts of the program to the report, such as a channel that opened later.
+
+        `drops`: number of dropped items by queue. `errors`: error and cure of each part, in a line; empty without one.
+        """
         self._instruments = self._instruments.with_more(drops, errors)
 
     def add_listener(self, listener: Callable[[HealthReport], None]) -> None:

@@ -40,7 +40,7 @@ class Notifier:
         self._send("READY=1")
 
     def reloading(self, monotonic_us: int) -> None:
-        """Report the begin of a reload; `ready` reports its end."""
+        """Report the begin of a reload at `monotonic_us`, in µs of CLOCK_MONOTONIC; `ready` reports its end."""
         self._send(f"RELOADING=1\nMONOTONIC_USEC={monotonic_us}")
 
     def stopping(self) -> None:

@@ -149,10 +149,11 @@ class TeacherClient(ObserverClient):
     # Motion
 
     async def stop(self) -> Answer:
-        """Stop the robot; always allowed.
+        """Stop the robot; always allowed. It ends a press.
 
-        It ends a press. Commands that move the robot and wait for their answer are sent no more; they return a refusal
-        with the `why` "stopped". Raises NoAnswerError like each command, but goes on being sent: see `stop_pending`.
+        Commands that move the robot and wait for their answer are sent no more; they return a refusal with the `why`
+        "stopped". Raises NoAnswerError if the robot does not answer; the stop is then sent on until it does
+        (`stop_pending`).
         """
         self._drive.end()
         return await self._open.stops.stop()
@@ -204,7 +205,8 @@ class TeacherClient(ObserverClient):
     def press_action(self, action: str) -> bool:
         """Begin to hold an action, or hold another one in the present press; return whether a press is on.
 
-        The robot does it and is taught on the way; see `hold`. Raises WireError for a name that cannot be sent.
+        The robot does the action and is taught it on the way, until `let_go`. Raises WireError for a name that cannot
+        be sent.
         """
         return self._drive.hold(action)
 

@@ -76,7 +76,17 @@ async def open_connection(
 ) -> AsyncIterator[Connection]:
     """Open a pairing and subscribe to its robot, which need not be there yet; at the end stop a press that is on.
 
-    Raises ChannelError if no socket can be opened, and CredentialsError if the pairing is the cause.
+    Args:
+        folder: of the device's pairing.
+        host: address of the robot; None: that of the pairing.
+        port: UDP port of the robot; None: that of the pairing.
+        stream: gets the states.
+        patience_s: time to wait for answers, in s.
+        now: monotonic clock in s.
+
+    Raises:
+        ChannelError: no socket can be opened.
+        CredentialsError: the pairing cannot be opened.
     """
     device = await anyio.to_thread.run_sync(_read_device, folder)
     requests = await open_requests(folder, host or device.host, port or device.port)

@@ -130,7 +130,10 @@ class OscoreRequests:
         return self._begin(path, request, on_response)
 
     def observe(self, path: str, on_response: OnResponse) -> Exchange:
-        """Observe a resource (RFC 7641) until the exchange ends, or the robot ends it."""
+        """Observe a resource (RFC 7641) until the exchange ends, or the robot ends it.
+
+        `on_response` is called for each state, from the event loop.
+        """
         request = aiocoap.Message(code=aiocoap.GET, transport_tuning=_Registering())
         request.opt.observe = 0
         return self._begin(path, request, on_response)

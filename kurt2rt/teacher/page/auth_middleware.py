@@ -47,7 +47,7 @@ class LoginThrottle:
         return self._tries_left(address, now_s) >= 1.0
 
     def on_failure(self, address: str, now_s: float) -> None:
-        """Count a wrong token."""
+        """Count a wrong token from an address at `now_s`."""
         self._left[address] = (self._tries_left(address, now_s) - 1.0, now_s)
         self._left.move_to_end(address)
         if len(self._left) > self._addresses:

@@ -26,7 +26,10 @@ class DeadmanSwitch:
         return self._press_id == press_id
 
     def press(self, press_id: int, state_age_s: float, now_s: float) -> bool:
-        """Begin or renew a press; return False if the message does not count. Press ids grow."""
+        """Begin or renew a press at `now_s`; return False if the message does not count. Press ids grow.
+
+        A message does not count on a state older than the limit (`state_age_s`, in s), or for a press that ended.
+        """
         if press_id <= self._ended or state_age_s >= self._max_state_age_s:
             return False
         if self._press_id != press_id:

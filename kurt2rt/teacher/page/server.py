@@ -26,9 +26,9 @@ _MAX_CONNECTIONS = 96
 
 
 def listen(port: int, *, everywhere: bool, spare_ports: int = 0) -> socket.socket:
-    """Return a listening TCP socket, on this machine alone or on all its addresses. Raises PageError.
+    """Return a listening TCP socket, on this machine alone or on all its addresses.
 
-    If another program has `port`, the next `spare_ports` ports are tried in turn.
+    If another program has `port`, the next `spare_ports` ports are tried in turn. Raises PageError if none is free.
     """
     for tried in range(port, min(port + spare_ports, 65535) + 1):
         try:
@@ -53,7 +53,13 @@ async def run_page(
 ) -> None:
     """Serve the page of a device until `until_ended` returns; a robot that is driven by hand is stopped first.
 
-    A connection without a whole request in `request_within_s` is closed.
+    Args:
+        robot: connected client of the device.
+        access: rules of the device.
+        robot_place: address of the robot, as the page shows it.
+        listener: socket of `listen`.
+        until_ended: returns at the end.
+        request_within_s: a connection without a whole request in this time is closed, in s.
     """
     robot.watching = False
     bridge = Bridge(robot, access.device, robot_place)

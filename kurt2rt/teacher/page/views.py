@@ -83,7 +83,7 @@ def _difference(each: FeatureDifference, words: SensorWords) -> list[Any]:
 
 
 def answer_view(number: int, answer: Answer) -> dict[str, Any]:
-    """Return the message for the robot's answer to a command."""
+    """Return the message for the robot's answer to the page's command `number`."""
     return {
         "kind": "answer",
         "number": number,
@@ -96,7 +96,10 @@ def answer_view(number: int, answer: Answer) -> dict[str, Any]:
 
 
 def refusal_view(number: int, why: str, text: str) -> dict[str, Any]:
-    """Return the message for a command that was not sent, or that the robot did not answer."""
+    """Return the message for the page's command `number` that was not sent, or that the robot did not answer.
+
+    `why`: word for the reason. `text`: sentence for the teacher.
+    """
     return {"kind": "answer", "number": number, "accepted": False, "why": why, "text": text, "tick": -1, "extra": {}}
 
 

@@ -20,7 +20,7 @@ class MistakeWatcher:
         self._wrong = self._looked_wrong = 0
 
     def update(self, view: TeacherView, right: str) -> bool:
-        """Take a state of a driving robot with its right action; return whether a mistake is noticed now."""
+        """Process a state of a driving robot with its right action; return whether a mistake is noticed now."""
         if view.action is None or view.action == right:
             self.reset()
             return False

@@ -25,7 +25,7 @@ class RobotRepositioner:
         """Without a collision since `_from`."""
 
     def update(self, state: State, *, waits: bool) -> SimulatedPlace | None:
-        """Take a state; return the place to put the robot now, if it made no progress.
+        """Process a state; return the place to put the robot now, if it made no progress; None if it shall stay.
 
         Time in which the robot `waits` for its teacher does not count. A place counts as passed if the robot came there
         without a collision.

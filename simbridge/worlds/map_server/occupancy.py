@@ -18,9 +18,9 @@ _HALF_OCCUPIED = 50.0
 
 
 def drivable_cells(source: Path, settings: MapSettings) -> NDArray[np.bool_]:
-    """Return the cells known to be free, shape (rows, columns), row 0 at the bottom.
+    """Return the cells of a map's image known to be free, shape (rows, columns), row 0 at the bottom.
 
-    Raises SettingsError that names the map's file and the key.
+    `source`: file of the map, whose `settings` name the image. Raises SettingsError that names file and key.
     """
     image = source.parent / settings.image
     if image.exists() and not image.is_file():  # opening a FIFO waits until another program writes to it
