@@ -26,7 +26,7 @@ class BenchMachine:
 
 
 def measure_machine() -> BenchMachine:
-    """Return the machine's present state."""
+    """Return the usable cores, load averages and versions of this machine now; call it before the benchmarks."""
     return BenchMachine(len(os.sched_getaffinity(0)), os.getloadavg(), platform.python_version(), np.__version__)
 
 

@@ -88,7 +88,8 @@ class SegmentReader:
     def records(self) -> Iterator[McapRecord]:
         """Yield all complete records from the header on, with chunks unpacked.
 
-        Sets `truncated`. Raises RecordingError.
+        Afterwards `truncated` says where a file ends whose end is missing; empty for a whole file. Raises
+        RecordingError if the file cannot be read.
         """
         self.truncated = ""
         try:
