@@ -73,6 +73,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "checks of a soak": complaints.soak_checks,
         "conflicts of a merge": merging.conflicts,
         "errors of knowledge": merging.knowledge_errors,
+        "differences of features": merging.differences,
         "findings of the doctor": doctor.findings,
         "summary of the doctor": doctor.summaries,
         "errors of settings": settings.errors,

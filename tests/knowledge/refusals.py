@@ -10,8 +10,10 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
 @contextmanager
-def refused(code: KnowledgeCode, where: object = None, *, mentions: object = "", **fields: object) -> Iterator[None]:
-    """Expect a KnowledgeError of this code, place and fields, whose field `error` names a file or key.
+def refused(
+    code: KnowledgeCode, where: object = None, *, mentions: object = "", **fields: object
+) -> Iterator[pytest.ExceptionInfo[KnowledgeError]]:
+    """Expect a KnowledgeError of this code, place and fields, whose field `error` names a file or key; yield it.
 
     Args:
         code: of the error.
@@ -20,7 +22,7 @@ def refused(code: KnowledgeCode, where: object = None, *, mentions: object = "",
         fields: some of its fields.
     """
     with pytest.raises(KnowledgeError) as caught:
-        yield
+        yield caught
     error = caught.value
     assert (error.code, {**error.fields, **fields}) == (code, error.fields)
     assert where is None or error.where == str(where)

@@ -65,7 +65,7 @@ def priority_of(thread: threading.Thread) -> int:
 @needs_permission
 def test_sched_fifo_is_not_inherited() -> None:
     def story() -> None:
-        assert set_sched_fifo(5) == "real-time priority 5 (SCHED_FIFO)"
+        assert "5 (SCHED_FIFO)" in set_sched_fifo(5)
         assert priority_of(threading.current_thread()) == 5
         with waiting() as later:
             assert priority_of(later) == 0
@@ -84,7 +84,7 @@ def test_sched_fifo_guards_stay_above_the_loop() -> None:
                 assert priority_of(threading.current_thread()) == priority
                 assert priority_of(guard) == priority + 1
                 assert priority_of(other) == 0
-            assert set_sched_fifo(0, [guard]) == "no real-time priority"
+            assert "SCHED_FIFO" not in set_sched_fifo(0, [guard])
             assert priority_of(threading.current_thread()) == priority_of(guard) == priority_of(other) == 0
 
     in_a_thread(story)
@@ -95,6 +95,6 @@ def test_a_guard_that_has_ended_is_passed_over() -> None:
     def story() -> None:
         with waiting() as guard:
             pass
-        assert set_sched_fifo(5, [guard, threading.Thread()]) == "real-time priority 5 (SCHED_FIFO)"
+        assert "5 (SCHED_FIFO)" in set_sched_fifo(5, [guard, threading.Thread()])
 
     in_a_thread(story)

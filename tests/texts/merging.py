@@ -2,16 +2,18 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from string import Formatter
 
 from kurt2rt.cli.knowledge.merge import format_left_out, format_reason, format_state
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import ASK
+from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, NameState, RlaState
 from kurt2rt.knowledge.versions.merge_writer import LeftOutCode, LeftOutReward
-from tests.knowledge.lessons import created, rewarded
+from tests.knowledge.lessons import BINDING, created, rewarded
 
 RLA = created(4, action="left").rla
 
@@ -42,3 +44,20 @@ def knowledge_errors() -> Iterator[tuple[str, str]]:
         names = {name for text in (code.what, code.do) for _, name, _, _ in Formatter().parse(text) if name}
         fields = {name: 14.2 if name == "at_s" else name.upper() for name in names}
         yield code, str(KnowledgeError(code, where="mine.knowledge", **fields))
+
+
+def differences() -> Iterator[tuple[str, str]]:
+    """Yield the differences of a file's features from those of a robot."""
+    names = BINDING.feature_names
+    for label, others in {
+        "one of each": (*names[:-1], "a"),
+        "only the file's": names[:-1],
+        "only the robot's": (*names, *"abcdef"),
+        "other order": names[::-1],
+        "other definition": names,
+    }.items():
+        wanted = replace(BINDING, feature_hash="another", feature_names=others)
+        try:
+            require_compatible(BINDING, wanted, Path("mine.knowledge"), lambda _: True)
+        except KnowledgeError as error:
+            yield label, str(error.fields["difference"])

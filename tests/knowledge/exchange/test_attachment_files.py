@@ -32,15 +32,13 @@ from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILE
     ],
 )
 def test_unsafe_reason_escaping_names_are_refused(name: str) -> None:
-    assert "which is none that kurt2rt gives" in unsafe_reason({"settings/task.json": 1, name: 1})
+    assert repr(name)[:20] in unsafe_reason({"settings/task.json": 1, name: 1})
 
 
 def test_unsafe_reason_limits_are_kept() -> None:
-    assert "files, 1000 are taken at most" in unsafe_reason(
-        {f"settings/{number}": 1 for number in range(MOST_FILES + 1)}
-    )
-    assert "holds more than 256 MB" in unsafe_reason({"a": LARGEST_BYTES, "b": 1})
-    assert unsafe_reason({"a": 1, "a/b": 1}) == "holds 'a' as a file and as a folder"
+    assert str(MOST_FILES) in unsafe_reason({f"settings/{number}": 1 for number in range(MOST_FILES + 1)})
+    assert "256 MB" in unsafe_reason({"a": LARGEST_BYTES, "b": 1})
+    assert "'a'" in unsafe_reason({"a": 1, "a/b": 1})
     assert unsafe_reason({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
 
 

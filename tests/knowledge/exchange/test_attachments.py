@@ -58,7 +58,7 @@ def test_settings_override_finds_only_attachments(tmp_path: Path) -> None:
         path.write_bytes(data)
     with settings_override(tmp_path / "settings"):
         assert find_config("mid_levels", "places").is_relative_to(tmp_path)
-        with pytest.raises(SettingsError, match="kept with the run"):
+        with pytest.raises(SettingsError, match=r"circle: .*\bworlds\b"):
             find_config("worlds", "circle")
     assert find_config("mid_levels", "places").is_relative_to(CONFIG_DIR)
 
@@ -126,6 +126,6 @@ def test_hash_attachments_differs_by_content() -> None:
 
 @pytest.mark.parametrize(("value", "shown"), [("a" * 38, f"'{'a' * 38}'"), ("a" * 39, f"'{'a' * 36}...")])
 def test_require_number_error_shows_a_short_value_whole(value: str, shown: str) -> None:
-    with pytest.raises(ValueError, match="stands where a number should") as caught:
+    with pytest.raises(ValueError, match="number") as caught:
         require_number(value)
     assert str(caught.value).split(" ")[0] == shown

@@ -78,7 +78,9 @@ def test_import_knowledge_of_an_export_is_equal_bit_for_bit(taught: Path, export
         assert repr(new.statistics()) == repr(old.statistics())
         assert new.binding == old.binding
         assert check_knowledge(new) == []
-        assert new.notes() == {"imported from": f"mine.zip, exported {NOW}, imported {NOW}"}
+        (note,) = new.notes().values()
+        assert note.startswith("mine.zip, ")
+        assert note.count(NOW) == 2
     export(tmp_path / "theirs.knowledge", tmp_path / "again.zip", exported.parent / "ann")
     assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
 

@@ -1,3 +1,4 @@
+import re
 import resource
 import sqlite3
 import threading
@@ -82,7 +83,9 @@ def test_error_hanging_write_is_told_until_it_ends(path: Path) -> None:
         now_s += 1.0
         assert writer.saving_error is None
         now_s += 0.1
-        assert writer.saving_error == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
+        assert writer.saving_error is not None
+        assert writer.saving_error.startswith(f"{path}: ")
+        assert " 2 lessons" in writer.saving_error
         journal.let_go.set()
         assert [each.command_id for each in settled(writer)] == ["create-1", "create-2"]
         assert writer.saving_error is None
@@ -134,11 +137,11 @@ def test_submit_unwritable_lesson_does_not_delay_others(path: Path) -> None:
         refused, written, clashing = settled(writer)
 
     assert refused.error is not None
-    assert "condition must be made of finite numbers; teach it again" in refused.error
+    assert "finite" in refused.error
     assert (written.sequence, written.error) == (1, None)
     assert clashing.error is not None
     assert [each.stamped_at for each in (refused, written, clashing)] == ["", STAMP, ""]
-    assert "another lesson of this id stands in row 1" in clashing.error
+    assert re.search(r"'once more'.*\b1\b", clashing.error)
     assert stored(path) == [created(1, command_id="once more")]
 
 
@@ -156,7 +159,7 @@ def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
             if writer.saving_error is not None:
                 break
         assert writer.saving_error is not None
-        assert writer.saving_error.startswith(f"{path}: the disk is full; make room on it")
+        assert writer.saving_error.startswith(f"{path}: {KnowledgeCode.DISK_FULL.what}; ")
         waiting = writer.unwritten
         assert len(stored(path)) == number - waiting
         for later in range(number + 1, number + 51):
@@ -197,7 +200,7 @@ def test_submit_failing_disk_lessons_wait_in_order(path: Path) -> None:
         acknowledged = settled(writer)
         assert writer.saving_error is None
 
-    assert error.startswith(f"{path}: the disk fails; look at its health and room")
+    assert error.startswith(f"{path}: {KnowledgeCode.DISK_FAILS.what}; ")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))
     assert stored(path) == [created(number) for number in range(1, 20)]
 
@@ -206,7 +209,7 @@ def test_submit_locked_file_lessons_wait(path: Path) -> None:
     with writer_of(path) as writer, closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         writer.submit(created(1))
-        assert wait_for_error(writer).startswith(f"{path}: another program holds it locked; close that program")
+        assert wait_for_error(writer).startswith(f"{path}: {KnowledgeCode.DATABASE_LOCKED.what}; ")
         other.execute("ROLLBACK")
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
 
@@ -216,7 +219,7 @@ def test_acknowledged_moved_file_is_empty_until_it_is_back(path: Path) -> None:
     with writer_of(path) as writer:
         path.rename(aside)
         writer.submit(created(1))
-        assert "was moved, deleted or replaced while in use; put the same files back" in wait_for_error(writer)
+        assert wait_for_error(writer) == str(KnowledgeError(KnowledgeCode.MOVED_IN_USE, where=path))
         assert writer.acknowledged() == []
         aside.rename(path)
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
@@ -252,7 +255,7 @@ def test_error_dead_thread_is_told(path: Path) -> None:
 
     writer = JournalWriter(Journal.open(path, BINDING), now=stopped_clock)
     writer.submit(created(1))
-    assert "its writer ended by OSError('no clock'); restart the robot program" in wait_for_error(writer)
+    assert "OSError('no clock')" in wait_for_error(writer)
     assert not writer.flush(timeout_s=60)
     with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, count=1):
         writer.close()
@@ -264,12 +267,12 @@ def test_failed_close_at_the_end_is_the_saving_error(path: Path, monkeypatch: py
 
     def close_badly(journal: Journal) -> None:
         close(journal)
-        raise KnowledgeError(KnowledgeCode.LOCK_NOT_RELEASED, where=path, error="no such lock")
+        raise KnowledgeError(KnowledgeCode.LOCK_NOT_RELEASED, where=path, error="ENOLCK")
 
     monkeypatch.setattr(Journal, "close", close_badly)
     writer = writer_of(path)
     with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, count=0), writer:
         writer.submit(created(1))
     assert writer.saving_error is not None
-    assert "no such lock" in writer.saving_error
+    assert "ENOLCK" in writer.saving_error
     assert [receipt.error for receipt in writer.acknowledged()] == [None]
