@@ -146,8 +146,10 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
                 content = b"".join(part.content for part in parts)
                 assert hashlib.sha256(content).hexdigest() == made.extra["sha256"]
                 assert content == (tmp_path / folder / made.extra["name"]).read_bytes()
-            with pytest.raises(RefusedError):
+            with pytest.raises(RefusedError) as caught:
                 await anext(robot.file_parts("knowledge.sqlite"))
+            assert caught.value.answer is not None
+            assert caught.value.answer.code is RefusalCode.NO_FILE
     given = read_package(tmp_path / "exported" / str(made.extra["name"]))
     assert len(given.lessons) == 1
 
