@@ -162,7 +162,7 @@ class TaskSettings(Settings):
 
     name: Name
     """Name of the task, also in the names of its files."""
-    what: Sentence | None = None
+    what: Sentence = ""
     """Task in one sentence to its teacher, such as "Teach it to follow the wall on its left"; made from the name by
     default.
     """
