@@ -50,10 +50,7 @@ from kurt2rt.core.teaching.commands import (
 
 
 def command_of(device: str, command_id: str, request: CommandRequest) -> Command:
-    """Return the command of a request, with the name of its device as teacher.
-
-    Raises AssertionError for a request that is not for the tick.
-    """
+    """Return the command of a request, with its device as teacher. Raises AssertionError for one not for the tick."""
     match request:
         case BehaviourRequest(action=action, ticks=ticks):
             return RunBehaviour(command_id, device, action, ticks, request.seen)

@@ -67,7 +67,6 @@ async def run_in_real_time(
         actions = tuple(runtime.level.repertoire)
         teacher = build_teacher(fixture.task, fixture.settings, actions, seed=SEED, session="bench")
         runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
-        ticks_per_checkpoint = round(1 / period_s)
 
         def after_tick(record: TickRecord) -> None:
             nonlocal driving
@@ -75,7 +74,7 @@ async def run_in_real_time(
             command = teacher.update(view_of_tick(record))
             if command is not None:
                 runtime.inbox.put(command)
-            if record.tick % ticks_per_checkpoint == 0:
+            if record.tick % round(1 / period_s) == 0:
                 counted = runtime.statistics
                 writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
 

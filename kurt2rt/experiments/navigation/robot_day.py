@@ -38,7 +38,6 @@ async def teach_and_send(
 
     Args:
         factory: opens the simulations.
-        settings: of the robot.
         task: with errands.
         knowledge: path of the file.
         seed: of robot, guide and teacher.

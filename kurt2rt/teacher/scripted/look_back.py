@@ -24,6 +24,8 @@ class Mistake:
     """Tick in which the teacher believes that it began."""
     action: str
     """Action that the teacher names."""
+    is_slip: bool = False
+    """True if the finger slips: it is not the action that the teacher means."""
 
 
 class LookBack:
@@ -34,7 +36,7 @@ class LookBack:
 
     def __init__(self, mistake: Mistake, takes: DelaySampler, period_s: float) -> None:
         """Plan the presses; `takes` draws the time to find the moment, `period_s` is the length of a tick."""
-        self._mistake = mistake
+        self.mistake = mistake
         self._takes = takes
         self._looks_again_ticks = round(_LOOKS_AGAIN_S / period_s)
         self._step: _Step = "stop"
@@ -59,7 +61,7 @@ class LookBack:
         if self._step == "looks":
             self._step = "taught"
             self.lesson = next_id()
-            return Correct(self.lesson, SCRIPTED, self._mistake.action, decision_tick=self._mistake.tick)
+            return Correct(self.lesson, SCRIPTED, self.mistake.action, decision_tick=self.mistake.tick)
         if self._step in ("taught", "resumed"):
             self._step, self._due = "resumed", now + self._looks_again_ticks
             return Resume(next_id(), SCRIPTED, seen_tick=picture.tick)

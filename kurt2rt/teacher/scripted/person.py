@@ -8,7 +8,7 @@ from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
+from kurt2rt.core.teacher_settings import Delay, PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.action_groups import STAND
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
@@ -52,6 +52,34 @@ class _PlannedUndo:
     """Tick of the press."""
     lesson: str
     """Command id of the wrong press."""
+
+
+class _Draws:
+    """All chance of a person: one random stream for each kind of event."""
+
+    def __init__(self, person: PersonSettings, period_s: float, of: str) -> None:
+        """Begin the streams; `of` tells them from those of another lesson."""
+
+        def delays(delay: Delay, name: str) -> DelaySampler:
+            return DelaySampler(delay, person.slower_per_minute, period_s, name + of)
+
+        self.question_delay = delays(person.question_delay, "question delays")
+        self.mistake_delay = delays(person.mistake_delay, "mistake delays")
+        self._look_back_delay = delays(person.look_back.takes, "looks back")
+        self.attention = Attention(person.lapses, period_s, "lapses" + of)
+        self.errors = random.Random("errors" + of)
+        self.slips = random.Random("slips that are noticed" + of)
+        self._moments = random.Random("moments of mistakes" + of)
+        self._moment_spread = person.look_back.moment_spread_s / period_s
+        self._period_s = period_s
+
+    def look_back(self, mistake: Mistake) -> LookBack:
+        """Return the correction of a mistake by rewind."""
+        return LookBack(mistake, self._look_back_delay, self._period_s)
+
+    def moment_error_ticks(self) -> int:
+        """Return the error of the moment that the person takes for the begin of a mistake."""
+        return round(self._moments.gauss(0.0, self._moment_spread))
 
 
 class _Hand:
@@ -117,17 +145,7 @@ class ScriptedPerson(BasicTeacher):
         # No slip of the finger teaches standing: the page asks for a second touch.
         self._slip_actions = [each for each in sense.actions if sense.groups.get(each, each) != STAND]
 
-        def stream(name: str) -> str:
-            return f"{name} of {session}, seed {seed}"
-
-        slower = person.slower_per_minute
-        self._question_delay = DelaySampler(person.question_delay, slower, period_s, stream("question delays"))
-        self._mistake_delay = DelaySampler(person.mistake_delay, slower, period_s, stream("mistake delays"))
-        self._look_back_delay = DelaySampler(person.look_back.takes, slower, period_s, stream("looks back"))
-        self._attention = Attention(person.lapses, period_s, stream("lapses"))
-        self._errors = random.Random(stream("errors"))
-        self._slips = random.Random(stream("slips that are noticed"))
-        self._moments = random.Random(stream("moments of mistakes"))
+        self._draws = _Draws(person, period_s, f" of {session}, seed {seed}")
         self._presses = PressLimit(person.presses_per_minute, period_s)
         self.times = HumanTimes(person, self._presses, period_s=period_s, seed=seed, session=session)
         self._mistakes = MistakeWatcher(person.notices, sense.groups, period_s)
@@ -141,8 +159,6 @@ class ScriptedPerson(BasicTeacher):
         self._hold_ticks = round(profile.hold_s / period_s)
         self._hand: _Hand | None = None
         self._look_back: LookBack | None = None
-        self._look_back_errs = False
-        self._period_s = period_s
         self._press_id = 0
         self._seen: TeacherView | None = None
         self._now = 0
@@ -170,7 +186,7 @@ class ScriptedPerson(BasicTeacher):
                 self._hold_on(self._hand, picture)
             elif self._look_back is not None:
                 self._go_on_looking_back(self._look_back, picture)
-            elif self._attention.is_on(self._now) and self._now >= self._ignore_until:
+            elif self._draws.attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
         if self._hand is None and self._look_back is None:
             self._press_if_due()
@@ -184,11 +200,11 @@ class ScriptedPerson(BasicTeacher):
             self._mistakes.reset()
             self._correction = None
             if self._answer is None:
-                self._answer = _PlannedPress(self._now + self._question_delay.draw(self._now), picture)
+                self._answer = _PlannedPress(self._now + self._draws.question_delay.draw(self._now), picture)
             else:
                 self._answer = _PlannedPress(self._answer.due, picture)
         elif self._may_correct(picture) and self._mistakes.update(picture, self._right(picture)):
-            due = self._now + self._mistake_delay.draw(self._now)
+            due = self._now + self._draws.mistake_delay.draw(self._now)
             self._correction = _PlannedPress(due, self._corrected_picture(picture))
 
     def _may_correct(self, picture: TeacherView) -> bool:
@@ -232,10 +248,9 @@ class ScriptedPerson(BasicTeacher):
             self._begin_hold(action, is_right=action == right)
             return
         if not answers and profile.corrects_by == "rewind":
-            error_ticks = round(self._moments.gauss(0.0, self._person.look_back.moment_spread_s) / self._period_s)
-            mistake = Mistake(max(0, picture.tick + error_ticks), action)
-            self._look_back = LookBack(mistake, self._look_back_delay, self._period_s)
-            self._look_back_errs = action != right
+            moment = max(0, picture.tick + self._draws.moment_error_ticks())
+            mistake = Mistake(moment, action, is_slip=action != right)
+            self._look_back = self._draws.look_back(mistake)
             return
         seen_tick = picture.tick if self._seen is None else self._seen.tick
         command: Command
@@ -251,8 +266,8 @@ class ScriptedPerson(BasicTeacher):
 
     def _plan_undo(self, lesson: str) -> None:
         """Plan the undo of an own wrong press, if the person notices it."""
-        if self._slips.random() < self._person.errors.undone:
-            self._undo = _PlannedUndo(self._now + self._mistake_delay.draw(self._now), lesson)
+        if self._draws.slips.random() < self._person.errors.undone:
+            self._undo = _PlannedUndo(self._now + self._draws.mistake_delay.draw(self._now), lesson)
 
     def _send(self, command: Command) -> None:
         """Send a press, and look away from pictures from before its effect."""
@@ -267,7 +282,7 @@ class ScriptedPerson(BasicTeacher):
                 self._presses.count()
             self._send(command)
         if look_back.over:
-            if self._look_back_errs:
+            if look_back.mistake.is_slip:
                 self._plan_undo(look_back.lesson)
             self._look_back = None
             self._ignore_until = self._now
@@ -277,9 +292,9 @@ class ScriptedPerson(BasicTeacher):
         ends = self._now + self._hold_ticks
         hand = _Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
         if not is_right:  # a wrong button is a mistake to be noticed
-            noticed = self._now + self._mistake_delay.draw(self._now)
+            noticed = self._now + self._draws.mistake_delay.draw(self._now)
             hand.stay(noticed)
-            if self._slips.random() < self._person.errors.undone:
+            if self._draws.slips.random() < self._person.errors.undone:
                 hand.ends = noticed
                 self._undo = _PlannedUndo(noticed + self._effect_ticks, hold_id(SCRIPTED, self._press_id))
         self._hand = hand
@@ -303,6 +318,6 @@ class ScriptedPerson(BasicTeacher):
         return self._sense.policy.choose(picture.infrared_counts, picture.behaviour)
 
     def _choose(self, right: str, error_rate: float) -> str:
-        if self._errors.random() >= error_rate:
+        if self._draws.errors.random() >= error_rate:
             return right
-        return self._errors.choice([action for action in self._slip_actions if action != right])
+        return self._draws.errors.choice([action for action in self._slip_actions if action != right])
