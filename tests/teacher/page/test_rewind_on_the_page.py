@@ -14,6 +14,14 @@ const slider = document.querySelector('#rewind-time');
 slider.value = arguments[0];
 slider.dispatchEvent(new Event('input'));
 """
+_TOUCH_AND_STOP = """
+window.sent = [];
+const { send } = WebSocket.prototype;
+WebSocket.prototype.send = function (message) { window.sent.push(message); return send.call(this, message); };
+document.querySelector('[data-action=spin_left]').click();
+document.querySelector('#stop').dispatchEvent(new PointerEvent('pointerdown'));
+document.querySelector('#stop').click();
+"""
 
 
 @pytest.fixture
@@ -59,6 +67,19 @@ def test_then_go_lets_the_robot_drive_on_after_the_lesson(lesson: Lesson) -> Non
     names = [command[0] for command in lesson.robot.told]
     assert names.index("correct") < names.index("resume")
     lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
+
+
+def test_then_go_does_not_lift_a_stop_after_the_touch(lesson: Lesson) -> None:
+    enter(lesson)
+    lesson.phone.touch("#rewind-go")
+    before = len(lesson.robot.told_of("stop"))
+    # Both in one turn of the page's loop, so that the stop comes before the answer to the lesson.
+    lesson.phone.run(_TOUCH_AND_STOP)
+    lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "the lesson is given")
+    lesson.phone.wait(lambda: len(lesson.robot.told_of("stop")) > before, "STOP is sent")
+    lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].pending"), "the lesson is answered")
+    lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].saved"), "the page has gone on")
+    assert not any("resume" in str(message) for message in lesson.phone.run("return window.sent;"))
 
 
 @pytest.mark.parametrize("button", ["#rewind-close", "#go"])

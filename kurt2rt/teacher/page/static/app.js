@@ -155,9 +155,9 @@ function touchedAgain() {
 
 // Corrects the picked moment; with "then go" the robot drives on, unless it was stopped since this touch.
 async function correctEarlier(action) {
-  const { picture } = link;
+  const { picture, stops } = link;
   const answer = await sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
-  if (!answer?.accepted || !rewind.open || !rewind.drivesOn) return;
+  if (!answer?.accepted || !rewind.open || !rewind.drivesOn || link.stops !== stops) return;
   const went = await link.command("resume", {}, picture);
   if (went.accepted) rewind.leave();
   else showAnswer(went);

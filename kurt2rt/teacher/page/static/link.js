@@ -23,6 +23,7 @@ export class Link extends EventTarget {
   #stopSentMs = -Infinity;
   #leaving = false;
   picture = null; // number of the state on the screen
+  stops = 0; // number of stops from this page
   state = null;
   pageRttMs = null;
 
@@ -103,6 +104,7 @@ export class Link extends EventTarget {
   // Sends a stop, with or without a fresh state. It stays pending, also over a broken link, until the robot answers
   // or GO is touched.
   async stop() {
+    this.stops += 1;
     this.#setStopPending(true);
     if (this.open) {
       const answer = await this.#sendStop();
