@@ -87,6 +87,7 @@ def test_bus_off_is_the_state_of_a_controller_that_left(state: BusState) -> None
     state.note(error_frame(0x040))
     assert state.off
     assert state.controller is ControllerState.OFF
+    assert state.trouble.startswith("bus can0: ")
 
 
 def test_a_restarted_controller_is_back(state: BusState) -> None:

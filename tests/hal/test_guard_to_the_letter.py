@@ -94,6 +94,6 @@ def test_watchdog_thread_has_a_name_and_is_a_daemon(ends: Ends) -> None:
     with Watchdog(Guard(ROBOT, ends[0]), 0.1) as watchdog:
         (thread,) = [thread for thread in threading.enumerate() if thread.name == "watchdog"]
         assert thread.daemon
-        with pytest.raises(RuntimeError, match="already"):
+        with pytest.raises(RuntimeError, match=r"^the watchdog"):
             watchdog.start()
     assert not thread.is_alive()
