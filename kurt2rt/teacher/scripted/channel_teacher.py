@@ -111,7 +111,9 @@ async def _teach(
         await supervisor.update(state, stopped=_person_stop(robot, state) is not None)
         command = teacher.update(view_of_state(state), state.tick - before)
         before = state.tick
-        if command is not None:
+        # A teacher who looks back resumes after a stop of its own only.
+        lifts_stop = isinstance(command, Resume) and _person_stop(robot, state) is not None
+        if command is not None and not lifts_stop:
             lessons += await _send(robot, command, state.tick)
     return lessons
 

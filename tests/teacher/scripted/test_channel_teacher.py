@@ -315,6 +315,24 @@ async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandI
     assert correction.decision_tick == wrong.tick
 
 
+async def test_teach_by_script_rewind_does_not_lift_a_person_s_stop(robot: StandInRobot, client: TeacherClient) -> None:
+    robot.mind = Mind(robot)
+    task = taught_by(short(each_phase_s=4.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
+    with anyio.fail_after(10.0):
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
+            await robot.hears(PhaseRequest, 2)
+            robot.show(cause="rla", action="back", rla=1)
+            await robot.hears(StopRequest)
+            robot.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.SAID_STOP, "anna"))
+            await robot.hears(CorrectRequest)
+            for _ in range(30):
+                robot.show()
+                await anyio.sleep(0.02)
+            tasks.cancel_scope.cancel()
+    assert robot.all_of(ResumeRequest) == []
+
+
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, simulated=False)
     with pytest.raises(RefusedError, match="kurt2-indoor"):
