@@ -156,7 +156,6 @@ class DoubtMeter:
         """
         if self._taught is None:
             self._taught = self._read_lessons()
-            self._nearest = None
         if self._nearest != nearest:
             limits, own = self._taught.get(behaviour, ()), self._rows.get(nearest)
             self._nearest = nearest
