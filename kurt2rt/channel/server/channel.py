@@ -94,7 +94,9 @@ class Channel:
             elif result.lesson:
                 self._unsaved[result.command_id] = result.outcome
             else:
-                handler.settle(result.command_id, done(tick, result.outcome))
+                # The lessons of a hold, or of a drive by hand, have an id of their own, which the outcome names.
+                lesson = result.outcome.fields.get("lesson")
+                handler.settle(result.command_id, done(tick, result.outcome, lesson=lesson))
         self._states.on_tick(record)
         self._explainer.follow(record)
         self._ticks += 1
@@ -108,7 +110,7 @@ class Channel:
         command_id, tick = acknowledgement.command_id, self.handler.tick
         outcome = self._unsaved.pop(command_id, None)
         if acknowledgement.error is None:
-            reply = done(tick, outcome, row=acknowledgement.sequence)
+            reply = done(tick, outcome, row=acknowledgement.sequence, lesson=self.handler.lesson_of(command_id))
         else:
             reply = unsaved(Outcome.of(RefusalCode.NOT_SAVED, says=acknowledgement.error), tick)
         self.handler.settle(command_id, reply)

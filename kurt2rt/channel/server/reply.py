@@ -60,13 +60,18 @@ def unsaved(outcome: Outcome, tick: int) -> Reply:
     return Reply(ReplyStatus.UNSAVED, {"t": tick, "why": "unsaved", **plain_outcome(outcome)})
 
 
-def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
+def done(tick: int, outcome: Outcome | None = None, *, lesson: object = None, **more: Any) -> Reply:
     """Return the reply to a request that was carried out, and is durable if it has to be.
 
-    `tick`: newest tick. `outcome`: code and fields for the teacher; None: no text. `more`: further keys of the answer.
+    Args:
+        tick: newest tick.
+        outcome: code and fields for the teacher. None: no text.
+        lesson: id that undoes what the request taught. None: it taught nothing, and the key is left out.
+        more: further keys of the answer.
     """
     shown = {"text": ""} if outcome is None else plain_outcome(outcome)
-    return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **shown, **more})
+    taught = {} if lesson is None else {"lesson": lesson}
+    return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **shown, **taught, **more})
 
 
 def plain_outcome(outcome: Outcome) -> dict[str, Any]:

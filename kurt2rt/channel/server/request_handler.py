@@ -102,6 +102,10 @@ class RequestHandler:
         """Resolve the reply to a pending command; do nothing for an id that is not pending."""
         self._pending.settle(command_id, reply)
 
+    def lesson_of(self, command_id: str) -> str | None:
+        """Return the id that undoes the lesson of a command; None if the command gave no lesson."""
+        return None if self._runtime.level.system.lesson(command_id) is None else command_id
+
     async def answer(self, sender: Sender, request: Request) -> Reply:
         """Return the reply to a request of an authenticated sender; refusals are replies, too.
 
@@ -165,7 +169,7 @@ class RequestHandler:
         waiting = self._pending.get(command_id)
         if waiting is None:
             if self._runtime.handler.was_handled(command_id):  # before this start of the program, or long ago
-                return done(self.tick, Outcome(ResultCode.REPEATED))
+                return done(self.tick, Outcome(ResultCode.REPEATED), lesson=self.lesson_of(command_id))
             longest = MOVING_TICKS if isinstance(request, _MOVING) else COMMAND_TICKS
             stale = self._stale(request.boot, request.seen, longest)
             if stale is not None:

@@ -83,6 +83,16 @@ class Answer:
     """Code and fields; None if the robot told no code that is known here."""
 
     @property
+    def lesson(self) -> str | None:
+        """Id that `undo` takes to undo what the command taught; None if it taught nothing.
+
+        An earlier robot tells it only for held actions and drives by hand, in the outcome.
+        """
+        fields = {} if self.outcome is None or not self.accepted else self.outcome.fields
+        lesson = self.extra.get("lesson", fields.get("lesson"))
+        return lesson if isinstance(lesson, str) else None
+
+    @property
     def code(self) -> Code | None:
         """Code of the outcome; None if the robot told no code that is known here."""
         return None if self.outcome is None else self.outcome.code

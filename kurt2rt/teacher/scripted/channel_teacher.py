@@ -14,11 +14,12 @@ from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, Resume, Stop, Teach, Undo
+from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView, radius_fraction
 from kurt2rt.teacher.scripted.build import build_teacher
+from kurt2rt.teacher.scripted.command_sender import CommandSender
 from kurt2rt.teacher.scripted.supervisor import ScriptedSupervisor
 
 Say = Callable[[str], None]
@@ -88,7 +89,7 @@ async def _teach(
     """Teach phases 1 and 2; return the number of lessons, None if another teacher took the robot."""
     corrections_from = round(task.teaching.supervised_s / period_s)
     over_at = round(task.teaching.duration_s / period_s)
-    lessons = 0
+    sender, lessons = CommandSender(robot), 0
     first: int | None = None
     before = 0
     async for state in robot.states():
@@ -114,7 +115,7 @@ async def _teach(
         # A teacher who looks back resumes after a stop of its own only.
         lifts_stop = isinstance(command, Resume) and _person_stop(robot, state) is not None
         if command is not None and not lifts_stop:
-            lessons += await _send(robot, command, state.tick)
+            lessons += await sender.send(command, state.tick)
     return lessons
 
 
@@ -217,40 +218,6 @@ def view_of_state(state: State) -> TeacherView:
         radius_fraction=radius_fraction(state.rla, state.nearest, state.distance, state.radius),
         tick=state.tick,
     )
-
-
-async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
-    """Send a command once; return 1 if it gave a lesson, else 0; a hold counts as one."""
-    try:
-        match command:
-            case Teach(action=action, decision_tick=of):
-                answer = await robot.answer(action, of=tick if of is None else of)
-            case Correct(action=action, late=True):
-                answer = await robot.correct(action, late=True)
-            case Correct(action=action, decision_tick=of):
-                answer = await robot.correct(action, of=tick if of is None else of)
-            case HoldAction(action=action):
-                robot.press_action(action)
-                return 0
-            case Stop(press_id=None):
-                await robot.stop()
-                return 0
-            case Resume():
-                await robot.resume()
-                return 0
-            case Undo():
-                await robot.undo()  # its own wrong lesson is the last one, because no other teacher is in charge
-                return 0
-            case Stop():
-                released = await robot.let_go()
-                return int(released is not None and released.accepted)
-            case DeleteRla(rla_id=rla_id):
-                answer = await robot.delete(rla_id)
-            case _:
-                raise AssertionError(f"no command of a scripted teacher: {command}")
-    except NoAnswerError:
-        return 0
-    return int(answer.accepted)
 
 
 async def _must(robot: TeacherClient, give: Callable[[], Awaitable[Answer]], done: Callable[[State], bool]) -> Answer:

@@ -65,7 +65,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
-from kurt2rt.core.teaching.commands import Stop, Watch
+from kurt2rt.core.teaching.commands import Stop, Teach, Watch
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.file_part import FilePart
@@ -347,7 +347,26 @@ async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture
     assert not task.done()
     desk.write()
     reply = await reply_of(task)
-    assert reply == done(desk.tick, Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward"), row=1)
+    lesson = desk.notebook.events[0].origin.command_id
+    taught = Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward")
+    assert reply == done(desk.tick, taught, lesson=lesson, row=1)
+
+
+async def test_answer_without_a_lesson_has_no_key_for_it(desk: ChannelFixture) -> None:
+    taught = await desk.ask(desk.answer())
+    agreed = await desk.ask(desk.answer(), write=False)
+    undone = await desk.ask(desk.command(UndoRequest, taught.body["lesson"]))
+    assert outcome_of(undone) == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: forward")
+    assert ["lesson" in each.body for each in (taught, agreed, undone)] == [True, False, False]
+
+
+async def test_answer_to_the_release_of_a_hold_names_its_lessons(desk: ChannelFixture) -> None:
+    await desk.ask(desk.command(TakeRequest))
+    await desk.stream(desk.hold("back"))
+    desk.run(11)
+    released = await desk.ask(StopRequest(desk.new_id(), 1))
+    assert released.body["lesson"] == released.body["fields"]["lesson"] == "ann-hold-1"
+    assert (await desk.ask(desk.command(UndoRequest, released.body["lesson"]))).status is ReplyStatus.DONE
 
 
 async def test_command_without_change_is_answered_without_disk(desk: ChannelFixture) -> None:
@@ -386,6 +405,16 @@ async def test_command_of_earlier_start_is_answered_as_repeated(
     desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
     assert (reply.status, outcome_of(reply)) == (ReplyStatus.DONE, Outcome(ResultCode.REPEATED))
+    assert "lesson" not in reply.body
+
+
+async def test_repeated_answer_names_the_lesson_that_is_known(desk: ChannelFixture) -> None:
+    request = desk.command(AnswerRequest, "forward", None)
+    lesson = f"ann-{request.command_id.hex()}"
+    desk.runtime.inbox.put(Teach(lesson, "ann", "forward"))
+    desk.run()
+    reply = await desk.ask(request)
+    assert (outcome_of(reply), reply.body["lesson"]) == (Outcome(ResultCode.REPEATED), lesson)
 
 
 async def test_the_same_id_of_two_devices_is_two_commands(desk: ChannelFixture) -> None:

@@ -18,6 +18,25 @@ def test_answer_of_each_code_gives_the_outcome_back(code: ResultCode | RefusalCo
     assert answer.extra == {"row": 7}
 
 
+def test_lesson_is_the_id_in_the_answer() -> None:
+    assert answer_of("2.04 Changed", {"t": 5, "ok": True, "lesson": "phone-0a"}).lesson == "phone-0a"
+
+
+@pytest.mark.parametrize("body", [{}, {"lesson": 7}, {"lesson": None}])
+def test_lesson_of_an_answer_without_an_id_is_none(body: dict[str, Any]) -> None:
+    assert answer_of("2.04 Changed", {"t": 5, "ok": True, **body}).lesson is None
+
+
+def test_lesson_of_a_hold_by_an_earlier_robot_is_in_the_outcome() -> None:
+    released = Outcome.of(ResultCode.HOLD_RELEASED, lessons=2, lesson="phone-hold-3")
+    assert answer_of("2.04 Changed", {"t": 5, "ok": True, **plain_outcome(released)}).lesson == "phone-hold-3"
+
+
+def test_lesson_that_a_refusal_names_is_not_its_own() -> None:
+    refused = plain_outcome(Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="phone-0a"))
+    assert answer_of("4.09 Conflict", {"t": 5, "why": "refused", **refused}).lesson is None
+
+
 @pytest.mark.parametrize(
     "told",
     [

@@ -95,7 +95,10 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             assert (nonsense.accepted, nonsense.why) == (False, "refused")
             assert nonsense.outcome is not None
             assert nonsense.outcome.code is RefusalCode.NO_ACTION
-            assert (await robot.undo(line.command_id)).accepted
+            agreed = await robot.correct("forward", of=asks.tick)
+            assert (agreed.accepted, agreed.lesson) == (True, None)
+            assert answer.lesson == line.command_id
+            assert (await robot.undo(answer.lesson)).accepted
             await state_where(robot, lessons=0)
             (line,) = await robot.lessons()
             assert line.undone

@@ -63,6 +63,7 @@ let page = { seat: "elsewhere", device: "", robot: "" };
 const TEACHES = ["answer", "correct", "correct_at", "teach_shown", "reward", "appraise", "undo", "name"];
 let pendingLessons = 0; // commands of TEACHES without an answer
 let answered = 0; // number of the newest answered one
+let taughtNothing = false; // whether the newest of them but undo was accepted and gave no lesson
 
 // Sends a command and shows its outcome: pending, then saved or refused. Resolves with the answer.
 async function sendCommand(name, args = {}, doing = words(name)) {
@@ -72,6 +73,8 @@ async function sendCommand(name, args = {}, doing = words(name)) {
   const answer = await link.command(name, args);
   pendingLessons -= 1;
   answered = Math.max(answered, answer.done ?? 0);
+  // An earlier robot names no lesson; like a newer one it tells the row of the journal.
+  if (name !== "undo") taughtNothing = answer.accepted && !answer.extra.lesson && answer.extra.row === undefined;
   return showAnswer(answer);
 }
 
@@ -235,7 +238,8 @@ let undoCandidate = null;
 async function prepareUndo() {
   undoCandidate = newestLesson();
   const lesson = await undoCandidate;
-  if (lesson) showMessage("asks", text("undoAgain", { lesson: lesson.text }));
+  // An accepted press that gave no lesson leaves nothing of itself to undo.
+  if (lesson) showMessage("asks", text(taughtNothing ? "undoEarlier" : "undoAgain", { lesson: lesson.text }));
 }
 
 async function undoLast() {

@@ -11,6 +11,7 @@ const TEXTS = {
   awaitPicture: "{action} was not sent: wait for the picture after the last answer",
   questionChanged: "{action} was not sent: the question has just changed, look again",
   undoAgain: "undo {lesson}? touch again",
+  undoEarlier: "your last touch taught nothing; undo the lesson before it, {lesson}? touch again",
   nothingToUndo: "the list has no lesson to undo; nothing was sent",
   driveEnded: "the drive was ended; press again",
   awaitRobot: "waiting for the robot's picture …",

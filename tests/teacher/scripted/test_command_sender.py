@@ -1,0 +1,70 @@
+"""Commands of a scripted teacher over the channel: an undo names the lesson of the press, or is not sent."""
+
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.channel.protocol.request_types import Request
+from kurt2rt.channel.protocol.requests import CorrectRequest, StopRequest, UndoRequest
+from kurt2rt.channel.security.pairing import local_pairing
+from kurt2rt.channel.server.reply import Reply, done
+from kurt2rt.core.rla.lesson_history import hold_id
+from kurt2rt.core.rla.programs import AUTO, SCRIPTED
+from kurt2rt.core.teaching.commands import Correct, HoldAction, Stop, Undo
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.scripted.command_sender import CommandSender
+from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+
+TICK = 40
+WRONG = Correct("s-7", SCRIPTED, "back", decision_tick=TICK)
+UNDO = Undo("s-8", SCRIPTED, WRONG.command_id)
+
+
+@pytest.fixture
+async def robot(tmp_path: Path) -> AsyncIterator[StandInRobot]:
+    local_pairing(tmp_path / "teachers", tmp_path / "devices", AUTO)
+    async with in_a_task_of_its_own(stand_in_robot(tmp_path / "teachers")) as robot:
+        robot.show(teacher=AUTO)
+        yield robot
+
+
+@pytest.fixture
+async def sender(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[CommandSender]:
+    device = TeacherClient(tmp_path / "devices" / AUTO, port=robot.port, patience_s=0.5)
+    async with in_a_task_of_its_own(device) as client:
+        await anext(client.states())
+        yield CommandSender(client)
+
+
+def teaches(robot: StandInRobot, lesson: str | None) -> None:
+    """Let the robot answer each press with the id of a lesson."""
+
+    async def answer(request: Request) -> Reply:
+        return done(TICK, lesson=lesson if isinstance(request, CorrectRequest | StopRequest) else None)
+
+    robot.mind = answer
+
+
+async def test_send_undo_names_the_lesson_of_the_press(robot: StandInRobot, sender: CommandSender) -> None:
+    teaches(robot, "auto-0a")
+    await sender.send(WRONG, TICK)
+    teaches(robot, "auto-0b")
+    await sender.send(Correct("s-9", SCRIPTED, "forward"), TICK)
+    await sender.send(UNDO, TICK)
+    assert [each.lesson for each in robot.all_of(UndoRequest)] == ["auto-0a"]
+
+
+async def test_send_undo_of_a_press_that_taught_nothing_is_not_sent(robot: StandInRobot, sender: CommandSender) -> None:
+    teaches(robot, None)
+    assert await sender.send(WRONG, TICK) == 1
+    await sender.send(UNDO, TICK)
+    assert robot.all_of(UndoRequest) == []
+
+
+async def test_send_undo_of_a_hold_names_all_its_lessons(robot: StandInRobot, sender: CommandSender) -> None:
+    teaches(robot, "auto-hold-1790")
+    await sender.send(HoldAction(SCRIPTED, TICK, 3, "back"), TICK)
+    assert await sender.send(Stop("s-1", SCRIPTED, 3), TICK) == 1
+    await sender.send(Undo("s-2", SCRIPTED, hold_id(SCRIPTED, 3)), TICK)
+    assert [each.lesson for each in robot.all_of(UndoRequest)] == ["auto-hold-1790"]
