@@ -41,6 +41,7 @@ _PANELS = {
         "paper": "Teach and examine every basic task of the paper, and compare with its results.",
         "phases": "Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.",
         "surprise": "Measure how surprised taught robots are: on known ground, and after something changed.",
+        "transfer": "Measure how many presses a robot that was taught at home needs to be right in a new world.",
         "doubt": "Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.",
         "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
         "soak": "Let a day of the robot pass in simulated time in which everything fails.",

@@ -63,6 +63,7 @@ def test_every_command_is_found() -> None:
             "table",
             "graph",
             "surprise",
+            "transfer",
             "doubt",
             "faults",
             "soak",

@@ -38,7 +38,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
 }
 REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
-    *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("doubt",), ("why",)),
+    *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
     *(("knowledge", name) for name in ("list", "lessons", "show", "check", "diff", "table")),
 }
 

@@ -33,6 +33,8 @@ _VALUES: dict[str, float | str] = {
     "direction": "worse",
     "junctions": 1600,
     "without_error": 18,
+    "presses": 20,
+    "median": "7.5",
 }
 
 

@@ -91,6 +91,34 @@ async def run_lesson(
     return lesson, read_lessons(knowledge, settings, task)
 
 
+async def run_exam(
+    factory: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    setup: ExamSetup,
+    report: Report,
+) -> ExamResult:
+    """Open the setup's world, drive there without a teacher and return the result.
+
+    `events`: lessons of the robot; the policy's own drive does without them.
+
+    Raises:
+        SettingsError: task and world do not fit.
+        LessonLostError: the robot refused a command.
+    """
+    drive_name = "the teacher's own drive" if setup.teacher_policy else "exam without teacher"
+    with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
+        return await examine(
+            simulation,
+            settings,
+            task,
+            events,
+            setup,
+            lambda done_s: report(f"{drive_name}, world {setup.world}", done_s, task.exam.duration_s),
+        )
+
+
 async def run_exams(
     factory: SimulationFactory,
     settings: RobotSettings,
@@ -120,21 +148,9 @@ async def run_exams(
         LessonLostError: the robot refused a command.
     """
 
-    async def drive(world: str, *, teacher_policy: bool) -> ExamResult:
-        drive_name = "the teacher's own drive" if teacher_policy else "exam without teacher"
-        with closing(factory.open(world, seed, "exam")) as simulation:
-            return await examine(
-                simulation,
-                settings,
-                task,
-                events,
-                ExamSetup(world, seed, teacher_policy),
-                lambda done_s: report(f"{drive_name}, world {world}", done_s, task.exam.duration_s),
-            )
-
     results = []
     for world in worlds:
-        learned = await drive(world, teacher_policy=False)
-        teacher = await drive(world, teacher_policy=True)
+        learned = await run_exam(factory, settings, task, events, ExamSetup(world, seed), report)
+        teacher = await run_exam(factory, settings, task, events, ExamSetup(world, seed, teacher_policy=True), report)
         results.append(WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success)))
     return tuple(results)

@@ -75,6 +75,8 @@ class TrainingResult:
     """Further measures of the metric."""
     workload: tuple[WorkloadMinute, ...] = ()
     """Commands and manual acts of the teacher, minute by minute."""
+    press_ticks: tuple[int, ...] = ()
+    """Tick in which each press was sent."""
     positive_rewards: int = 0
     negative_rewards: int = 0
     refused_signals: int = 0
@@ -194,7 +196,7 @@ class TrainingRun(Episode):
         await self.run(self._planned_ticks)
 
     def on_tick(self, record: TickRecord) -> None:
-        """Let the teacher react, and rescue or reposition the robot as planned.
+        """Let the teacher react, and rescue or reposition the robot as planned; end before a press too many.
 
         Raises LessonLostError if the robot refused a command.
         """
@@ -207,6 +209,9 @@ class TrainingRun(Episode):
         self._rescue_if_stuck(record.tick)
         self._reposition_as_planned(record.tick)
         self._command_behaviour(record.behaviour)
+        most = self._plan.most_presses
+        if most is not None and len(self._workload.press_ticks) > most:
+            self.runtime.scheduler.end()  # the press waits in the inbox, which no further tick reads
 
     def on_second(self, record: TickRecord) -> None:
         """Record the growth of the RLA system and the agreement of the critic."""
@@ -223,7 +228,7 @@ class TrainingRun(Episode):
             teacher=self.task.teaching.profile.name,
             seed=self._seed,
             world=self.task.teaching.world,
-            teaching_s=self._planned_ticks * self.period_s,
+            teaching_s=self.ticks * self.period_s,
             rlas=system.rlas,
             knowledge_hash=system.knowledge_hash(),
             asks=len(self.ask_positions),
@@ -241,14 +246,15 @@ class TrainingRun(Episode):
             unit=self.metric.unit,
             findings=self.metric.findings,
             workload=self._workload.minutes,
+            press_ticks=tuple(self._workload.press_ticks),
             positive_rewards=self._positive_rewards,
             negative_rewards=self._negative_rewards,
             refused_signals=self._refused,
             collisions=self.simulation.collisions,
             unknown_rescues=self._unknown_rescues,
-            share_unknown=self.unknown_ticks / max(self._planned_ticks, 1),
+            share_unknown=self.unknown_ticks / max(self.ticks, 1),
             agreement=tuple(self._agreements),
-            share_trusted=self._trusted_ticks / max(self._planned_ticks, 1),
+            share_trusted=self._trusted_ticks / max(self.ticks, 1),
             saved=runtime.snapshot(),
             mid_rlas=system.rlas_at(MID),
             mid_asks=self.mid_asks,

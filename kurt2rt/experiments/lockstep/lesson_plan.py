@@ -50,7 +50,8 @@ class LessonPlan:
     """So often of the times that it is set down."""
     rescues_who_asks: bool = False
     """True if the time of the stuck detector continues after a question."""
-
+    most_presses: int | None = None
+    """Number of presses after which the next one ends the run and teaches nothing; None: no limit."""
     corrects_basic: bool = True
     """True if the basic level is corrected under a mid level, too; questions are answered in any case."""
 

@@ -58,6 +58,8 @@ class TeacherWorkload:
         """Count for `ticks` ticks of `period_s`; the last minute may be shorter."""
         self._ticks_per_minute = round(60.0 / period_s)
         self._held_press = 0
+        self.press_ticks: list[int] = []
+        """Tick of each press, in order; one tick may have several."""
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
@@ -85,13 +87,17 @@ class TeacherWorkload:
                 now = now._replace(undone=now.undone + 1)
             case Appraise():
                 now = now._replace(appraisals=now.appraisals + 1)
-        self._minutes[place] = now
+        self._set(place, now, tick)
 
     def count_manual(self, tick: int, what: Hands) -> None:
         """Count a manual act of a kind, such as a rescue, in the minute of `tick`."""
         place = self._place(tick)
         now = self._minutes[place]
-        self._minutes[place] = now._replace(**{what: getattr(now, what) + 1})
+        self._set(place, now._replace(**{what: getattr(now, what) + 1}), tick)
+
+    def _set(self, place: int, minute: WorkloadMinute, tick: int) -> None:
+        self.press_ticks.extend([tick] * (minute.presses - self._minutes[place].presses))
+        self._minutes[place] = minute
 
     def _place(self, tick: int) -> int:
         return min((tick - 1) // self._ticks_per_minute, len(self._minutes) - 1)

@@ -23,6 +23,9 @@ class Target(StrEnum):
     MID_RLAS = "mid rlas"
     DECISIONS_RIGHT = "decisions right"
     WITHOUT_ERROR = "without error"
+    RIGHT_IN_NEW_WORLD = "right in new world"
+    PRESSES_UNTIL_RIGHT = "presses until right"
+    RIGHT_AT_HOME = "right at home"
 
 
 class Result(StrEnum):

@@ -48,6 +48,17 @@ _TEXTS: Mapping[Target, tuple[str, str, str]] = {
         "at least {needed} of {robots}",
         "{without_error} of {robots}",
     ),
+    Target.RIGHT_IN_NEW_WORLD: (
+        "right there after {presses} presses",
+        "at least {needed} of {judged}",
+        "{right} of {judged}",
+    ),
+    Target.PRESSES_UNTIL_RIGHT: ("presses until right, median", "at most {limit}", "{median}"),
+    Target.RIGHT_AT_HOME: (
+        "right at home afterwards",
+        "{robots} of {robots}",
+        "{right} of {robots} (before: {before})",
+    ),
 }
 """Name, requirement and measured value."""
 

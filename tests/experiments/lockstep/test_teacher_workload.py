@@ -50,6 +50,7 @@ def test_presses_are_all_that_a_correction_took() -> None:
     (minute,) = load.minutes
     assert minute == WorkloadMinute(corrections=1, stops=1, undone=1)
     assert minute.presses == 3
+    assert load.press_ticks == [1, 2, 3]
 
 
 def test_the_release_of_a_hold_is_no_press() -> None:
@@ -57,6 +58,16 @@ def test_the_release_of_a_hold_is_no_press() -> None:
     load.count(1, HoldAction("Ann", 1, 7, "a"))
     load.count(2, Stop("1", "Ann", press_id=7))
     assert load.minutes[0].presses == 1
+    assert load.press_ticks == [1]
+
+
+def test_press_ticks_are_of_all_minutes() -> None:
+    load = TeacherWorkload(ticks=12_000, period_s=0.01)
+    load.count(5, Teach("1", "Ann", "a"))
+    load.count_manual(7, "set_down")
+    load.count(6_001, Correct("2", "Ann", "a"))
+    load.count_manual(6_002, "go")
+    assert load.press_ticks == [5, 6_001, 6_002]
 
 
 def test_workload_leaves_out_other_commands() -> None:

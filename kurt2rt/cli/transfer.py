@@ -1,0 +1,142 @@
+"""`kurt2rt transfer`."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Changes,
+    Jobs,
+    RobotName,
+    changes_of,
+    parse_seeds,
+    results_option,
+    task_option,
+    teacher_option,
+)
+from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.experiments.study.eligibility import reasons_against_judging
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
+from kurt2rt.experiments.transfer.tables import all_tables
+from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON
+from kurt2rt.platform.text_table import print_whole
+
+_WORLDS = {"streets": "streets-SEED"}
+"""New world of a task without --world; rooms-SEED for other tasks."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt transfer`."""
+
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
+    teacher: Annotated[str, teacher_option("ordinary")] = "ordinary"
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 1100-1119.")] = "1100-1119"
+    world: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="New world, as in other commands; SEED in the name stands for the robot's seed. May be given again: "
+            "each robot is taught in each of them by itself. Default: rooms-SEED, of streets streets-SEED.",
+            show_default=False,
+        ),
+    ] = None
+    after: Annotated[
+        list[int] | None,
+        typer.Option(
+            min=0,
+            help="Number of presses in the new world after which the robot is examined there; may be given again. "
+            f"Default: {', '.join(map(str, AFTER))}.",
+            show_default=False,
+        ),
+    ] = None
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            min=1.0,
+            help="Longest time of teaching in the new world. Default: that of the lesson at home.",
+            show_default=False,
+        ),
+    ] = None
+    controls: Annotated[
+        bool,
+        typer.Option(
+            "--controls",
+            help="Also let the teacher of the new world answer questions only, and teach there robots that know "
+            "nothing from home.",
+        ),
+    ] = False
+    changes: Changes = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
+    robot_settings: RobotName = "kurt2"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def transfer(options: _Options) -> None:
+    """Measure how many presses a robot that was taught at home needs to be right in a new world.
+
+    Each robot is taught in the world of its task. Then the same teacher goes on
+    in a new world, and answers and corrects there as at home. The robot is
+    examined there without its teacher after 0, 2, 5, 10, 15 and 20 presses, and
+    at home at the end, each time against the policy's own drive from the same
+    start. The result is a curve: the share of robots that are right, by presses.
+
+    For example, other rooms for each robot, with controls; and other streets:
+
+        kurt2rt transfer --controls
+        kurt2rt transfer --task streets --teacher superhuman
+
+    Results are kept in --out with hashes of what made them; a run that was
+    interrupted goes on where it was.
+    """
+    # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.transfer.figures import draw_curves
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    robot = load_robot(options.robot_settings)
+    task = taught_by(load_task(options.task, changes=changes_of(options.changes)), load_teacher(options.teacher))
+    results = Results(options.out)
+    plan = make_plan(
+        task,
+        NewWorlds(_places(task.name, options.world), _after(options.after), options.seconds),
+        parse_seeds(options.seeds),
+        (TAUGHT_ON, *(CONTROLS if options.controls else ())),
+        JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
+    )
+    figure = options.out / "transfer.png"
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        run_missing(plan, results, options.jobs, bar.update)
+        bar.say("figure")
+        study = read_study(plan, results)
+        draw_curves(study, figure)
+    tables = list(all_tables(study))
+    if options.as_json:
+        not_judged = list(reasons_against_judging(plan.seeds))
+        print_json({"tables": tables_of(tables), "not_judged": not_judged, "figure": figure})
+        return
+    print_whole(console_of(), *map(as_rich, tables), f"figure  {figure}")
+
+
+def _places(task: str, worlds: Sequence[str] | None) -> tuple[str, ...]:
+    return tuple(worlds or (_WORLDS.get(task, "rooms-SEED"),))
+
+
+def _after(presses: Sequence[int] | None) -> tuple[int, ...]:
+    """Return the numbers of presses of --after, each once and ascending, or those of the study."""
+    return tuple(sorted(set(presses or AFTER)))

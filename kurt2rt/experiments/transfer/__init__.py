@@ -1,0 +1,1 @@
+"""Study of transfer: presses until a robot that was taught at home is right in a new world."""

@@ -1,0 +1,184 @@
+"""Jobs of the transfer study: a robot is taught at home, and then on in a new world."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report, run_exam, run_lesson
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.route.lesson import copy_knowledge
+from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.experiments.transfer.outcome import Checkpoint, Drive, HomeOutcome, TransferOutcome, drive_of
+from kurt2rt.experiments.transfer.variants import Variant
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+
+def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[int], presses: int) -> int:
+    """Return how many events of a lesson were applied before the press that follows `presses` others.
+
+    A hold teaches until its release, and so all lessons of a press come before the next press.
+
+    Args:
+        events: of the lesson alone, in order.
+        press_ticks: tick in which each press of the lesson was sent; the robot applies it in a later tick.
+        presses: number of presses that count.
+    """
+    if presses >= len(press_ticks):
+        return len(events)
+    return sum(event.origin.tick <= press_ticks[presses] for event in events)
+
+
+@dataclass(frozen=True, slots=True)
+class Examiner:
+    """Examiner of one robot in one world, by the policy's own drive from the same start."""
+
+    factory: SimulationFactory
+    robot: RobotSettings
+    task: TaskSettings
+    world: str
+    seed: int
+    report: Report
+
+    async def drive_policy(self) -> Drive:
+        """Return the policy's own drive; it passes if it has no collision, alarm or standstill.
+
+        Raises SettingsError if task and world do not fit.
+        """
+        policy = await self._drive((), teacher_policy=True)
+        return drive_of(policy, policy.verdict(policy.progress, self.task.exam.success))
+
+    async def examine(self, events: Sequence[TeachingEvent], policy: Drive) -> Drive:
+        """Return the drive of a robot with the knowledge in `events`, judged by the policy's drive.
+
+        Raises SettingsError, LessonLostError.
+        """
+        exam = await self._drive(events, teacher_policy=False)
+        return drive_of(exam, exam.verdict(policy.progress, self.task.exam.success))
+
+    async def _drive(self, events: Sequence[TeachingEvent], *, teacher_policy: bool) -> ExamResult:
+        setup = ExamSetup(self.world, self.seed, teacher_policy)
+        return await run_exam(self.factory, self.robot, self.task, events, setup, self.report)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HomeJob(StudyJob):
+    """Lesson at home, and the exam there."""
+
+    outcome = HomeOutcome
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.task.name} at home, seed {self.seed}"
+
+    @property
+    def stem(self) -> str:
+        """Path of result and knowledge, without the top folder and the ending."""
+        return f"home/{self.task.name}-{self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of the lesson, the exam and the policy's drive in s."""
+        return self.task.teaching.duration_s + 2 * self.task.exam.duration_s
+
+    async def measure(self, knowledge: Path, report: Report) -> HomeOutcome:
+        """Teach the robot at home into the file `knowledge`, examine it there and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError.
+        """
+        lesson, events = await run_lesson(self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report)
+        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
+        policy = await at_home.drive_policy()
+        return HomeOutcome(
+            made_of=self.made_of,
+            seed=self.seed,
+            presses=lesson.presses,
+            rlas=len(lesson.rlas),
+            knowledge_hash=lesson.knowledge_hash,
+            drive=await at_home.examine(events, policy),
+            policy=policy,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TransferJob(StudyJob):
+    """Lesson in a new world, and exams there after some of its presses, and at home at the end.
+
+    The task is that of home.
+    """
+
+    outcome = TransferOutcome
+    variant: Variant
+    world: str
+    """Name of the new world."""
+    place: str
+    """Name of the kind of world, for file names."""
+    after: tuple[int, ...]
+    """Numbers of presses after which the robot is examined, ascending."""
+    seconds: float
+    """Longest time of teaching in the new world."""
+    home: HomeJob
+    """Job of an earlier wave, which taught the robot at home; its knowledge is copied."""
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.task.name} in {self.world}, {self.variant.name}, seed {self.seed}"
+
+    @property
+    def stem(self) -> str:
+        """Path of result and knowledge, without the top folder and the ending."""
+        return f"{self.variant.name}/{self.place}/{self.task.name}-{self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of the lesson, the exams and the policy's drive in s, at most."""
+        return self.seconds + (len(self.after) + 2) * self.task.exam.duration_s
+
+    async def measure(self, knowledge: Path, report: Report) -> TransferOutcome:
+        """Teach on in the new world into the file `knowledge`, examine the robot and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError, and StudyError without the result of home.
+        """
+        task, known = self.variant.task(self.task, self.world), 0
+        if self.variant.knows_home:
+            copy_knowledge(self.home.knowledge, knowledge)
+            known = len(read_lessons(knowledge, self.robot, task))
+        plan = self.variant.plan(task, self.seconds, max(self.after))
+        lesson, events = await run_lesson(
+            self.factory, self.robot, task, knowledge, seed=self.seed, report=report, plan=plan
+        )
+        there = Examiner(self.factory, self.robot, task, self.world, self.seed, report)
+        policy = await there.drive_policy()
+        checkpoints: list[Checkpoint] = []
+        for presses in self.after:
+            lessons = events_before_press(events[known:], lesson.press_ticks, presses)
+            if checkpoints and checkpoints[-1].lessons == lessons:  # the same knowledge drives the same exam
+                drive = checkpoints[-1].drive
+            else:
+                drive = await there.examine(events[: known + lessons], policy)
+            ticks = lesson.press_ticks
+            taught_s = ticks[presses] * self.robot.can.cycle_s if presses < len(ticks) else lesson.teaching_s
+            checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
+        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
+        taught = known + checkpoints[-1].lessons
+        return TransferOutcome(
+            made_of=self.made_of,
+            seed=self.seed,
+            world=self.world,
+            presses=min(lesson.presses, max(self.after)),
+            asks=lesson.asks,
+            corrections=lesson.corrections,
+            collisions=lesson.collisions,
+            rescues=lesson.rescues,
+            teaching_s=lesson.teaching_s,
+            rlas=len(lesson.rlas),
+            knowledge_hash=lesson.knowledge_hash,
+            checkpoints=tuple(checkpoints),
+            policy=policy,
+            home=await at_home.examine(events[:taught], self.results.read(self.home, HomeOutcome).policy),
+        )

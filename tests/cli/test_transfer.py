@@ -1,0 +1,32 @@
+"""`kurt2rt transfer` as a user meets it."""
+
+import json
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine
+
+SHORT = (
+    *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
+    *("--seconds", "3", "--jobs", "1", "--out", "made"),
+)
+
+
+def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
+    words = ("transfer", "--seeds", "1100,1101", "--after", "1", "--after", "0", "--teacher", "superhuman", *SHORT)
+    said = kurt2rt(*words, "--json")
+    assert said.exit_code == 0, said.err
+    document = json.loads(said.out)
+    assert set(document) == {"tables", "not_judged", "figure"}
+    assert [row[:2] for row in document["tables"][-1]["rows"]] == [["1100", "rooms-1100"], ["1101", "rooms-1101"]]
+    assert Path(document["figure"]).is_file()
+    kept = Path("made/results/taught-on/rooms-SEED/wall_following-1100.json")
+    before = kept.stat().st_mtime_ns
+    said = kurt2rt(*words)
+    assert said.exit_code == 0, said.err
+    assert "superhuman" in said.out
+    assert kept.stat().st_mtime_ns == before
+
+
+def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
+    assert "world a" in kurt2rt.refused("transfer", "--world", "a", *SHORT)
+    assert not Path("made").exists()
