@@ -56,7 +56,7 @@ class RuntimeOptions:
     statistics: StatisticsCounter | None = None
     """Counts to go on from; new ones by default."""
     checkpoint: Statistics | None = None
-    """Saved values and expectations of the RLAs."""
+    """Saved values and expectations of the RLAs, and delays of the teachers."""
     level_override: Level | None = None
     """Level that drives instead of the basic level, such as the teacher's own policy. Knowledge and teaching stay
     connected to the basic level; a mid level commands the override as well."""
@@ -104,7 +104,10 @@ class Runtime:
         self.inbox.put(RobotRepositioned())
 
     def snapshot(self) -> Statistics:
-        """Return counts, values and expectations of the active RLAs, to be saved; drop those of deleted RLAs."""
+        """Return counts, values and expectations of the active RLAs and the delays of the teachers, to be saved.
+
+        Counts of deleted RLAs are dropped.
+        """
         counted, system = self.statistics, self.level.system
         counted.drop_deleted(lambda rla_id: system.get(rla_id) is not None)
         return replace(
@@ -112,6 +115,7 @@ class Runtime:
             uses=dict(counted.uses),
             transitions=dict(counted.transitions),
             expectations=self.expectations.snapshot(),
+            answer_delays=self.handler.delay.snapshot(),
         )
 
 
@@ -179,8 +183,8 @@ class _Assembly:
     def _restored_reinforcement(self) -> Reinforcement:
         recent, checkpoint = DecisionHistory(self.definition.dimensions), self._options.checkpoint
         reinforcement = Reinforcement(self._system, recent, self._task.reinforcement, self._period_s)
-        # Counters and expectations are restored by their owners; pass only values here.
-        values = checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={})
+        # Counters, expectations and delays are restored by their owners; pass only values here.
+        values = checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={}, answer_delays={})
         reinforcement.restore(self._events, values)
         return reinforcement
 
@@ -189,6 +193,7 @@ class _Assembly:
         goals = None if self.navigator is None or lessons is None else GoalCommands(self.navigator, lessons)
         # A repertoire of its own: an action run by the teacher must not disturb the same action run by an RLA.
         repertoire = load_task_repertoire(self._task, self._settings)
+        answered = None if self._options.checkpoint is None else self._options.checkpoint.answer_delays
         return CommandHandler(
             self.basic,
             ControlAuthority(repertoire, attended=self._options.attended),
@@ -201,7 +206,7 @@ class _Assembly:
                 self_teaching=self.self_teaching,
                 mid=lessons,
                 goals=goals,
-                delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s)),
+                delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
             ),
             teacher_available=self._options.teacher_available,
         )

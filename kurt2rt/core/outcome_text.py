@@ -217,7 +217,10 @@ def _late_press_text(fields: Mapping[str, Field]) -> str:
     if not isinstance(back, int) or back == 0:
         return ""
     by = f" of RLA {rla}" if isinstance(rla, int) else ""
-    return f"; given to the decision{by} {back / _TICKS_PER_S:.1f} s before the press"
+    answers, why = fields.get("delay_answers"), ""  # an earlier robot does not tell it
+    if isinstance(answers, int):
+        why = f", by {answers} of your answers" if answers else ", the usual delay"
+    return f"; given to the decision{by} {back / _TICKS_PER_S:.1f} s before the press{why}"
 
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:

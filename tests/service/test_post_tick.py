@@ -17,12 +17,13 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import RuntimeOptions, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot, reply_of, turns
 from tests.core.rla.helpers import created, origin
+from tests.core.teaching.test_teacher_delay import asked_and_answered
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
 SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
@@ -155,16 +156,29 @@ def test_post_tick_values_are_saved_and_restored(shift: Shift) -> None:
     with Journal.read_only(shift.path) as journal:
         saved = journal.statistics()
     assert saved.values == {7: -0.25}
-    again = build_runtime(
-        WideRobot(),
-        ROBOT,
-        TASK,
-        (taught,),
-        InMemoryEventStore(),
-        LockstepClock(lambda: None),
-        RuntimeOptions(checkpoint=saved),
-    )
+    again = runtime_from(saved, taught)
     assert again.reinforcement.value(7) == -0.25
+
+
+def test_learned_delay_of_a_teacher_is_saved_and_restored(shift: Shift) -> None:
+    delay = shift.desk.runtime.handler.delay
+    delay.on_decision(0, asks=False)  # the question of the fixture's first tick is over
+    asked_and_answered(delay, 30, 40, 50, 60)
+    shift.run(CHECKPOINT)
+    shift.write()
+    with Journal.read_only(shift.path) as journal:
+        saved = journal.statistics()
+    again = runtime_from(saved)
+    assert again.handler.delay.ticks("Ann", 1) == delay.ticks("Ann", 1) == 50
+    assert again.snapshot().answer_delays == {"Ann": (30, 40, 50, 60)}
+
+
+def runtime_from(saved: Statistics, *events: RlaCreated) -> Runtime:
+    """Return the runtime of the next start of the program."""
+    clock = LockstepClock(lambda: None)
+    return build_runtime(
+        WideRobot(), ROBOT, TASK, events, InMemoryEventStore(), clock, RuntimeOptions(checkpoint=saved)
+    )
 
 
 def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:

@@ -31,6 +31,8 @@ class Statistics:
     """Single numbers by the names above."""
     expectations: Mapping[int, Expectation] = field(default_factory=dict)
     """RLA id -> expectation; invalid for an RLA that has another action now."""
+    answer_delays: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Teacher -> their last times from question to answer in ticks of real time, oldest first."""
 
 
 def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:

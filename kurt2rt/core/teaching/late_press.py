@@ -31,7 +31,7 @@ class LatePresses:
         return replace(command, seen_tick=given, decision_tick=self._decision(given, back_ticks))
 
     def described(self, command: Command, outcome: Outcome) -> Outcome:
-        """Return the outcome of a late press with the tick and RLA that it was given to, and by how many ticks.
+        """Return the outcome of a late press with the tick and RLA that it was given to, and how it was found.
 
         `command`: as `assign` returned it. The outcome of any other command is returned unchanged.
         """
@@ -40,8 +40,13 @@ class LatePresses:
         meant, given = command.decision_tick, command.seen_tick
         if meant is None or given is None or not self._recent.contains(meant):
             return outcome
-        fields: dict[str, Field] = {"decision_tick": meant, "put_back_ticks": max(0, given - meant)}
-        return Outcome(outcome.code, {**outcome.fields, **fields, "decided_by": self._recent.driving_rla(meant)})
+        fields: dict[str, Field] = {
+            "decision_tick": meant,
+            "put_back_ticks": max(0, given - meant),
+            "decided_by": self._recent.driving_rla(meant),
+            "delay_answers": self._delay.answers(command.teacher),
+        }
+        return Outcome(outcome.code, {**outcome.fields, **fields})
 
     def _decision(self, given: int, back_ticks: int) -> int:
         """Return the first tick from `back_ticks` before `given` on in which an RLA drove.

@@ -1,6 +1,7 @@
 """Teacher's delay: time between a situation and the teacher's press about it, learned from answers to questions."""
 
 from collections import deque
+from collections.abc import Mapping, Sequence
 
 BACK_TICKS = 200
 """Longest time by which a press is put back, in ticks of real time: 2 s."""
@@ -31,10 +32,18 @@ class TeacherDelay:
     delay is left out.
     """
 
-    def __init__(self, default_ticks: int = DEFAULT_TICKS) -> None:
-        """`default_ticks`: delay of a teacher who has given fewer than four answers."""
+    def __init__(self, default_ticks: int = DEFAULT_TICKS, saved: Mapping[str, Sequence[int]] | None = None) -> None:
+        """Begin with the answers of earlier runs.
+
+        Args:
+            default_ticks: delay of a teacher who has given fewer than four answers.
+            saved: result of `snapshot`, whose impossible times are left out. None: no answers.
+        """
         self._default_ticks = default_ticks
-        self._answers: dict[str, deque[int]] = {}
+        self._answers: dict[str, deque[int]] = {
+            teacher: deque((each for each in took if 0 <= each <= _LONGEST_TICKS), maxlen=_WINDOW)
+            for teacher, took in (saved or {}).items()
+        }
         self.asked_tick: int | None = None
         """First tick of the present question; None if the robot does not ask."""
         self._answered = False
@@ -64,9 +73,14 @@ class TeacherDelay:
         if took <= _LONGEST_TICKS:
             self._answers.setdefault(teacher, deque(maxlen=_WINDOW)).append(took)
 
+    def snapshot(self) -> dict[str, tuple[int, ...]]:
+        """Return the times of the last answers by teacher, oldest first, in ticks of real time, to be saved."""
+        return {teacher: tuple(took) for teacher, took in self._answers.items()}
+
     def answers(self, teacher: str) -> int:
-        """Return the number of answers that the delay of a teacher is computed from."""
-        return len(self._answers.get(teacher, ()))
+        """Return the number of answers that the delay of a teacher is computed from; 0 while it is the default."""
+        count = len(self._answers.get(teacher, ()))
+        return count if count >= _LEAST_ANSWERS else 0
 
     def hand_ticks(self, teacher: str, speed: int) -> int:
         """Return the delay of a teacher's hand that follows the robot while holding, in ticks of the robot.

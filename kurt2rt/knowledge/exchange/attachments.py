@@ -100,6 +100,7 @@ def encode_statistics(statistics: Statistics) -> bytes:
                 [rla_id, each.lesson, each.count, each.ticks, _text(each.packed_mean), _text(each.packed_squares)]
                 for rla_id, each in statistics.expectations.items()
             ],
+            "answer_delays": dict(statistics.answer_delays),
         }
     ).encode()
 
@@ -125,6 +126,11 @@ def decode_statistics(data: bytes) -> Statistics:
                     require_text(lesson), require_int(count, 1), require_number(ticks), _packed(mean), _packed(squares)
                 )
                 for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
+            },
+            # Recordings of before the delays were saved lack the key.
+            {
+                require_text(teacher): tuple(map(require_int, took))
+                for teacher, took in content.get("answer_delays", {}).items()
             },
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

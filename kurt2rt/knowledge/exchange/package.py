@@ -1,7 +1,7 @@
 """Export and import of knowledge: all that a file holds, bit for bit, and the settings it needs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -129,7 +129,8 @@ def _package(
         "rlas": len(system),
         "lessons": system.standing_lessons,
     }
-    files = collect_attachments(robot, task, entries, statistics)
+    # At the receiver a device of the same name is another person's, so the teachers' delays stay here.
+    files = collect_attachments(robot, task, entries, replace(statistics, answer_delays={}))
     reason = unsafe_reason({name: len(data) for name, data in files.items()})
     if reason:  # every import would refuse it
         raise KnowledgeError(KnowledgeCode.NOT_EXPORTABLE, where=path, reason=reason)

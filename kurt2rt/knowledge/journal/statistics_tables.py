@@ -17,6 +17,9 @@ LATER_TABLES = {
         rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
         mean BLOB NOT NULL, squares BLOB NOT NULL
     ) STRICT""",
+    "answer_delay": """CREATE TABLE answer_delay (
+        teacher TEXT NOT NULL, place INTEGER NOT NULL, ticks INTEGER NOT NULL, PRIMARY KEY (teacher, place)
+    ) STRICT, WITHOUT ROWID""",
 }
 """Tables that files of an earlier kurt2rt lack, which are read as empty then; an earlier kurt2rt ignores them."""
 
@@ -61,6 +64,8 @@ _TRANSITIONS = _Table("transition", ("from_rla", "to_rla", "count"))
 _VALUES = _Table("value", ("rla_id", "value"))
 _EDGE_WEIGHTS = _Table("edge_weight", ("from_rla", "to_rla", "weight"))
 _NUMBERS = _Table("number", ("name", "value"))
+_ANSWER_DELAYS = _Table("answer_delay", ("teacher", "place", "ticks"))
+"""Place 0 is a teacher's oldest time."""
 
 
 def read_statistics(connection: sqlite3.Connection) -> Statistics:
@@ -72,6 +77,7 @@ def read_statistics(connection: sqlite3.Connection) -> Statistics:
         _EDGE_WEIGHTS.read(connection),
         _NUMBERS.read(connection),
         _read_expectations(connection),
+        _read_answer_delays(connection),
     )
 
 
@@ -84,6 +90,7 @@ def changes(before: Statistics, after: Statistics) -> list[TableChange]:
         *_EDGE_WEIGHTS.changes(before.edge_weights, after.edge_weights),
         *_NUMBERS.changes(before.numbers, after.numbers),
         *_expectation_changes(before.expectations, after.expectations),
+        *_ANSWER_DELAYS.changes(_by_place(before.answer_delays), _by_place(after.answer_delays)),
     ]
 
 
@@ -93,7 +100,18 @@ def has_table(connection: sqlite3.Connection, name: str) -> bool:
     return found.fetchone() is not None
 
 
-def _key(key: int | str | tuple[int, int]) -> tuple[int | str, ...]:
+def _by_place(delays: Mapping[str, Sequence[int]]) -> dict[tuple[str, int], int]:
+    return {(teacher, place): ticks for teacher, took in delays.items() for place, ticks in enumerate(took)}
+
+
+def _read_answer_delays(connection: sqlite3.Connection) -> dict[str, tuple[int, ...]]:
+    delays: dict[str, tuple[int, ...]] = {}
+    for (teacher, _), ticks in _ANSWER_DELAYS.read(connection).items():
+        delays[teacher] = (*delays.get(teacher, ()), ticks)
+    return delays
+
+
+def _key(key: int | str | tuple[int | str, ...]) -> tuple[int | str, ...]:
     return key if isinstance(key, tuple) else (key,)
 
 

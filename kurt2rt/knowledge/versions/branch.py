@@ -115,7 +115,7 @@ def _time(text: str) -> datetime:
 
 
 def _about_unchanged(statistics: Statistics, then: RlaSystem, now: RlaSystem, levels: Sequence[str]) -> Statistics:
-    """Return the statistics about RLAs that have the same action now as then, by the same lesson."""
+    """Return the statistics about RLAs that have the same action now as then, by the same lesson, and teachers."""
     active: dict[int, Rla] = {rla.rla_id: rla for level in levels for rla in then.rlas_at(level)}
     same = {rla_id for rla_id, rla in active.items() if now.get(rla_id) == rla}
     first = statistics.numbers.get(FIRST_VALUE)
@@ -124,4 +124,5 @@ def _about_unchanged(statistics: Statistics, then: RlaSystem, now: RlaSystem, le
         transitions={edge: count for edge, count in statistics.transitions.items() if same.issuperset(edge)},
         numbers={} if first is None else {FIRST_VALUE: first},
         expectations={rla_id: each for rla_id, each in statistics.expectations.items() if rla_id in same},
+        answer_delays=statistics.answer_delays,
     )

@@ -85,6 +85,14 @@ def test_import_knowledge_of_an_export_is_equal_bit_for_bit(taught: Path, export
     assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
 
 
+def test_export_knowledge_leaves_out_the_delays_of_teachers(taught: Path, exported: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "mine.knowledge"
+    copy.write_bytes(taught.read_bytes())
+    with open_knowledge(copy, ROBOT, TASK) as journal:
+        journal.checkpoint(replace(journal.statistics(), answer_delays={"Ann": (80, 90)}))
+    assert export(copy, tmp_path / "mine.zip", exported.parent / "ann").read_bytes() == exported.read_bytes()
+
+
 def test_export_knowledge_is_a_zip_with_manifest(exported: Path) -> None:
     with zipfile.ZipFile(exported) as archive:
         manifest = json.loads(archive.read(MANIFEST))
@@ -229,6 +237,9 @@ NOTHING: dict[str, object] = {
         {**NOTHING, "numbers": []},
         {**NOTHING, "numbers": {"\ud800": 1.0}},
         {**NOTHING, "expectations": [[1, "create-1", 1, 0.5, "AAAA", ""]]},
+        {**NOTHING, "answer_delays": []},
+        {**NOTHING, "answer_delays": {"Ann": 80}},
+        {**NOTHING, "answer_delays": {"Ann": [80, -1]}},
     ],
 )
 def test_read_package_wrong_types_of_counts_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:

@@ -30,12 +30,12 @@ def names(folder: Path) -> list[str]:
 def test_save_copy_holds_all_acknowledged_lessons(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     with Journal.open(path, BINDING) as journal:
-        journal.append([entry(number) for number in range(1, 61)])
+        journal.append([entry(number) for number in range(1, 81)])
         journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}))
         assert journal_file.log_of(path).stat().st_size > path.stat().st_size  # most of it stands in the log
 
         saved = save_copy(path, folder, "First try", STAMP)
-        journal.append([entry(61)])
+        journal.append([entry(81)])
 
     assert saved.name == "wall-following-20040426T100000-first-try.knowledge"
     assert names(folder) == [saved.name]
@@ -44,11 +44,11 @@ def test_save_copy_holds_all_acknowledged_lessons(path: Path, tmp_path: Path) ->
     with Journal.read_only(folder / saved.name) as look:
         assert check_knowledge(look) == []
         assert look.binding == BINDING
-        assert look.events() == [created(number) for number in range(1, 61)]
+        assert look.events() == [created(number) for number in range(1, 81)]
         assert look.statistics() == Statistics({1: 5}, {(1, 2): 3})
     assert names(folder) == [saved.name]  # a look needs no second file
     with Journal.open(folder / saved.name, BINDING) as taught_on:
-        taught_on.append([entry(61)])
+        taught_on.append([entry(81)])
         assert taught_on.check() == []
 
 

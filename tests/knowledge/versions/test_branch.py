@@ -23,6 +23,7 @@ COUNTED = Statistics(
     {1: 0.25},
     {(1, 2): 95.0},
     {FIRST_VALUE: 0.5, VALUES_INCLUDE: 4.0},
+    answer_delays={"Ann": (80, 90)},
 )
 
 
@@ -57,7 +58,7 @@ def test_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, at
         counted = new.statistics()
         assert check_knowledge(new) == []
     uses = {1: 5} if rows == 2 else {1: 5, 3: 1}  # the second has another action since
-    assert counted == replace(Statistics(), uses=uses, numbers={FIRST_VALUE: 0.5})
+    assert counted == Statistics(uses, numbers={FIRST_VALUE: 0.5}, answer_delays=COUNTED.answer_delays)
 
 
 def test_branch_clock_set_back_ends_at_first_later_stamp(taught: Path, tmp_path: Path) -> None:

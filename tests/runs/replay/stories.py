@@ -21,6 +21,7 @@ from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import (
     Appraise,
@@ -181,17 +182,18 @@ def record_story(
     task: TaskSettings | None = None,
     other: Story | None = None,
     faulty: Callable[[Robot], Robot] = lambda robot: robot,
+    saved: Statistics | None = None,
 ) -> Path:
     """Let a story happen, or an`other` one in its place, and record it; the run's folder.
 
-    `faulty`: puts a fault between the robot and its mind.
+    `faulty`: puts a fault between the robot and its mind. `saved`: statistics that the run begins with.
     """
     told = STORIES[name]
     settings, task = load_robot(), task or load_task(told.task)
     simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
     notebook = InMemoryEventStore()
     clock = LockstepClock(simulation.step)
-    attachments = collect_attachments(settings, task)
+    attachments = collect_attachments(settings, task, (), saved)
     head = RunHead(
         kurt2rt="story",
         boot="00",
@@ -214,7 +216,7 @@ def record_story(
         (),
         notebook,
         clock,
-        RuntimeOptions(attended=told.attended, active_behaviour=wanted),
+        RuntimeOptions(attended=told.attended, active_behaviour=wanted, checkpoint=saved),
     )
     if told.stopped:
         runtime.handler.stop(told.stopped)

@@ -8,6 +8,7 @@ import pytest
 from kurt2rt.core.outcome import Field
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Resume, SetPhase, Stop, Undo, Watch
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry
@@ -16,6 +17,9 @@ from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.runs.replay.stories import NAME, Scene, record_story
+
+ANSWERED = (50, 60, 60, 60)
+"""Times of the teacher's answers in an earlier run, in ticks."""
 
 
 def holding(scene: Scene, record: TickRecord) -> None:
@@ -43,7 +47,8 @@ def holding(scene: Scene, record: TickRecord) -> None:
 
 @pytest.fixture(scope="module")
 def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return record_story("walls", tmp_path_factory.mktemp("runs"), seconds=8, other=holding)
+    folder = tmp_path_factory.mktemp("runs")
+    return record_story("walls", folder, seconds=8, other=holding, saved=Statistics(answer_delays={NAME: ANSWERED}))
 
 
 def test_replay_of_holds_and_late_presses_is_bit_exact(run_folder: Path) -> None:
@@ -55,6 +60,7 @@ def test_replay_of_holds_and_late_presses_is_bit_exact(run_folder: Path) -> None
             late = record.results[0].outcome.fields
     assert found == []
     assert late["put_back_ticks"]
+    assert late["delay_answers"] == len(ANSWERED) + 1
 
 
 def test_recorded_hold_has_its_lessons_and_their_undo(run_folder: Path) -> None:

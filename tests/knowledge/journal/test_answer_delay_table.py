@@ -1,0 +1,44 @@
+"""Delays of teachers in a knowledge file: all of them, and only those that have changed are written."""
+
+from pathlib import Path
+
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.exchange.attachments import decode_statistics, encode_statistics
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.statistics_tables import changes
+from tests.knowledge.lessons import BINDING, tamper
+
+SAVED = Statistics(answer_delays={"Ann": (120, 80, 80, 300), "Ben": (0,)})
+
+
+def test_statistics_delays_are_read_as_saved(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(Statistics(answer_delays={"Ann": (1, 2, 3, 4, 5), "Cid": (7,)}))
+        journal.checkpoint(SAVED)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == SAVED
+
+
+def test_checkpoint_only_changed_delays_are_written() -> None:
+    (written,) = changes(SAVED, Statistics(answer_delays={"Ann": (120, 80, 80, 300, 90), "Ben": (0,)}))
+    assert written.rows == [("Ann", 4, 90)]
+    assert changes(SAVED, SAVED) == []
+
+
+def test_open_file_without_delays_gets_their_table(path: Path) -> None:
+    Journal.open(path, BINDING).close()
+    tamper(path, "DROP TABLE answer_delay")
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == Statistics()
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(SAVED)
+        assert journal.statistics() == SAVED
+
+
+def test_statistics_of_a_recording_have_the_delays() -> None:
+    assert decode_statistics(encode_statistics(SAVED)) == SAVED
+
+
+def test_statistics_of_an_earlier_recording_have_no_delays() -> None:
+    earlier = encode_statistics(SAVED).replace(b'"answer_delays"', b'"a key that is not known"')
+    assert decode_statistics(earlier) == Statistics()
