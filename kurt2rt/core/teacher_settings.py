@@ -127,6 +127,8 @@ class TeacherProfile(Settings):
     corrects_by: Literal["press", "hold", "rewind", "nothing"] = "press"
     """Way to correct: a press that names the action, an action that is held, a stop and a look back (rewind), or
     answers only."""
+    corrects_touch_by: Literal["rewind", "nothing"] = "nothing"
+    """Way to correct what led to a touch: a look back for the last thing that looked wrong before it, or not at all."""
     answers_by: Literal["press", "hold"] = "press"
     """Way to answer a question."""
     corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"

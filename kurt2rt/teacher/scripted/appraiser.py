@@ -194,15 +194,18 @@ class ScriptedAppraiser:
         self._resume_at = tick + ticks + 1
         return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._demonstrated), ticks)]
 
-    def on_tick(self, record: TickRecord) -> list[Command]:
-        """Return the teacher's commands in response to one tick, in order; may be empty. Call it on every tick."""
+    def on_tick(self, record: TickRecord, *, touching: bool = False) -> list[Command]:
+        """Return the teacher's commands in response to one tick, in order; may be empty. Call it on every tick.
+
+        `touching`: whether the robot touches something, as a person in the room sees.
+        """
         if self.phase is Phase.AUTONOMOUS:
             return []
         commands: list[Command] = []
         if self._resume_at is not None and record.tick >= self._resume_at:
             self._resume_at = None
             commands.append(Resume(self._next_id("shown"), _NAME))
-        answer = self._answering.update(view_of_tick(record))
+        answer = self._answering.update(view_of_tick(record, touching=touching))
         if answer is not None:
             commands.append(answer)
         if self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) and self._rewards is not None:

@@ -28,6 +28,8 @@ class TeacherView(NamedTuple):
     """Distance to the condition of that RLA, divided by its R; infinite if another RLA is nearer."""
     tick: int = 0
     """Tick of the state."""
+    touching: bool = False
+    """The robot touches something."""
 
 
 def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
@@ -35,8 +37,11 @@ def radius_fraction(driving: int | None, nearest: int | None, distance: float, r
     return distance / radius if driving is not None and driving == nearest else math.inf
 
 
-def view_of_tick(record: TickRecord) -> TeacherView:
-    """Return the teacher's view of a tick."""
+def view_of_tick(record: TickRecord, *, touching: bool = False) -> TeacherView:
+    """Return the teacher's view of a tick.
+
+    `touching`: whether its side touches something, which no bumper tells but a person in the room sees.
+    """
     decision, match = record.decision, record.decision.match
     nearest = math.inf
     if match is not None:
@@ -50,6 +55,7 @@ def view_of_tick(record: TickRecord) -> TeacherView:
         rla_id=decision.rla_id,
         radius_fraction=nearest,
         tick=record.tick,
+        touching=touching or record.readings.bumpers != 0,
     )
 
 

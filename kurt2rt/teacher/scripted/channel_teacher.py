@@ -217,6 +217,7 @@ def view_of_state(state: State) -> TeacherView:
         rla_id=state.rla,
         radius_fraction=radius_fraction(state.rla, state.nearest, state.distance, state.radius),
         tick=state.tick,
+        touching=state.bumpers != 0,
     )
 
 

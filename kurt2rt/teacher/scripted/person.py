@@ -3,6 +3,7 @@
 import random
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.lesson_history import hold_id
@@ -18,6 +19,8 @@ from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
 from kurt2rt.teacher.scripted.press_times import HumanTimes
 
+_Way = Literal["press", "hold", "rewind"]
+"""Way to give a press."""
 _REWIND_PRESSES = 2
 """Presses of a correction by rewind; a person who has not both left does not begin one."""
 
@@ -42,6 +45,8 @@ class _PlannedPress:
     """Tick of the press."""
     picture: TeacherView
     """State that the press is about."""
+    by: _Way
+    """Way to give it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +170,9 @@ class ScriptedPerson(BasicTeacher):
         self._next_picture = 0
         self._ignore_until = 0
         self._behaviour = ""
+        self._touching = False
+        self._presses_about_touch: int | None = None
+        """Tick of the last mistake that led to a touch and is corrected already."""
         self._answer: _PlannedPress | None = None
         self._correction: _PlannedPress | None = None
         self._undo: _PlannedUndo | None = None
@@ -199,13 +207,29 @@ class ScriptedPerson(BasicTeacher):
         if picture.asking:
             self._mistakes.reset()
             self._correction = None
-            if self._answer is None:
-                self._answer = _PlannedPress(self._now + self._draws.question_delay.draw(self._now), picture)
-            else:
-                self._answer = _PlannedPress(self._answer.due, picture)
+            planned = self._answer
+            due = self._now + self._draws.question_delay.draw(self._now) if planned is None else planned.due
+            self._answer = _PlannedPress(due, picture, self._profile.answers_by)
         elif self._may_correct(picture) and self._mistakes.update(picture, self._right(picture)):
-            due = self._now + self._draws.mistake_delay.draw(self._now)
-            self._correction = _PlannedPress(due, self._corrected_picture(picture))
+            assert self._profile.corrects_by != "nothing"
+            self._plan_correction(self._corrected_picture(picture), self._profile.corrects_by)
+        self._look_for_touch(picture)
+
+    def _plan_correction(self, about: TeacherView, by: _Way) -> None:
+        self._correction = _PlannedPress(self._now + self._draws.mistake_delay.draw(self._now), about, by)
+
+    def _look_for_touch(self, picture: TeacherView) -> None:
+        """Plan a look back when the robot begins to touch something, if that is this teacher's way.
+
+        It takes the place of another correction that is planned: what led to the touch is what matters.
+        """
+        begins, self._touching = picture.touching and not self._touching, picture.touching
+        if not begins or self.phase is Phase.SUPERVISED or self._profile.corrects_touch_by == "nothing":
+            return
+        about = self._mistakes.before_touch(picture.tick)
+        if about is not None and self._presses_about_touch != about.tick:
+            self._presses_about_touch = about.tick
+            self._plan_correction(about, "rewind")
 
     def _may_correct(self, picture: TeacherView) -> bool:
         """Return whether the person watches for mistakes; no longer while a press is planned."""
@@ -230,24 +254,24 @@ class ScriptedPerson(BasicTeacher):
                 self._undo = None
         elif self._answer is not None and self._now >= self._answer.due:
             if self._presses.allows():
-                self._press(self._answer.picture, answers=True)
+                self._press(self._answer, self._person.errors.answers)
             # Beyond the limit the robot stands and waits.
         elif self._correction is not None and self._now >= self._correction.due:
-            if self._presses.allows(_REWIND_PRESSES if self._profile.corrects_by == "rewind" else 1):
-                self._press(self._correction.picture, answers=False)
+            if self._presses.allows(_REWIND_PRESSES if self._correction.by == "rewind" else 1):
+                self._press(self._correction, self._person.errors.corrections)
             else:
                 self._forget()  # the moment passes
 
-    def _press(self, picture: TeacherView, *, answers: bool) -> None:
-        errors, profile = self._person.errors, self._profile
+    def _press(self, planned: _PlannedPress, error_rate: float) -> None:
+        picture, answers, profile = planned.picture, planned is self._answer, self._profile
         right = self._right(picture)
-        action = self._choose(right, errors.answers if answers else errors.corrections)
+        action = self._choose(right, error_rate)
         self._presses.count()
         self._forget()
-        if (profile.answers_by if answers else profile.corrects_by) == "hold":
+        if planned.by == "hold":
             self._begin_hold(action, is_right=action == right)
             return
-        if not answers and profile.corrects_by == "rewind":
+        if planned.by == "rewind":
             moment = max(0, picture.tick + self._draws.moment_error_ticks())
             mistake = Mistake(moment, action, is_slip=action != right)
             self._look_back = self._draws.look_back(mistake)
