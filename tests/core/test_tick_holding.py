@@ -13,7 +13,11 @@ from tests.teacher.helpers import resume, teach
 
 LEASE = 24
 DELAY = 25
-"""Ticks by which the lessons of a hold are put back if the teacher has given no answers."""
+"""Delay of the hand, in ticks, if the teacher has given no answers."""
+NOTICED = 75
+"""Ticks from the moment in which such a teacher notices a mistake to the press."""
+STEADY = 10
+"""Ticks for which the held action is the same before and after the reaction that a lesson is about."""
 
 
 def hold(corridor: Corridor, action: str = "back", press: int = 7, *, teacher: str = "Ann", age: int = 0) -> HoldAction:
@@ -148,11 +152,11 @@ def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
     assert events(driving) == []
 
 
-def test_first_lesson_is_about_the_decision_one_delay_before(driving: Corridor) -> None:
+def test_first_lesson_is_about_the_noticed_mistake(driving: Corridor) -> None:
     for counts in (130, 135):
-        for _ in range(DELAY):
+        for _ in range(NOTICED):
             driving.run(counts)
-    meant = condition(driving, driving.ticks + 1 - DELAY)
+    meant = condition(driving, driving.ticks + 1 - NOTICED)
     driving.run(135, hold(driving))
     (lesson,) = driving.notebook.events[1:]
     assert isinstance(lesson, RlaCreated)
@@ -160,10 +164,49 @@ def test_first_lesson_is_about_the_decision_one_delay_before(driving: Corridor) 
     assert lesson.origin.command_id == f"Ann-hold-7/{driving.ticks}"
 
 
+def test_lessons_of_the_press_are_a_tenth_of_a_second_apart(driving: Corridor) -> None:
+    taught = range(130, 170, 10)
+    for counts in taught:
+        driving.run(counts, teach("forward", f"at {counts}"))
+    for counts in taught:
+        for _ in range(10):
+            driving.run(counts)
+    for _ in range(NOTICED - 35):
+        driving.run(100)
+    press = driving.ticks + 1
+    held(driving, 5, 100)
+    # The mistake was noticed at 130 counts, which the RLA 2 answers; 0.1 s later at 140, and at 150.
+    assert events(driving) == [(f"Ann-hold-7/{press + number}", 2 + number) for number in range(3)]
+
+
+def test_no_lesson_near_a_change_of_the_held_action(driving: Corridor) -> None:
+    held(driving, 40, 100, "forward")
+    before = len(events(driving))
+    changed = driving.ticks + 1
+    for _ in range(100):
+        driving.run(150, hold(driving))
+    first = int(events(driving)[before][0].rpartition("/")[2])
+    assert first >= changed + 2 * STEADY
+    match = driving.system.match(driving.school.recent.situation(first - DELAY - STEADY))
+    assert match is not None
+    assert match.rla.action == "back"
+
+
+def test_first_action_teaches_again_once_the_hand_could_follow(driving: Corridor) -> None:
+    held(driving, 120, 100)
+    lessons_of = driving.school.holds.newest
+    assert lessons_of is not None
+    assert lessons_of.lessons == 1
+    for counts in range(120, 520, 40):
+        held(driving, 20, counts)
+    later = [int(each.rpartition("/")[2]) - 202 for each, _ in events(driving)[1:]]
+    assert min(later) >= DELAY + 2 * STEADY
+
+
 def test_lag_of_the_link_is_added_to_the_delay(driving: Corridor) -> None:
     for tick in range(130):
         driving.run(128 + tick // 20)
-    meant = condition(driving, driving.ticks + 1 - DELAY - 15)
+    meant = condition(driving, driving.ticks + 1 - NOTICED - 15)
     driving.run(135, hold(driving, age=15))
     lesson = driving.notebook.events[1]
     assert isinstance(lesson, RlaCreated)
@@ -171,14 +214,14 @@ def test_lag_of_the_link_is_added_to_the_delay(driving: Corridor) -> None:
 
 
 def test_hold_teaches_each_tenth_of_a_second_unless_agreed(driving: Corridor) -> None:
-    held(driving, DELAY, 115)  # the situations of two seconds at 100 counts come first
+    held(driving, DELAY + STEADY, 115)  # the situations of two seconds at 100 counts come first
     assert events(driving) == [(f"Ann-hold-7/{203 - 1}", 1)]
     assert actions(driving) == {1: "back"}
     for counts in range(120, 520, 4):
         held(driving, 2, counts)
-    held(driving, DELAY, 520)
+    held(driving, DELAY + 2 * STEADY, 520)
     ticks = [int(each.rpartition("/")[2]) for each, _ in events(driving)]
-    assert all((tick - ticks[0]) % 10 == 0 for tick in ticks)
+    assert all((tick - ticks[1]) % 10 == 0 for tick in ticks[1:])
     assert len(ticks) > 4
     match = driving.system.match(driving.school.recent.situation(driving.ticks))
     assert match is not None
@@ -211,11 +254,11 @@ def test_hold_before_the_first_lesson_teaches() -> None:
     assert actions(corridor) == {1: "back"}
 
 
-def test_hold_of_a_slow_teacher_looks_back_half_a_second(driving: Corridor) -> None:
+def test_hold_of_a_slow_teacher_looks_back_further(driving: Corridor) -> None:
     teach_slowly(driving)
-    assert driving.school.delay.hand_ticks("Ann", 1) == 50
+    assert driving.school.delay.correction_ticks("Ann", 1) == 150
     wrong = driving.run(118).tick
-    for _ in range(49):
+    for _ in range(149):
         driving.run(100)
     driving.run(100, hold(driving))
     assert condition(driving, wrong) in [rla.condition for rla in driving.system.rlas if rla.action == "back"]

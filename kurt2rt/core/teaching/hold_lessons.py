@@ -15,6 +15,14 @@ from kurt2rt.core.teaching.teacher_delay import BACK_TICKS, TeacherDelay
 
 EVERY_TICKS = 10
 """Ticks of the robot between two lessons of a hold: 0.1 s."""
+PRESS_LESSONS = 3
+"""Lessons about the mistake that led to the press."""
+STEADY_TICKS = 10
+"""Time before and after a reaction of the hand in which the hand must not change the action, in ticks of the robot.
+
+A hand that follows a changing situation is now early, now late: a third of the lessons of a hold named an action that
+was right 0.05 to 0.15 s before or after their situation (docs/results-and-limits.md).
+"""
 
 
 class Hold(NamedTuple):
@@ -37,15 +45,26 @@ class _Press:
     """Age of the newest message's state when the message arrived."""
     earliest: int
     """Earliest tick that a lesson may be about."""
+    noticed: int
+    """Tick of the situation in which the teacher noticed the mistake."""
+    began: int
+    """Tick of the first message."""
+    since: int
+    """Tick since which the present action is held."""
     due: int
-    """Tick of the next lesson."""
+    """Tick of the next lesson of the held action."""
+    press_lessons: int = 0
+    """Number of lessons about the mistake that were due."""
 
 
 class HoldLessons:
     """Builder of the lessons of a held action.
 
-    Each 0.1 s the situation that the teacher reacted to, before the present tick by the link's lag and the delay of the
-    teacher's hand, becomes a lesson with the held action, unless the robot would do that action there already.
+    The first three lessons are about the mistake: they name the first action for the situation in which the teacher
+    noticed it, before the press by the link's lag and the delay of a correction, and for those 0.1 s and 0.2 s later.
+    Then each 0.1 s the situation that the hand reacts to, earlier by the lag and the shorter delay of a hand, becomes a
+    lesson with the held action. No lesson is given near a change of the held action, nor where the robot would do that
+    action already.
     """
 
     def __init__(self, lessons: LessonBuilder, system: RlaSystem, recent: DecisionHistory, delay: TeacherDelay) -> None:
@@ -67,13 +86,18 @@ class HoldLessons:
         # The teacher of a robot that asks reacts to its question, not to something before it.
         earliest = tick - BACK_TICKS * speed if asked_tick is None else asked_tick
         hold = Hold(command.teacher, command.press_id, command.action, lesson, 0)
-        self._press = _Press(hold, max(0, tick - command.seen_tick), earliest, tick)
+        lag_ticks = max(0, tick - command.seen_tick)
+        noticed = tick - lag_ticks - self._delay.correction_ticks(command.teacher, speed)
+        self._press = _Press(hold, lag_ticks, earliest, max(noticed, earliest, 0), began=tick, since=tick, due=tick)
 
     def on_message(self, command: HoldAction, tick: int) -> None:
         """Note lag and action of a further message of the press; call it only after `begin`."""
-        assert self._press is not None
-        self._press.lag_ticks = max(0, tick - command.seen_tick)
-        self._press.hold = self._press.hold._replace(action=command.action)
+        press = self._press
+        assert press is not None
+        press.lag_ticks = max(0, tick - command.seen_tick)
+        if command.action != press.hold.action:
+            press.since = tick
+            press.hold = press.hold._replace(action=command.action)
 
     def build(self, tick: int, phase: Phase, speed: int) -> TeachingEvent | None:
         """Return the lesson that is due in a tick of the hold; None if none is. Call it only after `begin`.
@@ -86,15 +110,30 @@ class HoldLessons:
         press = self._press
         assert press is not None
         hold = press.hold
-        if tick < press.due:
-            return None
-        press.due = tick + EVERY_TICKS
-        back_ticks = press.lag_ticks + self._delay.hand_ticks(hold.teacher, speed)
-        meant = min(max(tick - back_ticks, press.earliest), self._recent.newest)
-        if not self._recent.contains(meant) or not self._recent.teachable(meant):
+        meant = self._meant_tick(press, tick, self._delay.hand_ticks(hold.teacher, speed))
+        if meant is None or not self._recent.contains(meant) or not self._recent.teachable(meant):
             return None
         origin = Origin(f"{hold.lesson}{DERIVED}{tick}", hold.teacher, phase, tick)
         event = self._lessons.held(hold.action, meant, origin, counts=hold.lessons == 0)
         if event is not None:
             press.hold = hold._replace(lessons=hold.lessons + 1)
         return event
+
+    def _meant_tick(self, press: _Press, tick: int, hand_ticks: int) -> int | None:
+        """Return the tick of the situation that the lesson due in `tick` is about; None if no lesson is due.
+
+        `hand_ticks`: delay of the teacher's hand.
+        """
+        reacted = tick - press.lag_ticks - hand_ticks
+        if press.press_lessons < PRESS_LESSONS and press.since == press.began:
+            meant = press.noticed + press.press_lessons * EVERY_TICKS
+            press.press_lessons += 1
+            return min(meant, self._recent.newest) if meant <= max(reacted, press.noticed) else None
+        if tick < press.due:
+            return None
+        press.due = tick + EVERY_TICKS
+        # The first action was chosen when the mistake was noticed; the hand needs its delay to bring another one.
+        unsure_ticks = hand_ticks if press.since == press.began else 0
+        if tick - press.since < unsure_ticks + 2 * STEADY_TICKS:
+            return None
+        return min(max(reacted - STEADY_TICKS, press.earliest), self._recent.newest)
