@@ -405,3 +405,4 @@ def test_view_of_state_has_behaviour_and_driving_rla() -> None:
     assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", 3, tick=1234)
     nearest = view_of_state(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
     assert nearest.radius_fraction == 0.1
+    assert view_of_state(state(cause="rla", bumpers=0b01)).touching

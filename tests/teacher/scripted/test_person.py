@@ -321,6 +321,54 @@ def test_update_rewind_needs_two_presses_of_the_limit() -> None:
     assert all(later - sooner >= 6000 for sooner, later in zip(pressed, pressed[3:], strict=False))
 
 
+LOOKS_BACK = {"corrects_by": "press", "corrects_touch_by": "rewind"}
+SURE = LookBackSettings(moment_spread_s=0.0)
+
+
+def touched(wrong: int, *, late: int = 40) -> list[TeacherView]:
+    """Return a robot that does b for some ticks in which a is right, and touches something `late` ticks after that."""
+    touching = doing("a")._replace(touching=True)
+    return [doing("a")] * 50 + [doing("b")] * wrong + [doing("a")] * late + [touching] * 200 + [standing()] * 600
+
+
+def corrected_ticks(teacher: ScriptedPerson, views: list[TeacherView]) -> list[int | None]:
+    return [each.decision_tick for each in given(teacher, views).values() if isinstance(each, Correct)]
+
+
+def test_update_touch_corrects_the_mistake_before_it() -> None:
+    stop, correction, resume, *more = given(person(profile=LOOKS_BACK, look_back=SURE), touched(wrong=25)).values()
+    assert isinstance(stop, Stop)
+    assert isinstance(correction, Correct)
+    assert (correction.action, correction.decision_tick) == ("a", 51)
+    assert isinstance(resume, Resume)
+    assert not any(isinstance(each, Correct) for each in more)
+
+
+@pytest.mark.parametrize(("wrong", "late"), [(5, 40), (25, 600)])
+def test_update_touch_without_a_mistake_before_is_let_pass(wrong: int, late: int) -> None:
+    """The mistake was too short to be seen on two pictures, or it is long ago."""
+    assert corrected_ticks(person(profile=LOOKS_BACK, look_back=SURE), touched(wrong, late=late)) == []
+
+
+def test_update_touch_takes_the_place_of_a_planned_press() -> None:
+    teacher = person(profile=LOOKS_BACK, look_back=SURE)
+    assert isinstance(next(iter(given(teacher, touched(wrong=60, late=0)).values())), Stop)
+
+
+@pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS])
+def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
+    profile = LOOKS_BACK if phase is Phase.SUPERVISED else {"corrects_by": "press"}
+    assert corrected_ticks(person(phase, profile=profile), touched(wrong=25)) == []
+
+
+def test_update_same_mistake_is_looked_back_for_once() -> None:
+    again = [doing("a")] * 30 + [doing("a")._replace(touching=True)] * 60
+    views = touched(wrong=25)
+    assert corrected_ticks(
+        person(profile=LOOKS_BACK, look_back=SURE), [*views[:150], *again, *again, *views[150:]]
+    ) == [51]
+
+
 def rewind_forever() -> list[TeacherView]:
     """Return a robot that stands for 5 s and does the wrong thing for 5 s, again and again."""
     return ([standing()] * 500 + [doing("b")] * 500) * 15
