@@ -10,6 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Position, Simulation
 from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.active_stop import StopReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
@@ -63,7 +64,7 @@ class TrainingResult:
     ledger: TickTimer = field(compare=False, repr=False)
     """Durations of the last ticks on the machine of the run."""
     alarms: int = 0
-    """Number of latched stops of the guard, each ended by the teacher."""
+    """Number of latched stops of the guard and stops for a broken sensor, each ended by the teacher."""
     repositions: int = 0
     """Planned repositionings, without rescues."""
     deletions: int = 0
@@ -184,6 +185,7 @@ class TrainingRun(Episode):
         self._workload = TeacherWorkload(self._planned_ticks, period_s)
         self._growth: list[int] = []
         self._agreements: list[float | None] = []
+        self._sensor_stop_ticks = 0
         self._rescues = self._unknown_rescues = self._alarms = self._deletions = self._refused = 0
         self._trusted_ticks = self._positive_rewards = self._negative_rewards = 0
 
@@ -206,6 +208,7 @@ class TrainingRun(Episode):
         self._send_lessons(record)
         self._trusted_ticks += self._agreement is not None and self._agreement.trusted
         self.measure()
+        self._end_sensor_stop(record.tick)
         self._rescue_if_stuck(record.tick)
         self._reposition_as_planned(record.tick)
         self._command_behaviour(record.behaviour)
@@ -297,16 +300,36 @@ class TrainingRun(Episode):
         self.latched_ticks = 0
         self._alarms += 1
 
+    def _end_sensor_stop(self, tick: int) -> None:
+        """Carry the robot away a second after it stopped for a broken sensor, and resume another second later.
+
+        All sensors of a lesson work. One that is pressed against a wall looks broken, and a resume trusts it again only
+        if its reading has changed (hal.sensor_watch).
+        """
+        stop = self.runtime.handler.active_stop
+        if stop is None or stop.reason is not StopReason.SENSOR_BROKEN:
+            self._sensor_stop_ticks = 0
+            return
+        self._sensor_stop_ticks += 1
+        if self._sensor_stop_ticks == self.ticks_per_second:
+            self._rescue(tick)
+        elif self._sensor_stop_ticks == 2 * self.ticks_per_second:
+            self.send(self._teacher.resume())
+            self._count_alarm(tick)
+
     def _rescue_if_stuck(self, tick: int) -> None:
         if self.runtime.handler.active_stop is not None:
             return  # the teacher looks back; the time of the stuck detector stands still with the robot
         waiting = self.asking and self._teacher.available
         # A robot that asks again and again while it touches a wall does not get away either.
         if not (waiting and self._plan.rescues_who_asks) and self.is_stuck(waiting=waiting):
-            self.rescue()
-            self._workload.count_manual(tick, "rescued")
-            self._rescues += 1
+            self._rescue(tick)
             self._unknown_rescues += self.asking
+
+    def _rescue(self, tick: int) -> None:
+        self.rescue()
+        self._workload.count_manual(tick, "rescued")
+        self._rescues += 1
 
     def _reposition_as_planned(self, tick: int) -> None:
         if self.metric.needs_reset or (self._reposition_every and tick % self._reposition_every == 0):

@@ -1,4 +1,4 @@
-"""The guard stops the robot for good in the middle of a lesson, or of an exam."""
+"""The robot stops for good in the middle of a lesson, or of an exam: by its guard, or for a broken sensor."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,12 +12,15 @@ from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.report import render_exams
+from kurt2rt.experiments.surprise.drive import StuckSensor
 from simbridge.simulation import Kurt2Simulation, Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
 from tests.experiments.lockstep.test_report import printed
 
 TASK = short_task(exam_s=20.0)
 ALARM_CYCLE = 500
+SENSOR = 14
+"""Place of the sensor that breaks."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,31 @@ def test_alarm_ended_by_a_demonstration_counts_once(tmp_path: Path) -> None:
     result = anyio.run(lesson)
     assert [(minute.shown, minute.go) for minute in result.workload] == [(1, 1)]
     assert result.alarms == 1
+
+
+@dataclass(frozen=True)
+class StageWithABrokenSensor(Kurt2SimulationFactory):
+    """A sensor repeats its reading from the first second on, and is noticed after 4 s of driving."""
+
+    def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
+        simulation = super().open(world, seed, purpose)
+        simulation.robot = StuckSensor(simulation.robot, SENSOR, 1.0)  # type: ignore[assignment]
+        return simulation
+
+
+def test_stop_for_a_broken_sensor_does_not_end_the_lesson(tmp_path: Path) -> None:
+    task = short_task(20.0, 0.0)
+
+    async def lesson() -> TrainingResult:
+        stage = StageWithABrokenSensor(ROBOT)
+        result, _ = await run_lesson(stage, ROBOT, task, tmp_path / "knowledge", seed=1, report=lambda *_: None)
+        return result
+
+    result = anyio.run(lesson)
+    (minute,) = result.workload
+    assert (result.alarms, result.rescues) == (minute.go, minute.rescued) == (1, 1)
+    carried, end = result.trail[-30], result.trail[-1]
+    assert abs(end.x_m - carried.x_m) + abs(end.y_m - carried.y_m) > 0.1
 
 
 def test_an_exam_ends_and_says_why() -> None:
