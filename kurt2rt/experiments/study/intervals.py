@@ -39,19 +39,19 @@ def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
 
 def poisson_interval(events: int) -> tuple[float, float]:
     """Return the exact 95 % interval (low, high) of the expected count, given a count (Garwood 1936)."""
-    from scipy.stats import chi2
+    from scipy.special import gammainccinv, gammaincinv  # scipy.stats has it as chi2, but takes 0.7 s more to import
 
-    low = chi2.ppf(_TAIL, 2 * events) / 2 if events else 0.0
-    return float(low), float(chi2.isf(_TAIL, 2 * events + 2) / 2)
+    low = gammaincinv(events, _TAIL) if events else 0.0
+    return float(low), float(gammainccinv(events + 1, _TAIL))
 
 
 def _bootstrapped(statistic: Callable[..., Any], *samples: Sequence[float]) -> tuple[float, float]:
     """Return the 95 % percentile interval of `statistic(*samples, axis)` over robots, each with all its values."""
-    from scipy.stats import bootstrap
-
-    chance = np.random.default_rng(_BOOTSTRAP_SEED)
-    options: dict[str, Any] = {"paired": True, "vectorized": True, "method": "percentile", "n_resamples": _RESAMPLES}
-    low, high = bootstrap(samples, statistic, rng=chance, **options).confidence_interval
+    values = [np.asarray(sample, dtype=np.float64) for sample in samples]
+    robots = len(values[0])
+    drawn = np.random.default_rng(_BOOTSTRAP_SEED).integers(0, robots, (_RESAMPLES, robots))
+    statistics = statistic(*(sample[drawn] for sample in values), axis=-1)
+    low, high = np.quantile(statistics, (_TAIL, 1.0 - _TAIL))
     return float(low), float(high)
 
 
