@@ -207,6 +207,7 @@ class _Assembly:
                 mid=lessons,
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
+                lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,
         )

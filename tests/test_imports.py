@@ -46,7 +46,7 @@ ROOMS: dict[str, frozenset[str]] = {
 """
 CORE_NEVER_IMPORTS = {"time", "asyncio", "anyio", "threading", "socket", "sqlite3", "os"}
 LAYERS_OF_CORE = (
-    {"numerics", "outcome"},
+    {"numerics", "outcome", "lesson_speed"},
     {"rla", "perception"},
     {"decision", "outcome_text"},
     {"basic", "mid"},

@@ -10,6 +10,7 @@ from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySet
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.core.basic.doubt import DoubtSettings
 from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.lesson_speed import SLOWEST
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
@@ -107,7 +108,9 @@ class TeachingSettings(Settings):
     corrections_s: Seconds
     """Length of phase 2, in which the teacher corrects as well."""
     rescue_after_s: Annotated[float, Field(gt=0, le=1000)]
-    """Time without progress or question after which the robot is set down elsewhere."""
+    """Time of driving at full speed without progress or question after which the robot is set down elsewhere."""
+    lesson_speed: Annotated[float, Field(ge=SLOWEST, le=1)] = 1.0
+    """Fraction of their speed at which actions drive while a teacher teaches them; a teacher can set another one."""
     reposition_every_s: Seconds = 0.0
     """Interval at which the robot is set down elsewhere; 0: never."""
     reposition_to: Place = "starts"
@@ -119,6 +122,11 @@ class TeachingSettings(Settings):
     def duration_s(self) -> float:
         """Return the robot time of the whole training run, in s."""
         return self.supervised_s + self.corrections_s
+
+    @property
+    def slow_rescue_after_s(self) -> float:
+        """Return `rescue_after_s` at the lesson speed, at which the same way takes longer, in s."""
+        return self.rescue_after_s / self.lesson_speed
 
 
 class SuccessSettings(Settings):

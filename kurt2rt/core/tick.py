@@ -98,6 +98,8 @@ class TickRecord(NamedTuple):
     """Reason that the robot stands, or DRIVES."""
     broken_sensors: tuple[BrokenSensor, ...] = ()
     """Infra-red sensors that do not count in this tick."""
+    lesson_speed: float = 1.0
+    """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""
     trusted_counts: tuple[int, ...] | None = None
     """Counts that the robot decided by, one per sensor, if they are not those of `readings`."""
 
@@ -247,7 +249,9 @@ class Tick:
         if watch is None or substitute is None:
             return readings
         if readings.infrared_age_s <= self._options.stale_infrared_s:
-            found = watch.update(readings.infrared_counts, driving=self._turned)
+            # On the clock of the way, because an obstacle that explains a sign is passed more slowly.
+            drove = self._turned and self._handler.lesson_speed.counts
+            found = watch.update(readings.infrared_counts, driving=drove)
             if found:
                 names = ", ".join(sensor.title for sensor in found)
                 self._handler.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))
@@ -258,8 +262,10 @@ class Tick:
 
     def _perceive(self, tick: int, readings: SensorReadings) -> _View:
         """Compute the situation, and the critic's opinion before this tick's commands can change it (step 2)."""
-        # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from.
-        situation = self._perception.perceive(readings, history_frozen=not self._driving or self._waits)
+        # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from. In a slow
+        # lesson they are those of the way at full speed.
+        frozen = not self._driving or self._waits or not self._handler.lesson_speed.counts
+        situation = self._perception.perceive(readings, history_frozen=frozen)
         blind = not readings.infrared_age_s <= self._options.stale_infrared_s
         features, opinion, critic = None, None, self._handler.critic
         if self._appraisal_perception is not None and critic is not None:
@@ -297,12 +303,15 @@ class Tick:
         """Send the decided speeds through the guard; note an emergency stop and a wait at a bumper (step 4)."""
         # A decision without an action never drives. The clock is read again, so that the guard sees a decision's
         # true age if the tick was held up.
-        speeds = decision.wheel_speeds if decision.driving else STANDSTILL
+        speeds, handler = decision.wheel_speeds if decision.driving else STANDSTILL, self._handler
+        if decision.driving and handler.slows_actions:
+            speeds = handler.lesson_speed.slow(speeds)
+        elif handler.lesson_speed.slows:
+            handler.lesson_speed.end()
         drove_at_s = self._now()
         result = self._robot.drive(speeds, now_s, drove_at_s)
         self._timer.lap(_GUARD)
         self._turned = result.wheel_speeds != STANDSTILL
-        handler = self._handler
         if result.latched and not self._latched:
             handler.stopped_at_tick = tick
         self._latched = result.latched
@@ -315,11 +324,20 @@ class Tick:
     def _learn(self, tick: int, view: _View, choice: _Choice, motion: _Motion) -> Surprise | None:
         """Count, remember and learn; return the surprise of an RLA that ended (step 5)."""
         handler, decision, turning = self._handler, choice.decision, motion.turning
+        pace = handler.lesson_speed
         if turning:
             self._perception.remember_driven(decision.wheel_speeds)
         surprise = None
         if self._expectations is not None:
-            surprise = self._expectations.update(tick, decision, view.situation, choice.behaviour, driving=turning)
+            surprise = self._expectations.update(
+                tick,
+                decision,
+                view.situation,
+                choice.behaviour,
+                driving=turning,
+                slow=pace.slows,
+                counts=pace.counts,
+            )
             if surprise is not None and surprise.surprising and self._appraisal_perception is not None:
                 self._appraisal_perception.notify_surprise()
         self._statistics.count(decision.rla_id if turning else None)
@@ -334,6 +352,7 @@ class Tick:
             choice.behaviour,
             touches=motion.asks_at_bumper,
             teachable=self._is_teachable(decision, motion),
+            slow=pace.slows,
             circumstances=view.appraisal_features,
             opinion=view.opinion,
         )
@@ -399,6 +418,7 @@ class Tick:
             number=self._number,
             knowledge=knowledge,
             standing=standing,
+            lesson_speed=self._handler.lesson_speed.share if self._handler.lesson_speed.slows else 1.0,
         )
 
     def _apply_system_event(self, event: SystemEvent) -> None:

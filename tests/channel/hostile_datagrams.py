@@ -154,6 +154,7 @@ class HostileDatagrams:
             "task": None,
             "fresh": False,
             "times": 3,
+            "percent": 40,
             "upload": chance.randbytes(8),
             "part": b"part",
             "sha256": chance.randbytes(32),

@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, SLOWEST_PERCENT
 from kurt2rt.channel.protocol.request_types import Request, checks_of
 from kurt2rt.channel.protocol.requests import REQUESTS
 from kurt2rt.channel.protocol.schema import (
@@ -211,6 +211,8 @@ def encode_state(state: State) -> bytes:
     if standing is not None and standing.stop is not None:
         standing = standing._replace(says=stop_text(standing.stop))
     picture["sd"] = None if standing is None else _row(standing[:-1], _STANDING)
+    if state.lesson_speed != 1.0:
+        picture["ls"] = round(100 * state.lesson_speed)
     return encode_plainly(picture)
 
 
@@ -234,6 +236,7 @@ def decode_state(payload: bytes) -> State:
     if shown is not None and not len(shown[2]) == len(shown[3]) == len(shown[4]):
         raise WireError("shown drive: has to have as many actions as ticks")
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
+    lesson_percent = Int(SLOWEST_PERCENT, 100)("lesson speed", picture.get("ls", 100))
     sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
     return State(
@@ -250,6 +253,7 @@ def decode_state(payload: bytes) -> State:
         hold=None if hold is None else HoldState(*hold),
         shown=None if shown is None else ShownState(*shown),
         standing=None if standing is None else _standing(*standing, stopped=stopped),
+        lesson_speed=lesson_percent / 100,
         **values,
     )
 

@@ -106,6 +106,7 @@ _FACTS = MapOf(
     taught_now=Flag(),
     hindrances=ManyOf(NAME, most=8),
     broken_sensors=MayLack(ManyOf(NAME, most=64)),
+    lesson_speed=MayLack(Float(1.0)),
     doubt=MayLack(OrNone(MapOf(DoubtFacts, score=_REAL, threshold=_REAL, sensor=NAME, reads=NAME, taught=NAME))),
 )
 

@@ -1,5 +1,7 @@
 """Version and limits of the wire contract."""
 
+from kurt2rt.core.lesson_speed import SLOWEST
+
 VERSION = 4
 """Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""
 BOOT_BYTES = 4
@@ -26,3 +28,5 @@ MOST_UPLOAD_BYTES = 8_000_000
 """Largest file to upload: twice the size of 24 hours of teaching."""
 FASTEST = 10
 """Most robot seconds in one second."""
+SLOWEST_PERCENT = round(100 * SLOWEST)
+"""Least speed of a lesson."""

@@ -12,6 +12,7 @@ from kurt2rt.channel.protocol.limits import (
     LONGEST_TEXT,
     MOST_LESSONS,
     SHA256_BYTES,
+    SLOWEST_PERCENT,
     UPLOAD_PART_BYTES,
 )
 from kurt2rt.channel.protocol.request_types import (
@@ -189,6 +190,14 @@ class PhaseRequest(CommandRequest):
     """Choose the training phase."""
 
     phase: Annotated[Phase, OneOf(tuple(each.value for each in Phase), Phase)]
+
+
+@_at("/lesson/speed")
+class LessonSpeedRequest(CommandRequest):
+    """Set the speed of lessons."""
+
+    percent: Annotated[int, Int(SLOWEST_PERCENT, 100)]
+    """Speed of actions in phases 1 and 2, in per cent of their own."""
 
 
 @_at("/pursue")

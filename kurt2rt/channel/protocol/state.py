@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from hal.simulation import SimulatedPlace
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing import DRIVES, Standing, standing_for
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
@@ -184,6 +185,13 @@ class State:
     """Newest drive by hand that can be taught; None without one, and from a robot of an older version."""
     standing: Standing | None = None
     """None from a robot of an older version."""
+    lesson_speed: float = 1.0
+    """Fraction of their speed at which actions drive in phases 1 and 2, from 0.2; 1 is no slow lesson."""
+
+    @property
+    def speed_share(self) -> float:
+        """Fraction of their speed at which actions drive in the present phase."""
+        return self.lesson_speed if self.phase <= Phase.CORRECTIONS else 1.0
 
     @property
     def stands(self) -> Standing:

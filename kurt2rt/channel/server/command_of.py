@@ -8,6 +8,7 @@ from kurt2rt.channel.protocol.requests import (
     CorrectRequest,
     DeleteRequest,
     HandOverRequest,
+    LessonSpeedRequest,
     NameRequest,
     PhaseRequest,
     PursueRequest,
@@ -40,6 +41,7 @@ from kurt2rt.core.teaching.commands import (
     Reward,
     RunBehaviour,
     Seek,
+    SetLessonSpeed,
     SetPhase,
     StopSeeking,
     Take,
@@ -72,6 +74,8 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Undo(command_id, device, lesson)
         case PhaseRequest(phase=phase):
             return SetPhase(command_id, device, phase, request.seen)
+        case LessonSpeedRequest(percent=percent):
+            return SetLessonSpeed(command_id, device, percent / 100)
         case PursueRequest(behaviour=behaviour):
             return Pursue(command_id, device, behaviour, request.seen)
         case NameRequest(name=name, decision_tick=tick):

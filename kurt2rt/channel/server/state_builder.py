@@ -107,6 +107,7 @@ class StateBuilder:
             shown=self._shown(record.tick),
             progress=runtime.progress.progress(),
             standing=record.standing,
+            lesson_speed=commands.lesson_speed.share,
             **self._nearest(record),
             **self._critic(record),
             **_plan(record),

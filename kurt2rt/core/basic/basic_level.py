@@ -89,6 +89,8 @@ class BasicLevel:
         self._doubts = None if doubt is None else DoubtWatch(doubt)
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
+        self.counts = True
+        """Whether this tick counts for the minimum time of an action; a slow lesson leaves out some."""
         self.held_action = ""
         """Action whose minimum time was not over at the last decision; empty if any action could drive."""
         self._decisions = 0
@@ -172,7 +174,7 @@ class BasicLevel:
         answers: bool,
     ) -> Decision:
         """Step the held action; ask if it is lost, or in doubt."""
-        wheel_speeds = self._held.step(readings)
+        wheel_speeds = self._held.step(readings, counts=self.counts)
         if self._held.lost:
             # The action is not restarted: it goes on by itself once its situation is known again.
             return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)

@@ -45,10 +45,13 @@ class HeldAction:
         """Return whether the driving action does not know its situation; read it after `step`."""
         return self._active is not None and self._active.lost
 
-    def step(self, readings: SensorReadings) -> WheelSpeeds:
-        """Return the wheel speeds of the driving action in this tick; call it only after `select`."""
+    def step(self, readings: SensorReadings, *, counts: bool = True) -> WheelSpeeds:
+        """Return the wheel speeds in m/s of the driving action in this tick; call it only after `select`.
+
+        `counts`: whether the tick counts for the minimum time.
+        """
         assert self._active is not None
-        self._ticks += 1
+        self._ticks += counts
         return self._active.step(readings)
 
     def allow_switch(self) -> None:

@@ -45,20 +45,38 @@ class ExpectationTracker:
         self._others = {rla_id: each for rla_id, each in (saved or {}).items() if self._is_elsewhere(rla_id)}
 
     def update(
-        self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
+        self,
+        tick: int,
+        decision: Decision,
+        situation: Situation,
+        behaviour: str,
+        *,
+        driving: bool,
+        slow: bool = False,
+        counts: bool = True,
     ) -> Surprise | None:
         """Learn from one tick before its transition is counted; return the surprise, the mid level's first.
 
-        Call this on every tick. Returns None if no RLA ended or too few ends were known. `driving`: whether the wheels
-        turned.
+        Call this on every tick. Returns None if no RLA ended or too few ends were known.
+
+        Args:
+            tick: number of the tick.
+            decision: of the tick.
+            situation: of the tick.
+            behaviour: active taught behaviour.
+            driving: whether the wheels turned.
+            slow: whether they were slowed by a slow lesson. The basic level learns nothing then, because where and when
+                one of its RLAs ends depends on the speed.
+            counts: whether the tick counts on the clock of the way, by which the mid level learns how long a way is.
         """
-        surprise = self._basic.update(tick, decision.rla_id if driving else None, situation.vector, behaviour)
+        drove = driving and not slow
+        surprise = self._basic.update(tick, decision.rla_id if drove else None, situation.vector, behaviour)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
         if commanded.overridden or decision.cause is DecisionCause.TEACHER:
             following.restart()
-        return following.update(commanded, mid.vector, driving=driving) or surprise
+        return following.update(commanded, mid.vector, driving=driving and counts) or surprise
 
     def on_event(self, event: TeachingEvent) -> int | None:
         """Drop the expectation of the RLA whose action an applied event changed.

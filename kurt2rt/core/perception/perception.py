@@ -20,7 +20,7 @@ class Situation(NamedTuple):
     vector: NDArray[np.float64]
     """Recent features, then their averages over the history; shape (dimensions,)."""
     history_frozen: bool
-    """True while the robot waits for its teacher: the averages do not change."""
+    """True while the robot waits for its teacher, and in ticks that a slow lesson adds: the averages do not change."""
 
 
 class Perception:
@@ -44,7 +44,7 @@ class Perception:
     def perceive(self, readings: SensorReadings, *, history_frozen: bool) -> Situation:
         """Return the situation of this tick. Call it once per tick, because it adds a step to the averages.
 
-        `history_frozen`: whether the averages stay as they are, because the robot stands and waits.
+        `history_frozen`: whether the averages stay as they are, because the robot waits or drives slowly.
         """
         vector = np.empty(2 * self._width)
         self._write(vector, 0, *self._extract(readings.infrared_counts, self._driven))

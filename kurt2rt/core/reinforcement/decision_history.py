@@ -21,6 +21,7 @@ class DecisionHistory:
         self._has_situation = [False] * capacity
         self._touches = [False] * capacity
         self._teachable = [False] * capacity
+        self._slow = [False] * capacity
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
@@ -38,6 +39,7 @@ class DecisionHistory:
         *,
         touches: bool = False,
         teachable: bool = True,
+        slow: bool = False,
         circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
     ) -> None:
@@ -50,6 +52,7 @@ class DecisionHistory:
             behaviour: active taught behaviour.
             touches: whether the robot asked at a bumper instead of driving.
             teachable: whether a held action may become a lesson about it: an RLA or a hold drove, or the robot asked.
+            slow: whether the wheels were slowed by a slow lesson; no reward is about such a tick.
             circumstances: appraisal features; None without a critic or situation.
             opinion: critic's opinion; None without one.
         """
@@ -61,9 +64,10 @@ class DecisionHistory:
             self._situations[row] = situation.vector
         self._touches[row] = touches
         self._teachable[row] = teachable and has_situation
+        self._slow[row] = slow
         rla_id = self._rlas[row] = decision.rla_id
         self._behaviours[row] = behaviour
-        self._answering[row] = rla_id if rla_id is not None and decision.answers else 0
+        self._answering[row] = rla_id if rla_id is not None and decision.answers and not slow else 0
         self._circumstances[row] = circumstances
         self._opinions[row] = opinion
 
@@ -79,6 +83,7 @@ class DecisionHistory:
         self._has_situation[:] = other._has_situation
         self._touches[:] = other._touches
         self._teachable[:] = other._teachable
+        self._slow[:] = other._slow
         self._rlas[:] = other._rlas
         self._behaviours[:] = other._behaviours
         self._circumstances[:] = other._circumstances
@@ -96,6 +101,10 @@ class DecisionHistory:
     def teachable(self, tick: int) -> bool:
         """Return whether a held action may become a lesson about a stored tick."""
         return self._teachable[tick % self._capacity]
+
+    def slow(self, tick: int) -> bool:
+        """Return whether a stored tick was part of a slow lesson."""
+        return self._slow[tick % self._capacity]
 
     def touched(self, tick: int) -> bool:
         """Return whether the robot asked at a bumper in a stored tick."""
@@ -115,7 +124,7 @@ class DecisionHistory:
         return self._behaviours[tick % self._capacity]
 
     def answering_rla(self, tick: int) -> int | None:
-        """Return the id of the RLA that drove in a stored tick inside its radius; None if none did.
+        """Return the id of the RLA that drove in a stored tick inside its radius at full speed; None if none did.
 
         Rewards are about this RLA.
         """

@@ -9,6 +9,7 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Critic, Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.lesson_speed import SLOWEST, LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.perception import Situation
@@ -38,6 +39,7 @@ from kurt2rt.core.teaching.commands import (
     Resume,
     RunBehaviour,
     Seek,
+    SetLessonSpeed,
     SetPhase,
     Stop,
     StopSeeking,
@@ -64,6 +66,7 @@ from kurt2rt.core.teaching.stream_handler import StreamHandler
 from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
+_TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,6 +84,8 @@ class HandlerParts:
     goals: GoalCommands | None = None
     delay: TeacherDelay | None = None
     """Delay of the teachers; None: it begins with the default."""
+    lesson_speed: float = 1.0
+    """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 
 
 class CommandHandler:
@@ -126,6 +131,7 @@ class CommandHandler:
         self._late = LatePresses(self.recent, self.delay)
         self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
+        self.lesson_speed = LessonSpeed(parts.lesson_speed)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
         self._clock = SessionClock()
 
@@ -187,9 +193,24 @@ class CommandHandler:
         if was_driving is not self._rewind.was_driving:
             self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
+        self._level.counts = self.lesson_speed.counts
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
+
+    @property
+    def slows_actions(self) -> bool:
+        """Return whether an action that drives now is slowed: by a teacher, in phases 1 and 2.
+
+        Speeds that the teacher drives by hand are not.
+        """
+        return (
+            self.lesson_speed.share < 1.0
+            and self.phase in _TAUGHT_PHASES
+            and self.teacher_available
+            and self.authority.teacher is not None
+            and self.authority.driving_press is None
+        )
 
     @property
     def requires_teacher(self) -> bool:
@@ -293,6 +314,8 @@ class CommandHandler:
                 return LessonResult(self._control.carry_out(command, tick))
             case SetPhase():
                 return LessonResult(self._set_phase(command))
+            case SetLessonSpeed(share=share):
+                return LessonResult(self._set_lesson_speed(share))
             case Pursue():
                 return LessonResult(self._selection.select(command, tick))
             case Seek() | StopSeeking() | BeAt():
@@ -310,6 +333,13 @@ class CommandHandler:
                 if isinstance(command, Undo):
                     self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
+
+    def _set_lesson_speed(self, share: float) -> Outcome:
+        percent = round(100 * share)
+        if not SLOWEST <= share <= 1.0:
+            raise CommandRefusedError(RefusalCode.NO_LESSON_SPEED, percent=percent, least=round(100 * SLOWEST))
+        self.lesson_speed.share = share
+        return Outcome.of(ResultCode.LESSON_SPEED_SET, percent=percent)
 
     def _set_phase(self, command: SetPhase) -> Outcome:
         self.phase = command.phase

@@ -252,6 +252,16 @@ class SetPhase:
 
 
 @dataclass(frozen=True, slots=True)
+class SetLessonSpeed:
+    """Set the fraction of their speed at which actions drive while a teacher teaches them (slow lessons)."""
+
+    command_id: str
+    teacher: str
+    share: float
+    """SLOWEST of kurt2rt.core.lesson_speed to 1."""
+
+
+@dataclass(frozen=True, slots=True)
 class BeginSession:
     """Begin a session; its teaching time runs."""
 
@@ -326,6 +336,7 @@ Command = (
     | StopSeeking
     | BeAt
     | SetPhase
+    | SetLessonSpeed
     | BeginSession
     | EndSession
     | Take

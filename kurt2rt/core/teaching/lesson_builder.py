@@ -252,6 +252,7 @@ class LessonBuilder:
         rla_id = self._recent.driving_rla(meant)
         if rla_id is None:
             raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
+        self._require_full_speed(meant)
         rla = self._require_rla(rla_id)
         if self._recent.answering_rla(meant) != rla_id:
             refuse(rla_outcome(RefusalCode.OUTSIDE_RADIUS, rla))
@@ -264,7 +265,9 @@ class LessonBuilder:
     def _appraise(self, command: Appraise, origin: Origin) -> LessonResult:
         if self._appraisal_lessons is None:
             raise CommandRefusedError(RefusalCode.NO_CRITIC)
-        return self._appraisal_lessons.build(command, self._known_tick(command.decision_tick), origin)
+        meant = self._known_tick(command.decision_tick)
+        self._require_full_speed(meant)
+        return self._appraisal_lessons.build(command, meant, origin)
 
     def _undo(self, lesson: str | None, origin: Origin, *, alone: bool) -> LessonResult:
         """Undo a lesson, or all of a hold: by its id, or with the last lesson unless that is to be undone alone."""
@@ -299,6 +302,11 @@ class LessonBuilder:
         back = self._system.restored_by_undo(lesson)
         if back is not None and not self._can_act(back):
             refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
+
+    def _require_full_speed(self, tick: int) -> None:
+        """Raise CommandRefusedError if a stored tick was slow: values and critic are about driving at full speed."""
+        if self._recent.slow(tick):
+            raise CommandRefusedError(RefusalCode.DROVE_SLOWLY)
 
     def _known_tick(self, decision_tick: int | None) -> int:
         # Default to the newest remembered tick: the previous number may have been missed.

@@ -170,7 +170,7 @@ class TrainingRun(Episode):
             simulation,
             runtime,
             random.Random(f"course of {session}"),
-            stuck_after_s=teaching.rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s,
+            stuck_after_s=teaching.slow_rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s,
             on_progress=on_progress,
         )
         self._plan = plan

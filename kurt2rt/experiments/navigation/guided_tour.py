@@ -128,7 +128,7 @@ class TourRun(Episode):
             simulation,
             runtime,
             random.Random(session),
-            stuck_after_s=teaching.rescue_after_s,
+            stuck_after_s=teaching.slow_rescue_after_s,
             on_progress=on_progress,
         )
         assert isinstance(self.metric, Errands)

@@ -71,6 +71,7 @@ def collect_facts(
         broken_sensors=tuple(sensor.title for sensor in record.broken_sensors),
         hindrances=_blocking_causes(runtime, record),
         doubt=_doubt(runtime, decision, record.situation.vector),
+        lesson_speed=record.lesson_speed,
     )
 
 

@@ -182,6 +182,8 @@ class DecisionFacts:
     """Causes that would have stopped the robot without a stop or manual driving: values of DecisionCause."""
     doubt: DoubtFacts | None = None
     """None if the robot has no score of doubt, and at a standstill for another reason."""
+    lesson_speed: float = 1.0
+    """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""
 
     @property
     def stopped_because(self) -> str:

@@ -77,7 +77,13 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     else:
         lines.append(_stands(facts))
         lines += _autonomous_action(facts)
-    return [*lines, *_broken_sensors(facts)]
+    return [*lines, *_slow_lesson(facts), *_broken_sensors(facts)]
+
+
+def _slow_lesson(facts: DecisionFacts) -> list[str]:
+    if facts.lesson_speed == 1.0:
+        return []
+    return [f"It is a slow lesson: the robot drives at {100 * facts.lesson_speed:.0f} % of the speed of its actions."]
 
 
 def _broken_sensors(facts: DecisionFacts) -> list[str]:

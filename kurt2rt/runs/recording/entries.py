@@ -108,6 +108,8 @@ class TickEntry(NamedTuple):
     """CRC-32 of the situation vector as little-endian float64."""
     knowledge: str | None
     """Hash of the knowledge after this tick (RlaSystem.knowledge_hash); None in ticks without it."""
+    lesson_speed: float | None = None
+    """Fraction of the decided speeds that was asked of the guard in a slow lesson; None at full speed."""
 
 
 RECORDED_AS = {"readings": "senses", "saving_error": "trouble"}
@@ -133,6 +135,7 @@ def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> Tic
         events=record.events,
         situation_crc32=zlib.crc32(record.situation.vector.astype("<f8", copy=False).tobytes()),
         knowledge=knowledge,
+        lesson_speed=record.lesson_speed if record.lesson_speed < 1.0 else None,
     )
 
 

@@ -43,6 +43,7 @@ TICK_SCHEMA: JsonSchema = {
         commands=_many({"type": "object"}),
         trouble=_TEXT,
         saved=_FLAG,
+        lesson_speed=_NUMBER,
         decision=_map(
             wheels=_WHEELS,
             cause=_TEXT,

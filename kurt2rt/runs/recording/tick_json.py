@@ -70,6 +70,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             "commands": [encode_command(each) for each in entry.commands] or None,
             "trouble": entry.saving_error,
             "saved": entry.saved or None,
+            "lesson_speed": entry.lesson_speed,
             "decision": _decision(entry.decision),
             "behaviour": entry.behaviour,
             "opinion": None if entry.opinion is None else _tuple(entry.opinion),

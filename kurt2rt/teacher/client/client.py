@@ -337,6 +337,14 @@ class TeacherClient(ObserverClient):
             return await self._move("phase 5", requests.PhaseRequest, phase=phase)
         return await self._command(requests.PhaseRequest, phase=phase)
 
+    async def set_lesson_speed(self, percent: int) -> Answer:
+        """Set the speed of lessons (slow lessons): until the robot's program ends, or another speed is set.
+
+        In phases 1 and 2 actions drive at so many per cent of their speed, 20 to 100, and their knowledge drives at
+        full speed afterwards. Raises NoAnswerError.
+        """
+        return await self._command(requests.LessonSpeedRequest, percent=percent)
+
     async def save(self, label: str = "") -> Answer:
         """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`.
 

@@ -187,6 +187,7 @@ class Teacher:
     take = _blocking(TeacherClient.take)
     hand_over = _blocking(TeacherClient.hand_over)
     set_phase = _blocking(TeacherClient.set_phase)
+    set_lesson_speed = _blocking(TeacherClient.set_lesson_speed)
     begin_session = _blocking(TeacherClient.begin_session)
     end_session = _blocking(TeacherClient.end_session)
     save = _blocking(TeacherClient.save)

@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, SLOWEST_PERCENT, UPLOAD_ID_BYTES
 from kurt2rt.channel.protocol.requests import PACKAGE
 from kurt2rt.channel.protocol.schema import (
     Bytes,
@@ -102,6 +102,9 @@ COMMANDS: Mapping[str, CommandKind] = {
     "phase": CommandKind(
         lambda robot, given, _: robot.set_phase(given["phase"]),
         {"phase": OneOf(tuple(each.value for each in Phase), Phase)},
+    ),
+    "lesson_speed": CommandKind(
+        lambda robot, given, _: robot.set_lesson_speed(given["percent"]), {"percent": Int(SLOWEST_PERCENT, 100)}
     ),
     "pursue": CommandKind(lambda robot, given, _: robot.pursue(given["behaviour"]), {"behaviour": _NAME}, moves=True),
     "name": CommandKind(lambda robot, given, tick: robot.name_situation(given["name"], of=tick), {"name": _NAME}),

@@ -14,7 +14,10 @@ class RobotRepositioner:
     """Places that the robot drove through, and the detection that it has stayed about one place for too long."""
 
     def __init__(self, after_s: float, least_m: float, period_s: float, chance: random.Random) -> None:
-        """Reposition a robot that moved at most `least_m` in `after_s`; `period_s` is the length of a tick."""
+        """Reposition a robot that moved at most `least_m` in `after_s`, longer in a slow lesson.
+
+        `period_s` is the length of a tick.
+        """
         self._after_ticks = round(after_s / period_s)
         self._least_m = least_m
         self._chance = chance
@@ -45,7 +48,7 @@ class RobotRepositioner:
             self._begin(place, state.tick)
         elif waits:
             self._begin(place, state.tick)
-        elif state.tick - self._since >= self._after_ticks:
+        elif (state.tick - self._since) * state.speed_share >= self._after_ticks:
             self._from = None  # the next state gives the new start
             return self._choose(place)
         return None

@@ -277,6 +277,8 @@ class TerminalTeacher:
                 return robot.delete(int(rla_id))
             case ["phase", ("1" | "2" | "3" | "4" | "5") as number]:
                 return robot.set_phase(Phase(int(number)))
+            case ["speed", percent] if _is_count(percent):
+                return robot.set_lesson_speed(int(percent))
             case ["pursue", behaviour]:
                 return robot.pursue(behaviour)
             case ["begin", *name]:

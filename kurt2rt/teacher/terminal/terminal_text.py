@@ -29,6 +29,7 @@ rewind SECONDS ACTION    corrects what it did so many seconds (up to 10) before 
 undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
 replace N ACTION, delete N     change or end RLA N
 phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
+speed PERCENT            slow lessons: in phases 1 and 2 it drives at 20 to 100 % of its speed
 begin [NAME], end        a session of teaching, with its clock
 save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
 health                   late ticks, sensors, bus, disk; faults and their cures

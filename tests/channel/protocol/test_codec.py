@@ -440,3 +440,22 @@ def test_shown_drive_of_unequal_lists_is_refused() -> None:
     body["dm"][2] = ["forward"]
     with pytest.raises(WireError):
         decode_state(cbor2.dumps(body))
+
+
+@pytest.mark.parametrize("share", [1.0, 0.6, 0.2])
+def test_lesson_speed_is_in_the_state_of_a_slow_lesson_only(share: float) -> None:
+    body = encode_state(state(lesson_speed=share))
+    assert ("ls" in cbor2.loads(body)) is (share < 1.0)
+    assert decode_state(body).lesson_speed == share
+
+
+@pytest.mark.parametrize("percent", [0, 19, 101, 60.5, "60", None])
+def test_lesson_speed_out_of_range_is_refused(percent: object) -> None:
+    body = cbor2.loads(encode_state(state(lesson_speed=0.6)))
+    with pytest.raises(WireError):
+        decode_state(cbor2.dumps({**body, "ls": percent}))
+
+
+def test_speed_share_is_that_of_the_phase() -> None:
+    shares = [state(lesson_speed=0.6, phase=phase).speed_share for phase in range(1, 6)]
+    assert shares == [0.6, 0.6, 1.0, 1.0, 1.0]

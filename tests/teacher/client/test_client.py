@@ -31,6 +31,7 @@ from kurt2rt.channel.protocol.requests import (
     ExportRequest,
     HandOverRequest,
     HelloRequest,
+    LessonSpeedRequest,
     LessonsRequest,
     MoveWallRequest,
     NameRequest,
@@ -327,6 +328,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.undo()
     await client.undo("phone-01")
     await client.set_phase(Phase.CORRECTIONS)
+    await client.set_lesson_speed(60)
     await client.pursue("turn_left")
     await client.answer("turn_left", level=MID, alternative=True)
     await client.correct("turn_left", of=80, level=MID)
@@ -359,6 +361,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (UndoRequest, {"lesson": None}),
         (UndoRequest, {"lesson": "phone-01"}),
         (PhaseRequest, {"phase": Phase.CORRECTIONS}),
+        (LessonSpeedRequest, {"percent": 60}),
         (PursueRequest, {"behaviour": "turn_left"}),
         (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "alternative": True}),
         (CorrectRequest, {"action": "turn_left", "decision_tick": 80, "level": MID}),

@@ -212,6 +212,9 @@ class FakeRobot(TeacherClient):
     async def set_phase(self, phase: Phase) -> Answer:
         return await self._answer("set_phase", phase)
 
+    async def set_lesson_speed(self, percent: int) -> Answer:
+        return await self._answer("lesson_speed", percent)
+
     async def pursue(self, behaviour: str) -> Answer:
         return await self._answer("pursue", behaviour)
 

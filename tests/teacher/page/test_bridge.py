@@ -480,6 +480,7 @@ COMMANDS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("teach_shown", {"press_id": 91, "segments": [0, 2]}, ("teach_shown", [0, 2], 91)),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
+    ("lesson_speed", {"percent": 60}, ("lesson_speed", 60)),
     ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),
     ("name", {"name": "door"}, ("name_situation", "door", 102)),
     ("seek", {"name": "door"}, ("seek", "door")),

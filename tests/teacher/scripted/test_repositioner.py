@@ -17,14 +17,16 @@ def place(x_m: float, collisions: int = 0) -> SimulatedPlace:
 class Watched:
     """Robot on a line with its repositioner."""
 
-    def __init__(self) -> None:
+    def __init__(self, lesson_speed: float = 1.0) -> None:
+        self.lesson_speed = lesson_speed
         self.repositioner = RobotRepositioner(AFTER_S, 1.0, PERIOD_S, random.Random(3))
         self.tick = 0
 
     def is_at(self, x_m: float, *, collisions: int = 0, waits: bool = False) -> SimulatedPlace | None:
         """Move the robot there within 0.5 s."""
         self.tick += 5
-        return self.repositioner.update(state(tick=self.tick, place=place(x_m, collisions)), waits=waits)
+        seen = state(tick=self.tick, place=place(x_m, collisions), phase=2, lesson_speed=self.lesson_speed)
+        return self.repositioner.update(seen, waits=waits)
 
     def stays(self, x_m: float, seconds: float, *, waits: bool = False) -> list[SimulatedPlace]:
         """Keep the robot about a place; return the places to put it."""
@@ -40,6 +42,14 @@ def test_update_without_progress_returns_a_passed_place() -> None:
     assert to.x_m in (0.0, 1.2, 2.4, 3.6, 4.8)
     assert to.heading_rad == 0.5
     assert robot.stays(to.x_m, 14.0) == []  # the time starts again there
+
+
+def test_update_waits_longer_in_a_slow_lesson() -> None:
+    robot = Watched(lesson_speed=0.5)
+    robot.is_at(0.0)
+    robot.is_at(1.2)
+    assert robot.stays(1.2, 29.0) == []
+    assert len(robot.stays(1.2, 2.0)) == 1
 
 
 def test_update_with_progress_or_waiting_returns_none() -> None:

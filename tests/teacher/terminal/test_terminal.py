@@ -23,6 +23,7 @@ from kurt2rt.channel.protocol.requests import (
     HealthRequest,
     HelloRequest,
     HoldRequest,
+    LessonSpeedRequest,
     LessonsRequest,
     NameRequest,
     PhaseRequest,
@@ -192,6 +193,17 @@ async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing,
             assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
         assert robot.all_of(ResumeRequest) == []
         assert [each.phase for each in robot.all_of(PhaseRequest)] == [Phase.CORRECTIONS]
+
+
+async def test_speed_sets_the_speed_of_lessons(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = RobotStub()
+        console.type("speed 60")
+        await console.reads("/lesson/speed is done")
+        console.type("speed 10")
+        await console.reads("refused:")
+        assert [each.percent for each in robot.all_of(LessonSpeedRequest)] == [60]
 
 
 async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:

@@ -351,7 +351,8 @@ function show() {
   if (!state || !hello || shown === state) return;
   shown = state;
   setText($("phase"), `phase ${state.phase}`);
-  setText($("phase-name"), session.phaseNames[state.phase - 1] ?? "");
+  const slow = state.speed_share < 1; // a slow lesson
+  setText($("phase-name"), slow ? `slow, ${Math.round(100 * state.speed_share)} %` : session.phaseNames[state.phase - 1] ?? "");
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));

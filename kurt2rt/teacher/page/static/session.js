@@ -24,6 +24,12 @@ function newSession() {
   return `${now.getFullYear()}-${two(now.getMonth() + 1)}-${two(now.getDate())} ${two(now.getHours())}:${two(now.getMinutes())}`;
 }
 
+const LESSON_SPEEDS = [100, 80, 60, 40, 20]; // in per cent
+
+function lessonSpeed(percent) {
+  return new Option(percent === 100 ? "full" : `${percent} %`, String(percent));
+}
+
 export class SessionPanel {
   #sendCommand;
   #session = null; // name of the present session
@@ -34,6 +40,10 @@ export class SessionPanel {
     this.#sendCommand = sendCommand;
     $("session-button").addEventListener("click", () => this.#beginOrEnd());
     $("hand-over").addEventListener("click", () => sendCommand("hand_over", { to: null }, "hand over"));
+    $("lesson-speed").replaceChildren(...LESSON_SPEEDS.map(lessonSpeed));
+    $("lesson-speed").addEventListener("input", () => {
+      sendCommand("lesson_speed", { percent: Number($("lesson-speed").value) }, "lesson speed");
+    });
   }
 
   build(hello) {
@@ -51,6 +61,11 @@ export class SessionPanel {
       button.setAttribute("aria-pressed", String(button.dataset.behaviour === state.behaviour));
     }
     setText($("phase-says"), PHASES_SAY[state.phase - 1] ?? "");
+    const speed = $("lesson-speed");
+    const percent = String(Math.round(100 * state.lesson_speed));
+    if (![...speed.options].some((option) => option.value === percent)) speed.append(lessonSpeed(Number(percent)));
+    if (document.activeElement !== speed) speed.value = percent;
+    speed.disabled = !inCharge;
     this.#session = state.session;
     setText($("session-button"), state.session === null ? "Begin" : "End");
     const name = $("session-name");
