@@ -32,7 +32,7 @@ from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
 from kurt2rt.experiments.transfer.tables import all_tables
-from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON
+from kurt2rt.experiments.transfer.variants import CONTROLS, taught_on_by
 from kurt2rt.platform.text_table import print_whole
 
 _WORLDS = {"streets": "streets-SEED"}
@@ -45,6 +45,15 @@ class _Options:
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     teacher: Annotated[str, teacher_option("ordinary")] = "ordinary"
+    there: Annotated[
+        str | None,
+        typer.Option(
+            "--teacher-there",
+            metavar="NAME|PATH",
+            help="Scripted teacher of the new world. Default: the teacher of home.",
+            show_default=False,
+        ),
+    ] = None
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 1100-1119.")] = "1100-1119"
     world: Annotated[
         list[str] | None,
@@ -94,8 +103,9 @@ def transfer(options: _Options) -> None:
     Each robot is taught in the world of its task. Then the same teacher goes on
     in a new world, and answers and corrects there as at home. The robot is
     examined there without its teacher after 0, 2, 5, 10, 15 and 20 presses, and
-    at home at the end, each time against the policy's own drive from the same
-    start. The result is a curve: the share of robots that are right, by presses.
+    at home as soon as it is right there and at the end, each time against the
+    policy's own drive from the same start. The result is a curve: the share of
+    robots that are right, by presses.
 
     For example, other rooms for each robot, with controls; and other streets:
 
@@ -116,7 +126,7 @@ def transfer(options: _Options) -> None:
         task,
         NewWorlds(_places(task.name, options.world), _after(options.after), options.seconds),
         parse_seeds(options.seeds),
-        (TAUGHT_ON, *(CONTROLS if options.controls else ())),
+        (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
         JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
     )
     figure = options.out / "transfer.png"

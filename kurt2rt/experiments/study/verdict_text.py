@@ -49,13 +49,13 @@ _TEXTS: Mapping[Target, tuple[str, str, str]] = {
         "{without_error} of {robots}",
     ),
     Target.RIGHT_IN_NEW_WORLD: (
-        "right there after {presses} presses",
+        "right there after at most {presses} presses",
         "at least {needed} of {judged}",
         "{right} of {judged}",
     ),
     Target.PRESSES_UNTIL_RIGHT: ("presses until right, median", "at most {limit}", "{median}"),
     Target.RIGHT_AT_HOME: (
-        "right at home afterwards",
+        "right at home as soon as right there",
         "{robots} of {robots}",
         "{right} of {robots} (before: {before})",
     ),

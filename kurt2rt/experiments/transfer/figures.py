@@ -25,7 +25,7 @@ def draw_curves(study: TransferStudy, path: Path) -> None:
         for number, summary in enumerate(here):
             _draw(axes, study.plan.after, summary, number)
         axes.set_title(f"new world: {Path(place).stem}", fontsize="medium")
-        axes.set_xlabel("presses in the new world")
+        axes.set_xlabel("presses in the new world (dotted: taught until right)")
         axes.set_ylim(-0.03, 1.03)
         axes.grid(alpha=0.3)
         axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
@@ -37,6 +37,9 @@ def _draw(axes: Axes, after: tuple[int, ...], summary: TransferSummary, number: 
     judged = len(summary.judged)
     if not judged:
         return
+    colour = _COLOURS[number % len(_COLOURS)]
+    by = [summary.right_by(presses) / judged for presses in after]
+    axes.plot(after, by, color=colour, linestyle=":", linewidth=1.2)
     counts = [summary.right_after(presses) for presses in after]
     shares = [count / judged for count in counts]
     intervals = [wilson_interval(count, judged) for count in counts]
@@ -46,7 +49,7 @@ def _draw(axes: Axes, after: tuple[int, ...], summary: TransferSummary, number: 
         [presses + _APART * number for presses in after],
         shares,
         yerr=(below, above),
-        color=_COLOURS[number % len(_COLOURS)],
+        color=colour,
         marker="o",
         markersize=4,
         capsize=2,

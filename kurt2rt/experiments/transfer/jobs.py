@@ -10,6 +10,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report, run_exam, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.route.lesson import copy_knowledge
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.transfer.outcome import Checkpoint, Drive, HomeOutcome, TransferOutcome, drive_of
@@ -97,6 +98,7 @@ class HomeJob(StudyJob):
             made_of=self.made_of,
             seed=self.seed,
             presses=lesson.presses,
+            lessons=len(events),
             rlas=len(lesson.rlas),
             knowledge_hash=lesson.knowledge_hash,
             drive=await at_home.examine(events, policy),
@@ -106,7 +108,7 @@ class HomeJob(StudyJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransferJob(StudyJob):
-    """Lesson in a new world, and exams there after some of its presses, and at home at the end.
+    """Lesson in a new world, and exams there after some of its presses, and at home.
 
     The task is that of home.
     """
@@ -137,7 +139,7 @@ class TransferJob(StudyJob):
     @property
     def robot_time_s(self) -> float:
         """Time of the lesson, the exams and the policy's drive in s, at most."""
-        return self.seconds + (len(self.after) + 2) * self.task.exam.duration_s
+        return self.seconds + (len(self.after) + 3) * self.task.exam.duration_s
 
     async def measure(self, knowledge: Path, report: Report) -> TransferOutcome:
         """Teach on in the new world into the file `knowledge`, examine the robot and return the outcome.
@@ -154,18 +156,10 @@ class TransferJob(StudyJob):
         )
         there = Examiner(self.factory, self.robot, task, self.world, self.seed, report)
         policy = await there.drive_policy()
-        checkpoints: list[Checkpoint] = []
-        for presses in self.after:
-            lessons = events_before_press(events[known:], lesson.press_ticks, presses)
-            if checkpoints and checkpoints[-1].lessons == lessons:  # the same knowledge drives the same exam
-                drive = checkpoints[-1].drive
-            else:
-                drive = await there.examine(events[: known + lessons], policy)
-            ticks = lesson.press_ticks
-            taught_s = ticks[presses] * self.robot.can.cycle_s if presses < len(ticks) else lesson.teaching_s
-            checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
-        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
-        taught = known + checkpoints[-1].lessons
+        checkpoints = await self._checkpoints(there, policy, lesson, events, known)
+        when_right = next((each.lessons for each in checkpoints if each.drive.passed), checkpoints[-1].lessons)
+        at_end = checkpoints[-1].lessons
+        home = await self._drive_at_home(events[: known + at_end], report)
         return TransferOutcome(
             made_of=self.made_of,
             seed=self.seed,
@@ -180,5 +174,32 @@ class TransferJob(StudyJob):
             knowledge_hash=lesson.knowledge_hash,
             checkpoints=tuple(checkpoints),
             policy=policy,
-            home=await at_home.examine(events[:taught], self.results.read(self.home, HomeOutcome).policy),
+            home_when_right=home
+            if when_right == at_end
+            else await self._drive_at_home(events[: known + when_right], report),
+            home=home,
         )
+
+    async def _checkpoints(
+        self, there: Examiner, policy: Drive, lesson: TrainingResult, events: Sequence[TeachingEvent], known: int
+    ) -> list[Checkpoint]:
+        """Examine the robot in the new world after each number of presses; `known`: number of events of home."""
+        checkpoints: list[Checkpoint] = []
+        ticks = lesson.press_ticks
+        for presses in self.after:
+            lessons = events_before_press(events[known:], ticks, presses)
+            if checkpoints and checkpoints[-1].lessons == lessons:  # the same knowledge drives the same exam
+                drive = checkpoints[-1].drive
+            else:
+                drive = await there.examine(events[: known + lessons], policy)
+            taught_s = ticks[presses] * self.robot.can.cycle_s if presses < len(ticks) else lesson.teaching_s
+            checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
+        return checkpoints
+
+    async def _drive_at_home(self, events: Sequence[TeachingEvent], report: Report) -> Drive:
+        """Examine the robot at home, unless it knows exactly what it knew when it was examined there."""
+        before = self.results.read(self.home, HomeOutcome)
+        if self.variant.knows_home and len(events) == before.lessons:
+            return before.drive
+        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
+        return await at_home.examine(events, before.policy)

@@ -64,6 +64,8 @@ class HomeOutcome(Settings):
     made_of: Provenance
     seed: int
     presses: int
+    lessons: int
+    """Teaching events at home."""
     rlas: int
     knowledge_hash: str
     drive: Drive
@@ -93,6 +95,8 @@ class TransferOutcome(Settings):
     """Checkpoints in ascending order of presses."""
     policy: Drive
     """Policy's own drive in the new world."""
+    home_when_right: Drive
+    """Exam at home with the knowledge of the first exam passed in the new world, or without one of the end."""
     home: Drive
     """Exam at home at the end."""
 

@@ -14,7 +14,7 @@ from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.transfer.jobs import HomeJob, TransferJob
 from kurt2rt.experiments.transfer.outcome import HomeOutcome, TransferOutcome
-from kurt2rt.experiments.transfer.variants import Variant
+from kurt2rt.experiments.transfer.variants import TAUGHT_ON, Variant
 
 DECIDING = (HomeJob, TransferJob)
 """Classes whose code, and all that it imports, decides the results."""
@@ -139,9 +139,18 @@ class TransferSummary:
         """Outcomes whose exams in the new world have verdicts."""
         return tuple(each for each in self.outcomes if each.judged)
 
+    @property
+    def studied(self) -> bool:
+        """True if it is no control."""
+        return self.experiment.variant.name == TAUGHT_ON.name
+
     def right_after(self, presses: int) -> int:
         """Return the number of robots that pass the exam in the new world after so many presses."""
         return sum(point.drive.passed for each in self.judged for point in each.checkpoints if point.presses == presses)
+
+    def right_by(self, presses: int) -> int:
+        """Return the number of robots that pass an exam in the new world after so many presses or fewer."""
+        return sum(each.presses_until_right <= presses for each in self.judged)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,7 @@
 """Variants of teaching in a new world: the one that is studied and its controls."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, taught_by
@@ -45,6 +46,15 @@ class Variant:
 
 
 TAUGHT_ON = Variant("taught-on", "home knowledge, taught on")
+
+
+def taught_on_by(teacher: str | None) -> Variant:
+    """Return the variant that is studied, with this teacher in the new world; None: the teacher of home."""
+    if teacher is None:
+        return TAUGHT_ON
+    return replace(TAUGHT_ON, title=f"{TAUGHT_ON.title} by {Path(teacher).stem}", teacher=teacher)
+
+
 CONTROLS = (
     Variant("answers-only", "control: questions are answered, nothing is corrected", teacher="answers_only"),
     Variant("from-nothing", "control: without the knowledge of home", knows_home=False),

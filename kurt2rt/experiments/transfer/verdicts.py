@@ -5,7 +5,6 @@ from collections.abc import Iterator
 
 from kurt2rt.experiments.study.verdict import Target, Verdict
 from kurt2rt.experiments.transfer.plan import TransferStudy, TransferSummary
-from kurt2rt.experiments.transfer.variants import TAUGHT_ON
 
 RIGHT_SHARE = 18 / 20
 """Share of the robots that are to be right in the new world."""
@@ -16,17 +15,17 @@ MOST_PRESSES = 10
 def verdicts(summary: TransferSummary, study: TransferStudy) -> Iterator[Verdict]:
     """Yield the verdicts on robots with the knowledge of home; none for controls, or if no exam has a verdict."""
     judged = summary.judged
-    if summary.experiment.variant != TAUGHT_ON or not judged:
+    if not summary.studied or not judged:
         return
     presses = study.plan.after[-1]
-    right, needed = summary.right_after(presses), math.ceil(RIGHT_SHARE * len(judged) - 1e-9)
+    right, needed = summary.right_by(presses), math.ceil(RIGHT_SHARE * len(judged) - 1e-9)
     there = {"presses": presses, "needed": needed, "judged": len(judged), "right": right}
     yield Verdict(Target.RIGHT_IN_NEW_WORLD, there, right >= needed)
     median = median_of([each.presses_until_right for each in judged])
     shown = f"{median:g}" if math.isfinite(median) else f"more than {presses}"
     yield Verdict(Target.PRESSES_UNTIL_RIGHT, {"limit": MOST_PRESSES, "median": shown}, median <= MOST_PRESSES)
     robots = len(summary.outcomes)
-    after = sum(each.home.passed for each in summary.outcomes)
+    after = sum(each.home_when_right.passed for each in summary.outcomes)
     before = sum(each.drive.passed for each in study.home)
     yield Verdict(Target.RIGHT_AT_HOME, {"robots": robots, "right": after, "before": before}, after == robots)
 

@@ -54,14 +54,22 @@ def robot(seed: int, *there: str, presses: int = 5, home: str = "right") -> Tran
             for after, what in points
         ),
         policy=drive(),
-        home=drive(home),
+        home_when_right=drive(home),
+        home=drive("right"),
     )
 
 
 def at_home(seed: int, what: str = "right") -> HomeOutcome:
     """Return a robot that was taught at home."""
     return HomeOutcome(
-        made_of=MADE_OF, seed=seed, presses=40, rlas=50, knowledge_hash="", drive=drive(what), policy=drive()
+        made_of=MADE_OF,
+        seed=seed,
+        presses=40,
+        lessons=120,
+        rlas=50,
+        knowledge_hash="",
+        drive=drive(what),
+        policy=drive(),
     )
 
 

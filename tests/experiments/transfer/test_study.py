@@ -18,7 +18,7 @@ from kurt2rt.experiments.transfer.jobs import TransferJob, events_before_press
 from kurt2rt.experiments.transfer.outcome import TransferOutcome
 from kurt2rt.experiments.transfer.plan import NewWorlds, TransferPlan, TransferStudy, make_plan, read_study
 from kurt2rt.experiments.transfer.tables import all_tables
-from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON
+from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON, taught_on_by
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.transfer.outcomes import AFTER, plan_for
@@ -103,6 +103,21 @@ def test_lessons_of_a_press_come_before_the_next_press() -> None:
     assert events_before_press(events, (), 0) == 4
 
 
+def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> None:
+    job = replace(done.job("taught-on"), after=(0,), variant=replace(TAUGHT_ON, name="not-taught"))
+    job.run(lambda _: None)
+    outcome, (before,) = done.results.read(job, TransferOutcome), done.study.home
+    assert outcome.presses == outcome.checkpoints[0].lessons == 0
+    assert outcome.home == outcome.home_when_right == before.drive
+
+
+def test_other_teacher_of_the_new_world_is_named() -> None:
+    variant = taught_on_by("slow")
+    assert variant.title != TAUGHT_ON.title
+    assert variant.task(short_task(), "rooms-1").teaching.profile.name == "slow"
+    assert taught_on_by(None) == TAUGHT_ON
+
+
 def test_study_goes_on_where_it_was(done: Done) -> None:
     assert missing_time_s(done.plan, done.results) == 0.0
     with pytest.raises(StudyError):
@@ -111,7 +126,7 @@ def test_study_goes_on_where_it_was(done: Done) -> None:
 
 def test_tables_and_figure_show_each_variant(done: Done, tmp_path: Path) -> None:
     _, curve, teaching, robots = all_tables(done.study)
-    assert [row[1] for row in curve.rows] == [each.title for each in (TAUGHT_ON, *CONTROLS)]
+    assert [row[1] for row in curve.rows[::2]] == [each.title for each in (TAUGHT_ON, *CONTROLS)]
     assert len(teaching.rows) == 3
     assert [row[:2] for row in robots.rows] == [("1", "rooms-1")]
     draw_curves(done.study, tmp_path / "curve.png")

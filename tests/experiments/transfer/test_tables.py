@@ -41,14 +41,22 @@ def test_median_of_values_that_may_be_infinite(values: list[float], median: floa
 
 def test_curve_counts_judged_robots_that_are_right(tmp_path: Path) -> None:
     there = (RIGHT_AT_ONCE, RIGHT_AFTER_5, NEVER_RIGHT, (NOT_JUDGED,) * 3)
-    (row,) = curve_table(study_of(Results(tmp_path), *robots(*there))).rows
-    assert [cell.split(" (")[0] for cell in row[3:]] == ["1 of 3", "1 of 3", "2 of 3"]
+    after, until_right = curve_table(study_of(Results(tmp_path), *robots(*there))).rows
+    assert [cell.split(" (")[0] for cell in after[3:]] == ["1 of 3", "1 of 3", "2 of 3"]
+    assert [cell.split(" (")[0] for cell in until_right[3:]] == ["1 of 3", "1 of 3", "2 of 3"]
+
+
+def test_exam_failed_after_a_passed_one_counts_as_right_before(tmp_path: Path) -> None:
+    there = ("collided", "right", "collided")
+    after, until_right = curve_table(study_of(Results(tmp_path), *robots(there))).rows
+    assert [cell.split(" (")[0] for cell in after[3:]] == ["0 of 1", "1 of 1", "0 of 1"]
+    assert [cell.split(" (")[0] for cell in until_right[3:]] == ["0 of 1", "1 of 1", "1 of 1"]
 
 
 def test_teaching_table_has_medians_and_home(tmp_path: Path) -> None:
     outcomes = (*robots(RIGHT_AT_ONCE, RIGHT_AFTER_5), robot(1102, *RIGHT_AFTER_5, home="collided"))
     (row,) = teaching_table(study_of(Results(tmp_path), *outcomes)).rows
-    assert row[2:] == ("5", "60", "5", "1", "9", "3 of 3", "2 of 3")
+    assert row[2:] == ("5", "60", "5", "1", "9", "3 of 3", "2 of 3", "3 of 3")
     (row,) = teaching_table(study_of(Results(tmp_path), *robots(NEVER_RIGHT))).rows
     assert [word for word in row[2].split() if word.isdigit()] == ["5"]
 
