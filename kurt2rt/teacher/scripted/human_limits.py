@@ -60,7 +60,9 @@ class PressLimit:
         self._presses: deque[int] = deque(maxlen=presses_per_minute or 1)
 
     def allows(self, presses: int = 1) -> bool:
-        """Return whether so many presses now stay within the limit; it must allow them in a minute."""
+        """Return whether so many presses now stay within the limit."""
+        if self._limit and presses > self._limit:
+            return False
         if not self._limit or len(self._presses) + presses <= self._limit:
             return True
         return self.now - self._presses[len(self._presses) + presses - self._limit - 1] >= self._minute_ticks

@@ -1,6 +1,7 @@
 """Correction by rewind: a person stops the robot, looks back for the moment that went wrong, and names the action."""
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -29,20 +30,26 @@ class Mistake:
 
 
 class LookBack:
-    """The two presses of one correction: stop, and the right action at the moment of the mistake.
+    """The presses of one look back: stop, and for each mistake the right action at its moment.
 
-    After the second the page lets the robot drive on, as after the answer to a question.
+    After the last one the page lets the robot drive on, as after the answer to a question.
     """
 
-    def __init__(self, mistake: Mistake, takes: DelaySampler, period_s: float) -> None:
-        """Plan the presses; `takes` draws the time to find the moment, `period_s` is the length of a tick."""
-        self.mistake = mistake
+    def __init__(self, mistakes: Sequence[Mistake], takes: DelaySampler, period_s: float) -> None:
+        """Plan the presses.
+
+        Args:
+            mistakes: at least one, in the order in which they are corrected.
+            takes: draws the time to find the moment of each mistake.
+            period_s: length of a tick.
+        """
+        self._left = deque(mistakes)
         self._takes = takes
         self._looks_again_ticks = round(_LOOKS_AGAIN_S / period_s)
         self._step: _Step = "stop"
         self._due = 0
-        self.lesson = ""
-        """Command id of the lesson, once it was given."""
+        self.slips: list[str] = []
+        """Command ids of the lessons that a slip of the finger gave."""
         self.over = False
         """True once the robot was seen to drive or to ask after the resume."""
 
@@ -59,9 +66,11 @@ class LookBack:
         if now < self._due or self.over:
             return None
         if self._step == "looks":
-            self._step = "taught"
-            self.lesson = next_id()
-            return Correct(self.lesson, SCRIPTED, self.mistake.action, decision_tick=self.mistake.tick)
+            mistake, lesson = self._left.popleft(), next_id()
+            self._step, self._due = ("looks", now + self._takes.draw(now)) if self._left else ("taught", now)
+            if mistake.is_slip:
+                self.slips.append(lesson)
+            return Correct(lesson, SCRIPTED, mistake.action, decision_tick=mistake.tick)
         if self._step in ("taught", "resumed"):
             self._step, self._due = "resumed", now + self._looks_again_ticks
             return Resume(next_id(), SCRIPTED, seen_tick=picture.tick)

@@ -1,5 +1,6 @@
 """Detector of mistakes that a person can see."""
 
+from collections import deque
 from collections.abc import Mapping
 
 from kurt2rt.core.teacher_settings import NoticeSettings
@@ -9,6 +10,7 @@ _SEEN_AGAIN_S = 0.1
 """Time after which a wrong action that looks different is seen by a person who goes back over the last seconds."""
 _REMEMBERED_S = 5.0
 """Time for which what looked wrong is connected with a touch."""
+_MOST_REMEMBERED = 16
 
 
 class MistakeWatcher:
@@ -22,8 +24,8 @@ class MistakeWatcher:
         self._remembered_ticks = round(_REMEMBERED_S / period_s)
         self._groups = groups
         self._looked_wrong_from: TeacherView | None = None
-        self._newest: TeacherView | None = None
-        """Begin of the newest mistake that a look back shows."""
+        self._remembered: deque[TeacherView] = deque(maxlen=_MOST_REMEMBERED)
+        """Begins of the last mistakes that a look back shows, oldest first."""
         self.began: TeacherView | None = None
         """State in which the present disagreement began; None without disagreement."""
         self._last_tick = 0
@@ -42,8 +44,11 @@ class MistakeWatcher:
             if self._looked_wrong_from is None:
                 self._looked_wrong_from = view
             self._looked_wrong += elapsed
-            if self._looked_wrong >= self._seen_again_ticks:
-                self._newest = self._looked_wrong_from
+            began = self._looked_wrong_from
+            if self._looked_wrong >= self._seen_again_ticks and (
+                not self._remembered or began is not self._remembered[-1]
+            ):
+                self._remembered.append(began)
         return self._looked_wrong >= max(self._different_ticks, 1) or self._wrong >= max(self._similar_ticks, 1)
 
     def reset(self) -> None:
@@ -56,5 +61,11 @@ class MistakeWatcher:
 
         Returns None if none did in the last 5 s.
         """
-        newest = self._newest
+        newest = self._remembered[-1] if self._remembered else None
         return newest if newest is not None and tick - newest.tick <= self._remembered_ticks else None
+
+    def pop_since(self, tick: int) -> list[TeacherView]:
+        """Forget all mistakes; return the begins of those from a tick on that a look back shows, newest first."""
+        since = [each for each in reversed(self._remembered) if each.tick >= tick]
+        self._remembered.clear()
+        return since

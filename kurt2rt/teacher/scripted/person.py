@@ -1,7 +1,7 @@
 """Scripted teacher with the limits of a person: late, seldom, sometimes wrong, and blind for small mistakes."""
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -21,6 +21,8 @@ from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 _Way = Literal["press", "hold", "rewind"]
 """Way to give a press."""
+_REACH_S = 10.0
+"""Reach of a look back, as on the page."""
 _REWIND_PRESSES = 2
 """Presses of a correction by rewind; a person who has not both left does not begin one."""
 
@@ -78,9 +80,9 @@ class _Draws:
         self._moment_spread = person.look_back.moment_spread_s / period_s
         self._period_s = period_s
 
-    def look_back(self, mistake: Mistake) -> LookBack:
-        """Return the correction of a mistake by rewind."""
-        return LookBack(mistake, self._look_back_delay, self._period_s)
+    def look_back(self, mistakes: Sequence[Mistake]) -> LookBack:
+        """Return the correction of mistakes by rewind."""
+        return LookBack(mistakes, self._look_back_delay, self._period_s)
 
     def moment_error_ticks(self) -> int:
         """Return the error of the moment that the person takes for the begin of a mistake."""
@@ -162,6 +164,7 @@ class ScriptedPerson(BasicTeacher):
         self._sent: DelayLine[Command] = DelayLine(link_ticks)
         self._hand_ticks = round(person.hand_delay_s / period_s)
         self._hold_ticks = round(profile.hold_s / period_s)
+        self._reach_ticks = round(_REACH_S / period_s)
         self._hand: _Hand | None = None
         self._look_back: LookBack | None = None
         self._press_id = 0
@@ -272,9 +275,7 @@ class ScriptedPerson(BasicTeacher):
             self._begin_hold(action, is_right=action == right)
             return
         if planned.by == "rewind":
-            moment = max(0, picture.tick + self._draws.moment_error_ticks())
-            mistake = Mistake(moment, action, is_slip=action != right)
-            self._look_back = self._draws.look_back(mistake)
+            self._look_back = self._draws.look_back([self._mistake(picture, action), *self._further_mistakes(picture)])
             return
         seen_tick = picture.tick if self._seen is None else self._seen.tick
         command: Command
@@ -287,6 +288,20 @@ class ScriptedPerson(BasicTeacher):
         if action != right:
             self._plan_undo(command.command_id)
         self._send(command)
+
+    def _mistake(self, began: TeacherView, action: str) -> Mistake:
+        moment = max(0, began.tick + self._draws.moment_error_ticks())
+        return Mistake(moment, action, is_slip=action != self._right(began))
+
+    def _further_mistakes(self, corrected: TeacherView) -> list[Mistake]:
+        """Return what else looked wrong in the last seconds, as far as presses are left."""
+        seen = corrected.tick if self._seen is None else self._seen.tick
+        others = [each for each in self._mistakes.pop_since(seen - self._reach_ticks) if each.tick != corrected.tick]
+        allowed = [each for number, each in enumerate(others, start=2) if self._presses.allows(number)]
+        return [
+            self._mistake(each, self._choose(self._right(each), self._person.errors.corrections))
+            for each in allowed[: self._person.look_back.mistakes_at_most - 1]
+        ]
 
     def _plan_undo(self, lesson: str) -> None:
         """Plan the undo of an own wrong press, if the person notices it."""
@@ -306,8 +321,8 @@ class ScriptedPerson(BasicTeacher):
                 self._presses.count()
             self._send(command)
         if look_back.over:
-            if look_back.mistake.is_slip:
-                self._plan_undo(look_back.lesson)
+            if look_back.slips:
+                self._plan_undo(look_back.slips[-1])
             self._look_back = None
             self._ignore_until = self._now
 
