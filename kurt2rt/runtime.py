@@ -210,6 +210,7 @@ class _Assembly:
                 lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,
+            asks_beyond_share=self._task.learning.asks_beyond_share,
         )
 
     def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:

@@ -59,6 +59,8 @@ class LearningSettings(Settings):
     """Weights other than 1."""
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
+    asks_beyond_share: Annotated[float, Field(gt=0, le=1)] = 1.0
+    """Fraction of R beyond which the robot asks in phases 1 and 2, with a teacher there; otherwise it asks beyond R."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
@@ -82,6 +84,7 @@ class PlainSettings(LearningSettings):
     past_weight: Annotated[float, Field(ge=1, le=1)] = 1.0
     weights: Annotated[tuple[FeatureWeight, ...], Field(max_length=0)] = ()
     insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
+    asks_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: None = None
 
@@ -267,6 +270,14 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
-    """Return a copy of the task that this scripted teacher teaches."""
+    """Return a copy of the task that this scripted teacher teaches, in which the robot asks as the teacher wants."""
     teaching = task.teaching.model_copy(update={"profile": profile})
-    return task.model_copy(update={"teaching": teaching})
+    return as_its_teacher_wants(task.model_copy(update={"teaching": teaching}))
+
+
+def as_its_teacher_wants(task: TaskSettings) -> TaskSettings:
+    """Return a copy of the task in which the robot asks its scripted teacher as soon as that teacher's profile says."""
+    share = task.teaching.profile.asks_beyond_share
+    if share is None:
+        return task
+    return task.model_copy(update={"learning": task.learning.model_copy(update={"asks_beyond_share": share})})

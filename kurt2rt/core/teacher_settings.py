@@ -131,6 +131,8 @@ class TeacherProfile(Settings):
     answers only."""
     corrects_touch_by: Literal["rewind", "nothing"] = "nothing"
     """Way to correct what led to a touch: a look back for the last thing that looked wrong before it, or not at all."""
+    asks_beyond_share: Annotated[float, Field(gt=0, le=1)] | None = None
+    """Fraction of R beyond which the robot asks this teacher (`learning.asks_beyond_share`); None: as the task says."""
     answers_by: Literal["press", "hold"] = "press"
     """Way to answer a question."""
     corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"
@@ -149,7 +151,9 @@ class TeacherProfile(Settings):
         return person
 
 
-QUICK_TEACHER = TeacherProfile(name=SUPERHUMAN, what="Reacts and corrects by the times of the task, without a break")
+QUICK_TEACHER = TeacherProfile(
+    name=SUPERHUMAN, what="Reacts and corrects by the times of the task, without a break", asks_beyond_share=1.0
+)
 """Teacher of a task that names none; the same as `config/teachers/superhuman.yaml`."""
 
 

@@ -125,7 +125,7 @@ class DoubtMeter:
         `match`: nearest RLA of the situation. `behaviour`: active taught behaviour, whose lessons count.
         """
         rla, distance, radius, _, _ = match
-        off = distance / radius - self._usual if radius > 0.0 else 0.0
+        off = distance * self._system.radius_share / radius - self._usual if radius > 0.0 else 0.0
         score = off * self._per_distance if off > 0.0 else 0.0
         if action in self.actions:
             # In most ticks the nearest RLA is that of the tick before.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from kurt2rt.core.rla.candidate_index import CandidateIndex
 from kurt2rt.core.rla.competitors import CompetitorGroups
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.space import Space
 
 
@@ -24,6 +24,8 @@ class ActiveRlas:
         self._rlas: dict[int, Rla] = {}
         self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
+        self.radius_share = 1.0
+        """Fraction of R that counts at the basic level."""
         self._groups = CompetitorGroups()
         self._counts: Counter[str] = Counter()
 
@@ -60,10 +62,15 @@ class ActiveRlas:
         if not include_withdrawn and rla.is_withdrawn:
             return self._match_without_withdrawn(index, situation)
         runner_up = self._rlas[index.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
-        radius = index.radius if rla.radius is None else rla.radius
+        radius = self.radius_of(rla)
         if math.isnan(nearest.distance):
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
+
+    def radius_of(self, rla: Rla) -> float:
+        """Return the distance up to which an RLA of a matched level answers now."""
+        radius = self._spaces[rla.level].radius if rla.radius is None else rla.radius
+        return radius * self.radius_share if rla.level == BASIC else radius
 
     def _match_without_withdrawn(self, index: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
         """Return the nearest RLA that has an action. Computes all distances: rare, so not optimised."""
@@ -73,7 +80,7 @@ class ActiveRlas:
         if not found:
             return None
         rla = self._rlas[index.ids[found[0]]]
-        radius = index.radius if rla.radius is None else rla.radius
+        radius = self.radius_of(rla)
         if len(found) == 1:
             return Match(rla, float(distances[found[0]]), radius, None, math.inf)
         runner_up = self._rlas[index.ids[found[1]]]

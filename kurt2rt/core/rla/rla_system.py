@@ -178,6 +178,23 @@ class RlaSystem:
         """
         return self._active.match(situation, behaviour, level, include_withdrawn=include_withdrawn)
 
+    @property
+    def radius_share(self) -> float:
+        """Fraction of R, 0 to 1, within which RLAs of the basic level answer now; 1 unless a robot asks sooner."""
+        return self._active.radius_share
+
+    @radius_share.setter
+    def radius_share(self, share: float) -> None:
+        self._active.radius_share = share
+
+    def radius_of(self, rla: Rla) -> float:
+        """Return the distance up to which an RLA of a matched level answers now."""
+        return self._active.radius_of(rla)
+
+    def whole_radius(self, rla: Rla) -> float:
+        """Return R of an RLA of a matched level, its own or that of its level, also while the robot asks sooner."""
+        return self._spaces[rla.level].radius if rla.radius is None else rla.radius
+
     def nearest_first(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, limit: int | None = None
     ) -> tuple[tuple[int, float], ...]:

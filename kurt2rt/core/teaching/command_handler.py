@@ -67,6 +67,7 @@ from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
+"""Phases in which the robot is taught actions."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,6 +101,7 @@ class CommandHandler:
         handled_command_ids: Iterable[str],
         parts: HandlerParts | None = None,
         teacher_available: bool = True,
+        asks_beyond_share: float = 1.0,
     ) -> None:
         """Connect the level, the authority and the optional parts.
 
@@ -107,11 +109,13 @@ class CommandHandler:
             insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
             handled_command_ids: ids of earlier runs, whose commands are not carried out again.
             teacher_available: False if there is no teacher to ask, as in an exam.
+            asks_beyond_share: fraction of R beyond which the robot asks while it is taught, in phases 1 and 2.
         """
         parts = parts or HandlerParts()
         self._level = level
         self.teacher_available = teacher_available
         """False if there is no teacher to ask."""
+        self._asks_beyond_share = asks_beyond_share
         self.active_behaviour = level.active_behaviour
         self.authority = authority
         self.critic = parts.critic
@@ -187,13 +191,15 @@ class CommandHandler:
     def before_decision(self, tick: int, *, was_driving: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
-        Without a teacher to ask, the level skips RLAs whose action was withdrawn. The decisions before a standstill are
-        kept for a teacher who rewinds.
+        Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner.
+        The decisions before a standstill are kept for a teacher who rewinds.
         """
         if was_driving is not self._rewind.was_driving:
             self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
+        is_taught = self.teacher_available and self.phase in _TAUGHT_PHASES
+        self._level.system.radius_share = self._asks_beyond_share if is_taught else 1.0
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)

@@ -154,7 +154,7 @@ class LessonBuilder:
         self, action: str, nearest: Match | None, context: LessonContext, replace_within_share: float, origin: Origin
     ) -> LessonResult:
         """Replace the action of the nearest RLA within a share of its radius, else create another one."""
-        if nearest is None or nearest.distance > replace_within_share * nearest.radius:
+        if nearest is None or nearest.distance > replace_within_share * self._system.whole_radius(nearest.rla):
             return self._create(action, context, origin)
         rla = self._corrected_rla(nearest.rla, context)
         if rla.action == action:

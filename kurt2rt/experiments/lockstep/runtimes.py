@@ -9,7 +9,7 @@ from hal.simulation import Simulation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.task_settings import TaskSettings, as_its_teacher_wants
 from kurt2rt.core.tick import EventStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
@@ -49,7 +49,7 @@ def build_training_runtime(
     return build_runtime(
         simulation.robot,
         settings,
-        task,
+        as_its_teacher_wants(task),
         training.events,
         training.store,
         LockstepClock(simulation.step),

@@ -225,10 +225,12 @@ class _Reader:
         return self._system.nearest_first(vector, behaviour, level_name)
 
     def _radius_of(self, rla: Rla) -> float:
+        if rla.level == BASIC:
+            return self._system.radius_of(rla)
         if rla.radius is not None:
             return rla.radius
         mid = self._runtime.mid
-        return self._system.radius if rla.level == BASIC or mid is None else mid.settings.learning.radius
+        return self._system.radius if mid is None else mid.settings.learning.radius
 
     def _rla_facts(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
