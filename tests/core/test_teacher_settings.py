@@ -106,3 +106,10 @@ def test_load_teacher_invalid_file_names_the_key(tmp_path: Path, key: str, value
     path.write_text(yaml.safe_dump(content))
     with pytest.raises(SettingsError, match=words):
         load_teacher(str(path))
+
+
+def test_taught_by_robot_asks_as_its_teacher_wants() -> None:
+    task = load_task("wall_following")
+    shares = {name: taught_by(task, load_teacher(name)).learning.asks_beyond_share for name in (*PEOPLE, SUPERHUMAN)}
+    assert shares == {**dict.fromkeys(PEOPLE, task.learning.asks_beyond_share), SUPERHUMAN: 1.0}
+    assert task.learning.asks_beyond_share < 1.0

@@ -82,6 +82,7 @@ class Corridor:
         tolerates_stalls: bool = False,
         asked: bool = True,
         asks_when_held: bool = True,
+        asks_beyond_share: float = 1.0,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
@@ -98,7 +99,12 @@ class Corridor:
         self.ledger = TickTimer()
         authority = ControlAuthority(repertoire, attended=attended)
         self.school = CommandHandler(
-            self.level, authority, insert_beyond_share=0.5, handled_command_ids=(), teacher_available=asked
+            self.level,
+            authority,
+            insert_beyond_share=0.5,
+            handled_command_ids=(),
+            teacher_available=asked,
+            asks_beyond_share=asks_beyond_share,
         )
         parts = TickParts(
             robot=self.robot,

@@ -12,8 +12,9 @@ from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, rewarded, session, undone
 
 
@@ -329,3 +330,23 @@ def test_lessons_about_one_rla_are_separate() -> None:
         (lessons[4], True),
     ]
     assert system.lessons_about(3) == ()
+
+
+def test_match_radius_share_narrows_the_basic_level_only() -> None:
+    system = RlaSystem(1, 10.0, others={MID: Space(1, 10.0)})
+    here, own, elsewhere = created(1, (0.0,)), created(2, (100.0,), radius=20.0), created(3, (0.0,), level=MID)
+    system.apply_all([here, own, elsewhere])
+    system.radius_share = 0.5
+    places = ((1.0, BASIC), (99.0, BASIC), (1.0, MID))
+    matches = [system.match(np.array([place]), level=level) for place, level in places]
+    assert [match.radius for match in matches if match is not None] == [5.0, 10.0, 10.0]
+    assert [system.whole_radius(each.rla) for each in (here, own, elsewhere)] == [10.0, 20.0, 10.0]
+
+
+@pytest.mark.parametrize(("share", "known"), [(0.5, False), (1.0, True)])
+def test_match_beyond_the_share_of_its_radius_is_unknown(share: float, known: bool) -> None:
+    system = system_of(created(1, (0.0, 0.0)))
+    system.radius_share = share
+    match = system.match(np.array([4.0, 0.0]))
+    assert match is not None
+    assert match.known is known
