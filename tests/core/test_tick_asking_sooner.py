@@ -56,7 +56,7 @@ def test_answer_of_the_same_action_ends_the_question() -> None:
     assert corridor.run(BETWEEN).decision.driving
 
 
-def test_correction_within_its_share_of_the_whole_radius_replaces() -> None:
+def test_correction_within_its_share_of_whole_radius_replaces() -> None:
     """A correction at 0.3 R replaces the RLA, as half of R says, and not half of the half that counts now."""
     corridor = taught()
     corridor.run(TAUGHT_AT, set_phase(Phase.CORRECTIONS))
