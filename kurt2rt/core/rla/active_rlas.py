@@ -68,7 +68,7 @@ class ActiveRlas:
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
     def radius_of(self, rla: Rla) -> float:
-        """Return the distance, in units of its condition, up to which an RLA of a matched level answers now."""
+        """Return the distance in counts, or m for a place, up to which an RLA of a matched level answers now."""
         radius = self._spaces[rla.level].radius if rla.radius is None else rla.radius
         return radius * self.radius_share if rla.level == BASIC else radius
 

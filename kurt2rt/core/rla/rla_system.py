@@ -188,11 +188,11 @@ class RlaSystem:
         self._active.radius_share = share
 
     def radius_of(self, rla: Rla) -> float:
-        """Return the distance, in units of its condition, up to which an RLA of a matched level answers now."""
+        """Return the distance in counts, or m for a place, up to which an RLA of a matched level answers now."""
         return self._active.radius_of(rla)
 
     def whole_radius(self, rla: Rla) -> float:
-        """Return R of an RLA of a matched level in units of its condition, also while the robot asks sooner."""
+        """Return R of an RLA of a matched level in counts, or m for a place, also while it asks sooner."""
         return self._spaces[rla.level].radius if rla.radius is None else rla.radius
 
     def nearest_first(
