@@ -3,13 +3,16 @@
 import struct
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
 import zstandard
-from mcap.exceptions import McapError
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import EndOfFile, McapError
+from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader, breakup_chunk
+from mcap.stream_reader import StreamReader, get_chunk_data_stream
 
 from kurt2rt.runs.recording.recording_error import RecordingError
 
@@ -25,6 +28,11 @@ LARGEST_CHUNK_BYTES = 16_000_000
 _ALWAYS_UNPACKED_BYTES, _MOST_TIMES = 1_000_000, 1000
 """A larger chunk than the first unpacks to at most so many times its size; runs of a robot reach 15."""
 _COMPRESSIONS = ("", "zstd")
+
+_RECORD_HEAD = struct.Struct("<BQ")
+"""Opcode and length in bytes of the content, before each record in a chunk."""
+_MESSAGE_HEAD = struct.Struct("<HIQQ")
+"""Channel id, sequence number, log time and publish time in ns, at the beginning of a message's content."""
 
 
 class LoggedMessage(NamedTuple):
@@ -57,13 +65,13 @@ class SegmentReader:
     def head(self) -> SegmentHead:
         """Return metadata and attachments before the first chunk, as far as present. Raises RecordingError."""
         head = SegmentHead()
-        for record in self.records():
+        for record in self._records(unpack=False):
             match record:
                 case Metadata():
                     head.metadata[record.name] = dict(record.metadata)
                 case Attachment():
                     head.attachments[record.name] = record.data
-                case Message():
+                case Chunk() | Message():
                     break
         return head
 
@@ -91,6 +99,10 @@ class SegmentReader:
         Afterwards `truncated` says where a file ends whose end is missing; empty for a whole file. Raises
         RecordingError if the file cannot be read.
         """
+        return self._records(unpack=True)
+
+    def _records(self, *, unpack: bool) -> Iterator[McapRecord]:
+        """Yield all complete records, each chunk as it stands unless `unpack`."""
         self.truncated = ""
         try:
             size = self.path.stat().st_size
@@ -98,7 +110,8 @@ class SegmentReader:
         except OSError as error:
             raise RecordingError(f"cannot be read ({error})", where=self.path, do="give a recorded run") from error
         with file:
-            records = _whole_records(StreamReader(file, emit_chunks=True, record_size_limit=size), self.path)
+            reader = StreamReader(file, emit_chunks=True, record_size_limit=size)
+            records = _whole_records(reader, self.path, unpack=unpack)
             whole_until = 0
             while True:
                 try:
@@ -115,17 +128,44 @@ class SegmentReader:
                 yield from several
 
 
-def _whole_records(reader: StreamReader, path: Path) -> Iterator[list[McapRecord]]:
-    """Yield one record at a time; the records of a chunk together after its CRC matched.
+def _whole_records(reader: StreamReader, path: Path, *, unpack: bool) -> Iterator[list[McapRecord]]:
+    """Yield one record at a time; with `unpack`, the records of a chunk together after its CRC matched.
 
     Raises RecordingError for a chunk that would fill the memory.
     """
     for record in reader.records:
         if isinstance(record, Chunk):
             _require_small(record, path)
-            yield breakup_chunk(record, validate_crc=True)
+            yield _records_in(record) if unpack else [record]
         else:
             yield [record]
+
+
+def _records_in(chunk: Chunk) -> list[McapRecord]:
+    """Return the records of a chunk; raise ValueError for a wrong checksum, EndOfFile for a record without its end.
+
+    mcap's own breakup_chunk reads each number of a record by three calls, which took a seventh of the time of `why`.
+    """
+    stream, size = get_chunk_data_stream(chunk, validate_crc=True)
+    data = stream.read(size)
+    records: list[McapRecord] = []
+    start = 0
+    while start < size:
+        opcode, length = _RECORD_HEAD.unpack_from(data, start)
+        start += _RECORD_HEAD.size
+        end = start + length
+        if end > size:
+            raise EndOfFile
+        if opcode == Opcode.MESSAGE:
+            channel_id, sequence, log_time, publish_time = _MESSAGE_HEAD.unpack_from(data, start)
+            content = data[start + _MESSAGE_HEAD.size : end]
+            records.append(Message(channel_id, log_time, content, publish_time, sequence))
+        elif opcode == Opcode.CHANNEL:
+            records.append(Channel.read(ReadDataStream(BytesIO(data[start:end]))))
+        elif opcode == Opcode.SCHEMA:
+            records.append(Schema.read(ReadDataStream(BytesIO(data[start:end]))))
+        start = end
+    return records
 
 
 def _require_small(chunk: Chunk, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import errno
 import random
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -9,13 +10,16 @@ import pytest
 import zstandard
 from foxglove import Channel, Context
 from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
 from mcap.records import Chunk, Header
+from mcap.stream_reader import StreamReader
 from mcap.writer import MCAP0_MAGIC
 
 from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment import KEPT_BYTES, Segment
 from kurt2rt.runs.recording.segment_reader import SegmentReader
+from tests.runs.replay.stored_runs import STORED
 
 
 class FailingDisk(RealDisk):
@@ -170,3 +174,20 @@ def test_a_chunk_of_a_compression_without_limit_is_refused(tmp_path: Path) -> No
     path = with_chunk(tmp_path / "0001.mcap", bytes(100), 100, "lz4")
     with pytest.raises(RecordingError, match=r"0001\.mcap: .*'lz4'.*zstd"):
         SegmentReader(path).head()
+
+
+def test_records_of_a_stored_run_equal_those_of_mcaps_own_reader() -> None:
+    path = STORED / "errand.mcap"
+    with path.open("rb") as file:
+        expected = list(StreamReader(file, validate_crcs=True).records)
+    assert len(expected) > 4400
+    assert list(SegmentReader(path).records()) == expected
+
+
+@pytest.mark.parametrize("opcode", [Opcode.MESSAGE, Opcode.CHANNEL, Opcode.SCHEMA, 0x80])
+@pytest.mark.parametrize("cut", [1, 8, 9, 40])
+def test_chunk_with_a_record_cut_off_is_the_truncated_end(tmp_path: Path, opcode: int, cut: int) -> None:
+    records = struct.pack("<BQ", opcode, 100) + bytes(100)
+    reader = SegmentReader(with_chunk(tmp_path / "0001.mcap", records[:cut], cut, ""))
+    assert [type(record) for record in reader.records()] == [Header]
+    assert reader.truncated
