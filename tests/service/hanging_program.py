@@ -10,7 +10,7 @@ from kurt2rt.cli.main import main
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_files import RunFiles
-from kurt2rt.service import program
+from kurt2rt.service import program_startup
 from kurt2rt.service.post_tick import PostTick
 
 _ROUND = PostTick.__call__
@@ -34,7 +34,7 @@ async def _hang_in_the_loop(*_: Any) -> None:
 
 def _let_hang(thing: str) -> None:
     hangs: dict[str, tuple[object, str, object]] = {
-        "start": (program, "open_for_teaching", _hang),
+        "start": (program_startup, "open_for_teaching", _hang),
         "disk": (Journal, "checkpoint", _hang),
         "recorder": (RunFiles, "poll", _hang),
         "keys": (Teachers, "close", _hang),
@@ -43,6 +43,7 @@ def _let_hang(thing: str) -> None:
         "drive": (PostTick, "__call__", _hang_while_it_drives),
     }
     owner, name, replacement = hangs[thing]
+    assert hasattr(owner, name)  # a name that moved would let the program run on
     setattr(owner, name, replacement)
 
 
