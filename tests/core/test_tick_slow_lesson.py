@@ -120,7 +120,7 @@ class DrivenTicks:
 
 
 def test_sensors_are_watched_on_the_clock_of_the_way(driving: Corridor, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thin post that is passed slowly is no phantom: on seed 925 at 0.6 it stopped the robot for good."""
+    """An edge that one sensor sees for longer is no phantom: at 0.6 one stopped the robot of seed 925 for good."""
     watch = DrivenTicks()
     monkeypatch.setattr(driving.tick, "_sensor_watch", watch)
     monkeypatch.setattr(driving.tick, "_substitute", lambda *_: ())
