@@ -56,7 +56,7 @@ LONG: dict[str, Shorten] = {
     "lesson": lambda words: shortened_lesson(words),
     "paper": lambda _: ["paper", "--quick", "--task", "circle", "--no-plain"],
     "phases": lambda _: ["phases", "--help"],  # a quick run of all phases is tests/cli/test_phases.py
-    "run": lambda words: [*words, "--seconds", "2", "--port", "0", "--page-port", "0"],
+    "run": lambda words: shortened_run(words),
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
     "faults": lambda words: [*words, "--target", "tick", "--kind", "stuck"],
@@ -64,6 +64,12 @@ LONG: dict[str, Shorten] = {
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick", "--only", "match"],
 }
+
+
+def shortened_run(words: Sequence[str]) -> list[str]:
+    # Its recording would be the newest, and too short for the moments that later commands name.
+    unrecorded = [] if {"--record", "--no-record"} & set(words) else ["--no-record"]
+    return [*words, "--seconds", "2", "--port", "0", "--page-port", "0", *unrecorded]
 
 
 def shortened_lesson(words: Sequence[str]) -> list[str]:
