@@ -121,6 +121,7 @@ entries = some.builds(
     some.lists(events, max_size=2).map(tuple),
     some.integers(0, 2**32 - 1),
     some.none() | text,
+    lesson_speed=some.none() | some.floats(0.2, 1.0, exclude_max=True),
 )
 
 
