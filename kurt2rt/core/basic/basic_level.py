@@ -196,7 +196,7 @@ class BasicLevel:
         if self._drivers_condition is None:
             self._drivers_condition = np.array(rla.condition)
         off = (situation.vector - self._drivers_condition) * self.system.weights
-        radius = self.system.radius if rla.radius is None else rla.radius
+        radius = self.system.whole_radius(rla)
         return exact_square(off) <= radius * radius
 
     def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:

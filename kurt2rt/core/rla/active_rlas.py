@@ -69,8 +69,12 @@ class ActiveRlas:
 
     def radius_of(self, rla: Rla) -> float:
         """Return the distance in counts, or m for a place, up to which an RLA of a matched level answers now."""
-        radius = self._spaces[rla.level].radius if rla.radius is None else rla.radius
+        radius = self.whole_radius(rla)
         return radius * self.radius_share if rla.level == BASIC else radius
+
+    def whole_radius(self, rla: Rla) -> float:
+        """Return R of an RLA of a matched level in counts, or m for a place, also while the robot asks sooner."""
+        return self._spaces[rla.level].radius if rla.radius is None else rla.radius
 
     def _match_without_withdrawn(self, index: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
         """Return the nearest RLA that has an action. Computes all distances: rare, so not optimised."""

@@ -15,7 +15,6 @@ class CandidateIndex:
     """Ids of competing RLAs, in the row order of the index of their conditions."""
 
     def __init__(self, space: Space) -> None:
-        self.radius = space.radius
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self.ids: list[int] = []
         """Oldest first."""

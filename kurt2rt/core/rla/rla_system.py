@@ -193,7 +193,7 @@ class RlaSystem:
 
     def whole_radius(self, rla: Rla) -> float:
         """Return R of an RLA of a matched level in counts, or m for a place, also while it asks sooner."""
-        return self._spaces[rla.level].radius if rla.radius is None else rla.radius
+        return self._active.whole_radius(rla)
 
     def nearest_first(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, limit: int | None = None

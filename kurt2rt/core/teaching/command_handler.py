@@ -198,11 +198,14 @@ class CommandHandler:
             self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
-        is_taught = self.teacher_available and self.phase in _TAUGHT_PHASES
-        self._level.system.radius_share = self._asks_beyond_share if is_taught else 1.0
+        self._level.system.radius_share = self._asks_beyond_share if self._is_taught else 1.0
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
+
+    @property
+    def _is_taught(self) -> bool:
+        return self.teacher_available and self.phase in _TAUGHT_PHASES
 
     @property
     def slows_actions(self) -> bool:
@@ -212,8 +215,7 @@ class CommandHandler:
         """
         return (
             self.lesson_speed.share < 1.0
-            and self.phase in _TAUGHT_PHASES
-            and self.teacher_available
+            and self._is_taught
             and self.authority.teacher is not None
             and self.authority.driving_press is None
         )

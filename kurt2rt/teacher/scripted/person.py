@@ -174,7 +174,7 @@ class ScriptedPerson(BasicTeacher):
         self._ignore_until = 0
         self._behaviour = ""
         self._touching = False
-        self._presses_about_touch: int | None = None
+        self._touch_mistake: int | None = None
         """Tick of the last mistake that led to a touch and is corrected already."""
         self._answer: _PlannedPress | None = None
         self._correction: _PlannedPress | None = None
@@ -230,8 +230,8 @@ class ScriptedPerson(BasicTeacher):
         if not begins or self.phase is Phase.SUPERVISED or self._profile.corrects_touch_by == "nothing":
             return
         about = self._mistakes.before_touch(picture.tick)
-        if about is not None and self._presses_about_touch != about.tick:
-            self._presses_about_touch = about.tick
+        if about is not None and self._touch_mistake != about.tick:
+            self._touch_mistake = about.tick
             self._plan_correction(about, "rewind")
 
     def _may_correct(self, picture: TeacherView) -> bool:
