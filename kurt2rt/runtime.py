@@ -1,8 +1,9 @@
 """Assembly of one robot mind: all parts between the robot and the scheduler."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
+from behaviors.action_groups import action_groups
 from behaviors.repertoire import Repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
@@ -102,6 +103,13 @@ class Runtime:
     def reposition(self) -> None:
         """Tell the next tick that the robot was set down elsewhere, so that it counts no transition."""
         self.inbox.put(RobotRepositioned())
+
+    def action_groups(self) -> Mapping[str, str]:
+        """Return the group of each action of the repertoire: those that look alike to a person who watches.
+
+        Raises hal.settings.SettingsError.
+        """
+        return action_groups(self.task.repertoire)
 
     def snapshot(self) -> Statistics:
         """Return counts, values and expectations of the active RLAs and the delays of the teachers, to be saved.

@@ -206,7 +206,7 @@ def fields_of(code: Code) -> frozenset[str]:
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher, in the words of a surface. Raises KeyError for a missing field."""
     text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
-    return text + _late_press_text(outcome.fields)
+    return text + _late_press_text(outcome.fields) + _contradiction_text(outcome.fields)
 
 
 def event_error_text(error: InvalidEventError) -> str:
@@ -224,6 +224,14 @@ def _late_press_text(fields: Mapping[str, Field]) -> str:
     if isinstance(answers, int):
         why = f", by {answers} of your answers" if answers else ", the usual delay"
     return f"; given to the decision{by} {back / _TICKS_PER_S:.1f} s before the press{why}"
+
+
+def _contradiction_text(fields: Mapping[str, Field]) -> str:
+    """Return the end of the sentence of a lesson that contradicts its neighbours; empty for other outcomes."""
+    actions, nearest = fields.get("against"), fields.get("nearest")
+    if not isinstance(actions, tuple) or not isinstance(nearest, int):
+        return ""
+    return f"; all near it say {', '.join(actions)} (RLA {nearest} first): undo it if your finger slipped"
 
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaRewarded, SessionBegun
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded, SessionBegun
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -233,3 +233,24 @@ def test_export_signed_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
     assert "(--trusted)" in unknown
     Path("torn.zip").write_bytes(Path("out.zip").read_bytes()[:-500])
     assert "torn.zip: " in kurt2rt.refused("knowledge", "import", "torn.zip", "--into", "k")
+
+
+def test_contradictions_name_the_odd_lesson(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    condition = folded(mine).rlas[0].condition
+    with Journal.read_only(mine) as journal:
+        binding = journal.binding
+    with Journal.open(mine, binding) as journal:
+        for n, action in enumerate(("forward",) * 5 + ("whirl_left",), 1):
+            origin = Origin(f"near-{n}", "Ann", Phase.SUPERVISED, n)
+            rla = Rla(1000 + n, (condition[0] + 5000.0 + n, *condition[1:]), action, None, origin)
+            journal.append([JournalEntry(RlaCreated(rla), utc_now())])
+    shown = kurt2rt("knowledge", "contradictions", mine)
+    assert shown.exit_code == 0
+    odd, total = shown.out.splitlines()
+    assert all(word in odd for word in ("RLA 1006", "whirl_left", "near-6", "Ann", "forward", "RLA 1005"))
+    assert total.startswith(f"{mine}: 1 of ")
+    (listed,) = json.loads(kurt2rt("knowledge", "contradictions", mine, "--json").out)["contradictions"]
+    assert (listed["lesson"], listed["neighbours"][0]) == ("near-6", {"rla": 1005, "action": "forward"})
+    kurt2rt("knowledge", "undo", mine, "--lesson", "near-6")
+    assert kurt2rt("knowledge", "contradictions", mine).out.startswith(f"{mine}: 0 of ")

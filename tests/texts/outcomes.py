@@ -86,6 +86,8 @@ def _each(surface: Surface) -> Iterator[tuple[str, str]]:
         fields = {"decision_tick": 1200, "put_back_ticks": 83, "decided_by": 7, "delay_answers": answers}
         text = text_of(Outcome(late.code, {**late.fields, **fields}), surface)
         yield f"{late.code}, put back by a delay of {answers} answers", text
+    alone = Outcome(taught.code, {**taught.fields, "against": ("forward", "bear_left"), "nearest": 3})
+    yield f"{taught.code}, contradicts its neighbours", text_of(alone, surface)
     wanted = Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="")
     yield f"{wanted.code}, without a name", text_of(wanted, surface)
     for status in (*(each.value for each in GoalStatus if each is not GoalStatus.NONE), "of a newer robot"):

@@ -10,7 +10,34 @@ _LINES = ManyOf(
     Row((Text(128), Text(512), Text(128), Int(1, 5), Int(0, LARGEST_NUMBER), Text(64), Flag())),
     most=MOST_LESSONS,
 )
+_MOST_AGAINST, _MOST_ACTIONS = 16, 8
+_AGAINST = ManyOf(
+    Row(
+        (
+            Text(128),
+            Text(128),
+            Int(1, LARGEST_NUMBER),
+            Text(LONGEST_TEXT),
+            Int(1, LARGEST_NUMBER),
+            ManyOf(Text(LONGEST_TEXT), most=_MOST_ACTIONS),
+        )
+    ),
+    most=_MOST_AGAINST,
+)
 _SITUATIONS = ManyOf(Text(LONGEST_TEXT, least=1), most=MOST_SITUATIONS)
+
+
+class Contradicting(NamedTuple):
+    """Lesson whose RLA has an action of another kind than its five nearest neighbours, as after a slip."""
+
+    command_id: str
+    """Name in the journal, to be given to `undo`: of the one lesson, also if a hold gave it."""
+    rla: int
+    action: str
+    nearest: int
+    """RLA nearest to it."""
+    actions: tuple[str, ...]
+    """Actions of the five nearest, each once."""
 
 
 class LessonLine(NamedTuple):
@@ -27,11 +54,17 @@ class LessonLine(NamedTuple):
     stamp: str
     """Time when it became durable, UTC; empty before."""
     undone: bool
+    against: tuple[Contradicting, ...] = ()
+    """Its lessons that contradict their neighbours; none from robots of before 2026-11-24."""
 
 
 def lesson_lines_of(body: Mapping[str, Any]) -> tuple[LessonLine, ...]:
     """Return the lessons in a decoded body, newest first. Raises WireError."""
-    return tuple(LessonLine(*each) for each in _LINES("lessons", _entry(body, "lessons")))
+    against: dict[str, list[Contradicting]] = {}
+    for listed_as, *row in _AGAINST("against", body.get("against", ())):
+        against.setdefault(listed_as, []).append(Contradicting(*row))
+    lines = (LessonLine(*each) for each in _LINES("lessons", _entry(body, "lessons")))
+    return tuple(each._replace(against=tuple(against.get(each.command_id, ()))) for each in lines)
 
 
 def situations_of(body: Mapping[str, Any]) -> tuple[str, ...]:

@@ -110,6 +110,8 @@ class Channel:
         command_id, tick = acknowledgement.command_id, self.handler.tick
         outcome = self._unsaved.pop(command_id, None)
         if acknowledgement.error is None:
+            if outcome is not None:
+                outcome = Outcome(outcome.code, {**outcome.fields, **self.handler.lessons.fields_of(command_id)})
             reply = done(tick, outcome, row=acknowledgement.sequence, lesson=self.handler.lesson_of(command_id))
         else:
             reply = unsaved(Outcome.of(RefusalCode.NOT_SAVED, says=acknowledgement.error), tick)

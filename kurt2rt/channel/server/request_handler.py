@@ -27,12 +27,12 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.server.command_of import command_of
 from kurt2rt.channel.server.dependencies import ChannelDependencies
+from kurt2rt.channel.server.lesson_list import LessonList
 from kurt2rt.channel.server.off_tick_requests import OffTickCommand, OffTickRequests
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.rate_limit import PerDeviceRateLimit
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.lesson_history import hold_of, hold_text
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command, Drive, HoldAction, Stop, Stream, Watch
 from kurt2rt.core.teaching.inbox import InboxFullError
@@ -92,6 +92,8 @@ class RequestHandler:
         self._newest: dict[str, Sender] = {}
         self.tick = 0
         """Tick of the newest state."""
+        self.lessons = LessonList(runtime.level.system, parts.journal.stamp_of, runtime.action_groups())
+        """Newest lessons, and those that contradict their neighbours."""
         self._off_tick = OffTickRequests(runtime, parts, self._pending, lambda: self.tick)
 
     def close(self) -> None:
@@ -122,7 +124,7 @@ class RequestHandler:
             case HelloRequest():
                 return Reply(ReplyStatus.DONE, {**self._hello, "tick": self.tick})
             case LessonsRequest(count=count):
-                return Reply(ReplyStatus.DONE, {"lessons": self._lessons(count)})
+                return Reply(ReplyStatus.DONE, self.lessons.body(count))
             case SituationsRequest():
                 return Reply(ReplyStatus.DONE, {"situations": self._situations()})
             case HealthRequest():
@@ -222,28 +224,6 @@ class RequestHandler:
 
     def _too_many(self) -> Reply:
         return refusal("refused", Outcome(RefusalCode.TOO_MANY), self.tick)
-
-    def _lessons(self, count: int) -> list[list[object]]:
-        """Return the newest lessons as rows, newest first; the lessons of a hold are one row."""
-        rows: list[list[object]] = []
-        holds: set[str] = set()
-        system = self._runtime.level.system
-        for record in reversed(system.lessons if count else ()):
-            origin = record.event.origin
-            hold = hold_of(origin.command_id)
-            if hold in holds:
-                continue
-            if len(rows) == count:
-                break
-            stamp = self._parts.journal.stamp_of(origin.command_id)
-            place = (origin.teacher, int(origin.phase), origin.tick)
-            if hold is None:
-                rows.append([origin.command_id, record.text, *place, stamp, record.undone])
-                continue
-            holds.add(hold)
-            given = tuple(filter(None, map(system.lesson, system.lessons_of_hold(hold))))
-            rows.append([hold, hold_text(given), *place, stamp, all(each.undone for each in given)])
-        return rows
 
     def _situations(self) -> list[str]:
         return sorted(self._runtime.level.system.named_situations(MID))[:MOST_SITUATIONS]

@@ -3,6 +3,7 @@
 import typer
 
 from kurt2rt.cli.knowledge.compact import compact
+from kurt2rt.cli.knowledge.contradictions import contradictions
 from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.export import export, import_, key, table
 from kurt2rt.cli.knowledge.graph import graph
@@ -18,5 +19,20 @@ knowledge = typer.Typer(
 )
 knowledge.command("list")(list_files)
 knowledge.command("import")(import_)
-for _command in (show, lessons, check, undo, redo, branch, merge, diff, export, key, compact, table, graph):
+for _command in (
+    show,
+    lessons,
+    contradictions,
+    check,
+    undo,
+    redo,
+    branch,
+    merge,
+    diff,
+    export,
+    key,
+    compact,
+    table,
+    graph,
+):
     knowledge.command()(_command)

@@ -25,6 +25,12 @@ class Radii(NamedTuple):
     fractions: Mapping[str, float]
     """Fraction of R within which a correction replaces an RLA and does not insert one, by level."""
 
+    def empty_system(self) -> RlaSystem:
+        """Return an RLA system of these levels without any RLA."""
+        basic = self.spaces[BASIC]
+        others = {level: space for level, space in self.spaces.items() if level != BASIC}
+        return RlaSystem(basic.dimensions, basic.radius, basic.weights, others=others)
+
 
 class Overlap(NamedTuple):
     """An RLA that is near a condition."""
@@ -60,8 +66,7 @@ class Contradictions:
     def __init__(self, rlas: Iterable[Rla], radii: Radii) -> None:
         """Index the RLAs; those that are withdrawn, or of a level that the task does not have, contradict none."""
         self._fractions = radii.fractions
-        basic = radii.spaces[BASIC]
-        self._system = RlaSystem(basic.dimensions, basic.radius, basic.weights, others=radii.spaces)
+        self._system = radii.empty_system()
         for rla in sorted(rlas, key=lambda each: each.rla_id):
             if not rla.is_withdrawn:
                 self._system.apply(RlaCreated(rla))

@@ -115,7 +115,8 @@ def world_view(world: WorldView) -> dict[str, Any]:
 
 def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
     """Return the message with the newest lessons, newest first."""
-    return {"kind": "lessons", "lessons": [each._asdict() for each in lessons]}
+    rows = ({**each._asdict(), "against": [other._asdict() for other in each.against]} for each in lessons)
+    return {"kind": "lessons", "lessons": list(rows)}
 
 
 def situations_view(names: tuple[str, ...]) -> dict[str, Any]:

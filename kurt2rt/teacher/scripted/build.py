@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from behaviors.action_groups import action_groups
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teacher_settings import (
@@ -14,7 +15,6 @@ from kurt2rt.core.teacher_settings import (
     NoticeSettings,
     PersonSettings,
 )
-from kurt2rt.teacher.scripted.action_groups import action_groups
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher

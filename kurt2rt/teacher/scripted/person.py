@@ -5,13 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from behaviors.action_groups import STAND
 from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import Delay, PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
-from kurt2rt.teacher.scripted.action_groups import STAND
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit

@@ -33,6 +33,7 @@ from kurt2rt.teacher.terminal.terminal_text import (
     format_trust,
     help_lines,
     is_notable,
+    lesson_lines,
     name_lines,
 )
 
@@ -242,7 +243,7 @@ class TerminalTeacher:
         match words:
             case ["lessons"]:
                 for each in reversed(await robot.lessons(_LESSONS_SHOWN)):
-                    self._say(f"{each.command_id}  {each.text}{', undone' if each.undone else ''}")
+                    self._say_all(lesson_lines(each))
             case ["health"]:
                 self._say_all(lines_of(await robot.health()))
             case ["way"] if hello.mid is not None and state is not None and state.mid is not None:

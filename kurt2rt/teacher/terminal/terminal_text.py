@@ -191,6 +191,18 @@ def format_role(state: State) -> str:
             return other
 
 
+def lesson_lines(lesson: LessonLine) -> list[str]:
+    """Return a line with a lesson and its id, and one for each of its RLAs that contradicts its neighbours."""
+    return [
+        f"{lesson.command_id}  {lesson.text}{', undone' if lesson.undone else ''}",
+        *(
+            f"  {each.command_id}  RLA {each.rla} says {each.action}; all near it say {', '.join(each.actions)} "
+            f"(RLA {each.nearest} first)"
+            for each in lesson.against
+        ),
+    ]
+
+
 def format_critic_change(lesson: LessonLine | None) -> str:
     """Return a line about the last change of the critic; `lesson` is None if it is not known."""
     if lesson is None:

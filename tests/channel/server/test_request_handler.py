@@ -10,6 +10,7 @@ from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain
 from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.lesson_list import Contradicting, lesson_lines_of
 from kurt2rt.channel.protocol.limits import PART_BYTES
 from kurt2rt.channel.protocol.request_types import CommandRequest, StreamRequest
 from kurt2rt.channel.protocol.requests import (
@@ -967,3 +968,21 @@ async def test_place_sent_before_stop_is_refused() -> None:
     assert yard.changes == []
     await desk.ask(desk.command(PlaceRequest, 3.0, 1.0, 0.5))
     assert yard.changes == [(3.0, 1.0, 0.5)]
+
+
+async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixture) -> None:
+    for counts in (100, 110, 120, 140, 150):
+        desk.run(counts=counts)
+        await desk.ask(desk.answer("forward"))
+    assert "against" not in (await desk.ask(LessonsRequest(20))).body
+    desk.run(counts=131)
+    slip = desk.answer("back")
+    taught = outcome_of(await desk.ask(slip))
+    assert taught is not None
+    assert (taught.fields["against"], taught.fields["nearest"]) == (("forward",), 4)
+    listed = decode_answer(encode_answer((await desk.ask(LessonsRequest(20))).body))
+    lesson, *others = lesson_lines_of(listed)
+    assert lesson.against == (Contradicting(lesson.command_id, 6, "back", 4, ("forward",)),)
+    assert not any(each.against for each in others)
+    await desk.ask(desk.command(UndoRequest, lesson.command_id))
+    assert "against" not in (await desk.ask(LessonsRequest(20))).body

@@ -1,6 +1,8 @@
 // The last lessons, each with an undo button that needs a second tap.
 
+import { words } from "./actions.js";
 import { when } from "./decision.js";
+import { text } from "./texts.js";
 
 const SURE_MS = 3000;
 
@@ -58,15 +60,35 @@ export class Lessons {
       this.#list.replaceChildren(none);
       return;
     }
-    this.#list.replaceChildren(...lessons.map((lesson) => this.#row(lesson)));
+    const rows = (lesson) => [this.#row(lesson), ...lesson.against.map((each) => this.#contradiction(each))];
+    this.#list.replaceChildren(...lessons.flatMap(rows));
   }
 
-  #row({ command_id: id, text, teacher, phase, stamp, undone }) {
+  // A lesson that none of its neighbours agrees with; it can be undone alone, also if a hold gave it.
+  #contradiction({ command_id: id, rla, action, nearest, actions }) {
+    const row = document.createElement("li");
+    row.className = "contradicts";
+    const told = document.createElement("span");
+    told.textContent = text("contradicts", { rla, action: words(action), others: actions.map(words).join(", "), nearest });
+    row.append(told, this.#undoButton(id, `RLA ${rla}, ${words(action)}`));
+    return row;
+  }
+
+  #undoButton(id, of) {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = "Undo";
+    button.setAttribute("aria-label", `Undo: ${of}`);
+    twice(button, "Sure?", () => this.#undo(id));
+    return button;
+  }
+
+  #row({ command_id: id, text: lesson, teacher, phase, stamp, undone }) {
     const row = document.createElement("li");
     row.classList.toggle("undone", undone);
     const told = document.createElement("span");
     const what = document.createElement("b");
-    what.textContent = text;
+    what.textContent = lesson;
     const who = document.createElement("small");
     who.textContent = [teacher, `phase ${phase}`, when(stamp) || "not saved yet"].join(" · ");
     told.append(what, who);
@@ -76,12 +98,7 @@ export class Lessons {
       mark.textContent = "undone";
       row.append(mark);
     } else {
-      const button = document.createElement("button");
-      button.type = "button";
-      button.textContent = "Undo";
-      button.setAttribute("aria-label", `Undo: ${text}`);
-      twice(button, "Sure?", () => this.#undo(id));
-      row.append(button);
+      row.append(this.#undoButton(id, lesson));
     }
     return row;
   }

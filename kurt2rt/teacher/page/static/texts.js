@@ -12,6 +12,7 @@ const TEXTS = {
   questionChanged: "{action} was not sent: the question has just changed, look again",
   undoAgain: "undo {lesson}? touch again",
   undoEarlier: "your last touch taught nothing; undo the lesson before it, {lesson}? touch again",
+  contradicts: "RLA {rla} says {action}; all near it say {others} (RLA {nearest} first). A slip?",
   nothingToUndo: "the list has no lesson to undo; nothing was sent",
   driveEnded: "the drive was ended; press again",
   awaitRobot: "waiting for the robot's picture …",

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.teacher.scripted.action_groups import action_groups
+from behaviors.action_groups import action_groups
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,86 @@
+"""List of the newest lessons for teachers, with those that contradict their neighbours."""
+
+from collections.abc import Callable, Iterator, Mapping
+
+from kurt2rt.core.outcome import Field
+from kurt2rt.core.rla.contradiction import Contradiction, find_contradiction
+from kurt2rt.core.rla.events import ActionReplaced, RlaCreated
+from kurt2rt.core.rla.lesson_history import LessonRecord, hold_of, hold_text, rla_id_of
+from kurt2rt.core.rla.rla_system import RlaSystem
+
+_MOST_LOOKED_AT = 16
+"""Newest lessons whose neighbours are looked at for a list: the robot's next tick waits for it."""
+
+
+class LessonList:
+    """Rows of the newest lessons, computed when somebody asks, between two ticks."""
+
+    def __init__(self, system: RlaSystem, stamp_of: Callable[[str], str], groups: Mapping[str, str]) -> None:
+        """Connect the knowledge.
+
+        Args:
+            system: with the lessons.
+            stamp_of: returns the time when the lesson of a command became durable, UTC; empty before.
+            groups: group of each action (behaviors.action_groups).
+        """
+        self._system = system
+        self._stamp_of = stamp_of
+        self._groups = groups
+
+    def body(self, count: int) -> dict[str, object]:
+        """Return the body of the answer: `lessons`, newest first, at most `count`, and `against` if any contradicts.
+
+        The lessons of a hold are one row.
+        """
+        rows: list[list[object]] = []
+        against: list[list[object]] = []
+        left = _MOST_LOOKED_AT
+        for command_id, text, records in self._newest(count):
+            origin = records[0].event.origin
+            stamp = self._stamp_of(origin.command_id)
+            undone = all(each.undone for each in records)
+            rows.append([command_id, text, origin.teacher, int(origin.phase), origin.tick, stamp, undone])
+            found = (self.contradiction_of(each.event.origin.command_id) for each in records[:left])
+            against += [_row(command_id, each) for each in found if each is not None]
+            left -= len(records[:left])
+        return {"lessons": rows, "against": against} if against else {"lessons": rows}
+
+    def fields_of(self, command_id: str) -> dict[str, Field]:
+        """Return the fields `against` and `nearest` of the answer to a lesson; none if it contradicts nothing."""
+        found = self.contradiction_of(command_id)
+        return {} if found is None else {"against": found.actions, "nearest": found.neighbours[0].rla_id}
+
+    def contradiction_of(self, command_id: str) -> Contradiction | None:
+        """Return the contradiction that a lesson made and that lasts; None if there is none."""
+        record = self._system.lesson(command_id)
+        if record is None or record.undone or not isinstance(record.event, RlaCreated | ActionReplaced):
+            return None
+        rla = self._system.get(rla_id_of(record.event))
+        if rla is None or rla.origin.command_id != command_id:  # another lesson gave it its present action
+            return None
+        return find_contradiction(self._system, rla, self._groups)
+
+    def _newest(self, count: int) -> Iterator[tuple[str, str, tuple[LessonRecord, ...]]]:
+        """Yield the id that undoes a row, its text, and its lessons, at least one, newest row first."""
+        holds: set[str] = set()
+        listed = 0
+        for record in reversed(self._system.lessons if count else ()):
+            command_id = record.event.origin.command_id
+            hold = hold_of(command_id)
+            if hold in holds:
+                continue
+            if listed == count:
+                return
+            listed += 1
+            if hold is None:
+                yield command_id, record.text, (record,)
+                continue
+            holds.add(hold)
+            given = tuple(filter(None, map(self._system.lesson, self._system.lessons_of_hold(hold))))
+            yield hold, hold_text(given), (record, *(each for each in given if each is not record))
+
+
+def _row(listed_as: str, found: Contradiction) -> list[object]:
+    rla = found.rla
+    nearest = found.neighbours[0].rla_id
+    return [listed_as, rla.origin.command_id, rla.rla_id, rla.action, nearest, list(found.actions)]

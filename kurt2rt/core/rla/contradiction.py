@@ -1,0 +1,55 @@
+"""Contradiction: an RLA whose nearest neighbours all do something else, as after a slip of the teacher's finger."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
+
+NEIGHBOURS = 5
+"""Neighbours that must all differ. Of the RLAs that differ from so many, 41 to 45 % were wrong where 11 to 15 % of all
+were (docs/results-and-limits.md, Contradictions)."""
+
+_LOOKED_AT = 2 * NEIGHBOURS + 1
+"""Nearest RLAs that are looked at for neighbours: itself, and some that were withdrawn."""
+
+
+class Contradiction(NamedTuple):
+    """RLA of the basic level, and its nearest neighbours, each with an action of another group."""
+
+    rla: Rla
+    neighbours: tuple[Rla, ...]
+    """The five nearest that have an action, nearest first."""
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Actions of the neighbours, each once, that of the nearest first."""
+        return tuple(dict.fromkeys(each.action for each in self.neighbours))
+
+
+def find_contradiction(system: RlaSystem, rla: Rla, groups: Mapping[str, str]) -> Contradiction | None:
+    """Return the neighbours that an RLA contradicts; None if one of them agrees, or five are not to be found.
+
+    Computes all distances: for explanations, not for each tick.
+
+    Args:
+        system: with the RLA and its neighbours, those of its behaviour.
+        rla: of any level; only those of the basic level that have an action contradict anything.
+        groups: group of each action, as of behaviors.action_groups.
+    """
+    if rla.level != BASIC or rla.is_withdrawn:
+        return None
+    near = system.nearest_first(np.array(rla.condition), rla.behaviour, limit=_LOOKED_AT)
+    neighbours: list[Rla] = []
+    for rla_id, _ in near:
+        other = system.get(rla_id)
+        if other is None or rla_id == rla.rla_id or other.is_withdrawn:
+            continue
+        if groups.get(other.action, other.action) == groups.get(rla.action, rla.action):
+            return None
+        neighbours.append(other)
+        if len(neighbours) == NEIGHBOURS:
+            return Contradiction(rla, tuple(neighbours))
+    return None
