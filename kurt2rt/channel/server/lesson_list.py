@@ -13,7 +13,7 @@ _MOST_LOOKED_AT = 16
 
 
 class LessonList:
-    """Rows of the newest lessons, computed when somebody asks, between two ticks."""
+    """Rows of the newest lessons, computed between two ticks for each request."""
 
     def __init__(self, system: RlaSystem, stamp_of: Callable[[str], str], groups: Mapping[str, str]) -> None:
         """Connect the knowledge.
