@@ -81,6 +81,7 @@ def reasons() -> Iterator[tuple[str, str]]:
         "rla, sensor broken": replace(facts(KNOWN), broken_sensors=("front left edge (s15)",)),
         "rla, alarm": replace(facts(KNOWN), granted=STOOD, reasons=("bus lost",), latched=True),
         "unknown, nothing taught": standing(DecisionCause.UNKNOWN, NOTHING),
+        "unknown, asks sooner": standing(DecisionCause.UNKNOWN, replace(OUTSIDE, radius_share=0.5)),
         "unknown, withdrawn": standing(DecisionCause.UNKNOWN, level((1.0, 6.0), WITHDRAWN)),
         "unknown, lost action": standing(DecisionCause.UNKNOWN),
         "unknown way": asking_the_way(NO_WAY),

@@ -54,6 +54,7 @@ _LEVEL = MapOf(
     count=COUNT,
     words=ManyOf(NAME, most=_MOST_FEATURES),
     nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
+    radius_share=MayLack(Float(1.0)),
 )
 
 

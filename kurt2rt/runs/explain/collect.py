@@ -209,6 +209,7 @@ class _Reader:
             driver=driver,
             others=tuple(others),
             count=self._system.candidate_count(behaviour, level_name),
+            radius_share=self._system.radius_share if level_name == BASIC else 1.0,
         )
 
     def _ranking(

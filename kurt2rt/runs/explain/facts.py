@@ -83,6 +83,8 @@ class LevelFacts:
     """Situation in words; empty if the level has none."""
     nearest_words: tuple[str, ...] = ()
     """Condition of the nearest RLA in words."""
+    radius_share: float = 1.0
+    """Fraction of R within which RLAs answer; below 1 while the robot is taught and asks sooner."""
 
     @property
     def runner_up(self) -> RlaFacts | None:

@@ -179,10 +179,19 @@ def _asks(level: LevelFacts) -> list[str]:
         return [f"{nearest.title} says {nearest.action}, which does not know how to go on here: the robot asks."]
     return [
         f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, at {format_distance(nearest.distance)}, "
-        f"{nearest.distance / nearest.radius:.2f} times R ({format_distance(nearest.radius)})."
+        f"{nearest.distance / nearest.radius:.2f} times {_limit(level, nearest)}."
         if nearest.radius > 0 and math.isfinite(nearest.distance)
         else f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, {format_distance(nearest.distance)}."
     ]
+
+
+def _limit(level: LevelFacts, nearest: RlaFacts) -> str:
+    """Return the distance beyond which the robot asks, such as "R (900)"."""
+    limit = format_distance(nearest.radius)
+    if level.radius_share >= 1.0:
+        return f"R ({limit})"
+    whole = format_distance(nearest.radius / level.radius_share)
+    return f"{level.radius_share:g} R ({limit} of {whole}), beyond which it asks while it is taught"
 
 
 def _asks_the_way(level: LevelFacts) -> list[str]:
