@@ -10,7 +10,6 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Position, Simulation
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.active_stop import StopReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
@@ -25,6 +24,7 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.primitives import primitives
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
+from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.runtime import Runtime
@@ -185,7 +185,7 @@ class TrainingRun(Episode):
         self._workload = TeacherWorkload(self._planned_ticks, period_s)
         self._growth: list[int] = []
         self._agreements: list[float | None] = []
-        self._sensor_stop_ticks = 0
+        self._sensor_stop = SensorStopTimer(self.ticks_per_second)
         self._rescues = self._unknown_rescues = self._alarms = self._deletions = self._refused = 0
         self._trusted_ticks = self._positive_rewards = self._negative_rewards = 0
 
@@ -301,19 +301,10 @@ class TrainingRun(Episode):
         self._alarms += 1
 
     def _end_sensor_stop(self, tick: int) -> None:
-        """Carry the robot away a second after it stopped for a broken sensor, and resume another second later.
-
-        All sensors of a lesson work. One that is pressed against a wall looks broken, and a resume trusts it again only
-        if its reading has changed (hal.sensor_watch).
-        """
-        stop = self.runtime.handler.active_stop
-        if stop is None or stop.reason is not StopReason.SENSOR_BROKEN:
-            self._sensor_stop_ticks = 0
-            return
-        self._sensor_stop_ticks += 1
-        if self._sensor_stop_ticks == self.ticks_per_second:
+        act = self._sensor_stop.update(self.runtime.handler.active_stop)
+        if act is SensorStopAct.CARRY_AWAY:
             self._rescue(tick)
-        elif self._sensor_stop_ticks == 2 * self.ticks_per_second:
+        elif act is SensorStopAct.RESUME:
             self.send(self._teacher.resume())
             self._count_alarm(tick)
 

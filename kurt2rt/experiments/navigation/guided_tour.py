@@ -13,11 +13,11 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import Correct
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
+from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
 from kurt2rt.experiments.navigation.outcome import Place
 from kurt2rt.experiments.navigation.tour_guide import TourGuide
 from kurt2rt.runtime import Runtime
@@ -140,7 +140,8 @@ class TourRun(Episode):
         self._home = simulation.pose
         self._unanswered_ticks = round(teaching.rescue_after_s / self.period_s)
         self._planned_ticks = round(teaching.duration_s / self.period_s)
-        self._rescues = self._corrections = self._asking_ticks = 0
+        self._sensor_stop = SensorStopTimer(self.ticks_per_second)
+        self._rescues = self._asking_ticks = 0
 
     async def drive(self) -> None:
         """Lead the robot for the whole teaching time."""
@@ -158,18 +159,26 @@ class TourRun(Episode):
         command = self._guide.watch(record)
         if command is not None:
             self.send(command)
-        lesson = self._teacher.update(view_of_tick(record))
+        lesson = self._teacher.update(view_of_tick(record, touching=self.simulation.touching))
         if lesson is not None:
             self.send(lesson)
-            self._corrections += isinstance(lesson, Correct)
         if self.latched_ticks == self.ticks_per_second:
             self.send(self._teacher.resume())
             self.latched_ticks = 0
-        self._asking_ticks = self._asking_ticks + 1 if self.asking else 0
-        if self.is_stuck(waiting=self.asking and self._asking_ticks < self._unanswered_ticks):
+        act = self._sensor_stop.update(self.runtime.handler.active_stop)
+        if act is SensorStopAct.RESUME:
+            self.send(self._teacher.resume())
+        if act is SensorStopAct.CARRY_AWAY or self._is_lost():
             self.place(self._home)
             self._guide.set_down_at_home()
             self._rescues += 1
+
+    def _is_lost(self) -> bool:
+        """Return whether the robot made no way for too long; a teacher who looks back stops that time."""
+        if self.runtime.handler.active_stop is not None:
+            return False
+        self._asking_ticks = self._asking_ticks + 1 if self.asking else 0
+        return self.is_stuck(waiting=self.asking and self._asking_ticks < self._unanswered_ticks)
 
     def result(self) -> TourResult:
         """Return the counters and the knowledge of the tour."""
@@ -184,7 +193,7 @@ class TourRun(Episode):
             basic_rlas=len(system),
             mid_asks=self.mid_asks,
             missed_junctions=self._guide.missed,
-            corrections=self._corrections,
+            corrections=self.runtime.handler.corrections,
             rescues=self._rescues,
             trail=rounded_places(self.trail),
             saved=self.runtime.snapshot(),
