@@ -13,16 +13,16 @@ class TurnByAngle:
 
     def __init__(self, geometry: GeometrySettings, *, angle_deg: float, speed_m_s: float) -> None:
         # Each side travels the arc of half the effective track.
-        self._wanted_m = math.radians(abs(angle_deg)) * geometry.effective_track_m / 2
+        self.wanted_m = math.radians(abs(angle_deg)) * geometry.effective_track_m / 2
         self._metres_per_tick = geometry.metres_per_tick
         self._sign = sign = 1.0 if angle_deg > 0 else -1.0
-        self._turning = WheelSpeeds(-sign * speed_m_s, sign * speed_m_s)
+        self.turning = WheelSpeeds(-sign * speed_m_s, sign * speed_m_s)
         self._turned_m = 0.0
 
     @property
     def finished(self) -> bool:
         """Return whether the wheels have rolled the whole arc."""
-        return self._turned_m >= self._wanted_m
+        return self._turned_m >= self.wanted_m
 
     def start(self) -> None:
         """Restart the turn at 0 degrees."""
@@ -33,4 +33,4 @@ class TurnByAngle:
         # Signed: a robot that still swings the other way has more to turn.
         difference = self._sign * (readings.encoder_right_ticks - readings.encoder_left_ticks)
         self._turned_m += 0.5 * difference * self._metres_per_tick
-        return STANDSTILL if self.finished else self._turning
+        return STANDSTILL if self.finished else self.turning

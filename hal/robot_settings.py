@@ -7,6 +7,7 @@ from typing import Annotated, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from hal.infrared_law import InfraredLawNumbers, counts_at
 from hal.settings import Settings, find_config, load_settings
 
 Metres = Annotated[float, Field(gt=0, le=5)]
@@ -150,16 +151,25 @@ class InfraredSettings(Settings):
         """Sensor names in the order of SensorReadings.infrared_counts."""
         return tuple(sensor.name for sensor in self.sensors)
 
+    @property
+    def law(self) -> InfraredLawNumbers:
+        """Law of the sensors as plain numbers, for loops that use it often."""
+        return InfraredLawNumbers(
+            numerator_counts_m=self.numerator_counts_m,
+            offset_m=self.offset_m,
+            bias_counts=self.bias_counts,
+            near_m=self.near_m,
+            far_m=self.far_m,
+            floor_counts=float(self.floor_counts),
+            plateau_counts=float(self.plateau_counts),
+            fold_back_from_m=self.fold_back_from_m,
+            fold_back_counts_per_m=self.fold_back_counts_per_m,
+            fold_back_to_m=self.fold_back_to_m,
+        )
+
     def counts_at(self, distance_m: float) -> float:
         """Return the mean reading, fold-back and floor included, in counts (docs/the-robot.md#infra-red-law)."""
-        if distance_m > self.far_m:
-            return float(self.floor_counts)
-        if distance_m >= self.near_m:
-            return self.numerator_counts_m / (distance_m + self.offset_m) - self.bias_counts
-        if distance_m >= self.fold_back_from_m:
-            return float(self.plateau_counts)
-        near = max(distance_m, self.fold_back_to_m)
-        return self.plateau_counts - (self.fold_back_from_m - near) * self.fold_back_counts_per_m
+        return counts_at(distance_m, self.law)
 
     def distance_m(self, counts: float) -> float:
         """Return the distance of a reading in counts, between near_m and far_m; far_m at the floor or below."""

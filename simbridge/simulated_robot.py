@@ -2,6 +2,7 @@
 
 import hashlib
 import struct
+from collections.abc import Sequence
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -43,25 +44,27 @@ class SimulatedRobot:
         self.world = World(world)
         self._cycle_s = cycle_s
         self._cycles = 0
-        self._infrared_noise = Noise(seed, "infrared")
-        self._slip_noise = Noise(seed, "slip")
-        self._wheels = wheels or Wheels(robot)
-        self._body = Body(self.world, robot.geometry, cycle_s, self._slip_noise)
+        self.infrared_noise = Noise(seed, "infrared")
+        self.slip_noise = Noise(seed, "slip")
+        self.wheels = wheels or Wheels(robot)
+        self.body = Body(self.world, robot.geometry, cycle_s, self.slip_noise)
         build = Noise(seed if robot_seed is None else robot_seed, "robot")
-        self._infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self._infrared_noise, build)
+        self.infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self.infrared_noise, build)
         self._bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = CollisionCounter(cycle_s)
         self._progress = WallProgress(self.world)
+        self._passed: list[Pose] = []
+        """Poses that were followed and whose progress was not asked for yet."""
         self._pressed = 0
         self.lifted = False
         """Whether the robot stands on a block: its wheels turn in the air and the body rests."""
-        self.controller = MicroController(robot, bus, Instruments(robot, self._body, self._wheels))
+        self.controller = MicroController(robot, bus, Instruments(robot, self.body, self.wheels))
         self.place(world.start_poses[0].pose)
 
     def step(self) -> None:
         """Simulate 10 ms: CONTROL in, motors, physics, sensors, telemetry out. Raises hal.bus.BusError."""
         self._cycles += 1
-        controller, wheels, body = self.controller, self._wheels, self._body
+        controller, wheels, body = self.controller, self.wheels, self.body
         controller.receive()
         wheels.turn(*controller.commands)
         if self.lifted:
@@ -71,20 +74,30 @@ class SimulatedRobot:
         pose = body.pose
         self._collisions.update(body.touching)
         self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
-        controller.update_readings(self._infrared.measure(pose), self._infrared.counts)
+        controller.update_readings(self.infrared.measure(pose), self.infrared.counts)
         if self._cycles % _LAPS_EVERY_CYCLES == 0:
             self._progress.update(*pose)
         controller.send(*wheels.take_ticks(), self._pressed)
 
+    def follow(self, pose: Pose) -> None:
+        """Be at a pose after one more cycle that was simulated elsewhere, in a batch; the robot drives no more itself.
+
+        Its place and its progress along walls go on; its sensors, wheels and bus do not.
+        """
+        self._cycles += 1
+        self.body.pose = pose
+        if self._cycles % _LAPS_EVERY_CYCLES == 0:
+            self._passed.append(pose)
+
     def place(self, pose: Pose) -> None:
         """Move the robot to a pose: wheels still, sensors settled, no lap or collision counted."""
-        self._wheels.halt()
-        self._body.place(pose)
+        self.wheels.halt()
+        self.body.place(pose)
         self._collisions.end_episode()
         self._pressed = 0
         self._progress.reset(pose)
-        self._infrared.measure_all(pose)
-        self.controller.update_readings(range(len(self._infrared.counts)), self._infrared.counts)
+        self.infrared.measure_all(pose)
+        self.controller.update_readings(range(len(self.infrared.counts)), self.infrared.counts)
 
     @property
     def time_s(self) -> float:
@@ -94,12 +107,12 @@ class SimulatedRobot:
     @property
     def pose(self) -> Pose:
         """True pose of the robot, in m and rad."""
-        return self._body.pose
+        return self.body.pose
 
     @property
     def wheel_speeds(self) -> WheelSpeeds:
         """True rim speeds of the two sides, in m/s."""
-        return WheelSpeeds(self._wheels.left_m_s, self._wheels.right_m_s)
+        return WheelSpeeds(self.wheels.left_m_s, self.wheels.right_m_s)
 
     @property
     def collisions(self) -> int:
@@ -109,7 +122,7 @@ class SimulatedRobot:
     @property
     def touching(self) -> bool:
         """Return whether the robot touches a wall or obstacle."""
-        return self._body.touching
+        return self.body.touching
 
     @property
     def bumped(self) -> bool:
@@ -119,6 +132,9 @@ class SimulatedRobot:
     @property
     def laps(self) -> float:
         """Progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
+        for pose in self._passed:
+            self._progress.update(*pose)
+        self._passed.clear()
         return self._progress.laps
 
     @property
@@ -129,27 +145,32 @@ class SimulatedRobot:
     @property
     def infrared_counts(self) -> tuple[int, ...]:
         """Newest readings of all sensors in counts, in the order of the sensor table."""
-        return tuple(self._infrared.counts)
+        return tuple(self.infrared.counts)
 
     def state_hash(self) -> str:
         """Return a SHA-256 over all state that motion and readings depend on, except the walls."""
         numbers = (
-            *self._body.pose,
-            *self._body.velocity,
-            *self._body.slip,
-            *self._wheels.state,
+            *self.body.pose,
+            *self.body.velocity,
+            *self.body.slip,
+            *self.wheels.state,
             *self.controller.commands,
-            *self._infrared.due_s,
+            *self.infrared.due_s,
             self.laps,
         )
         counters = (
-            *self._infrared.counts,
+            *self.infrared.counts,
             self._cycles,
             self._pressed,
             self._collisions.count,
-            self._infrared_noise.drawn,
-            self._slip_noise.drawn,
+            self.infrared_noise.drawn,
+            self.slip_noise.drawn,
             *self.controller.state,
         )
-        layout = f"<{len(numbers)}d{len(counters)}q"
-        return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()
+        return hash_state(numbers, counters)
+
+
+def hash_state(numbers: Sequence[float], counters: Sequence[int]) -> str:
+    """Return the SHA-256 over the state of a robot, its numbers in m, rad and s, and its counters."""
+    layout = f"<{len(numbers)}d{len(counters)}q"
+    return hashlib.sha256(struct.pack(layout, *numbers, *counters)).hexdigest()

@@ -1,12 +1,14 @@
 """The simulated half of the composition root: robot, world and bus, put together for experiments and for a run."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind
+from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
@@ -109,6 +111,10 @@ class Kurt2Simulation:
         """Advance the world by one cycle of 10 ms. Raises hal.bus.BusError."""
         self._line.cycle(self.simulated_robot.step)
 
+    def follow(self, pose: Pose) -> None:
+        """Be at a pose after one more cycle that a batch simulated; the simulation can be stepped no more."""
+        self.simulated_robot.follow(pose)
+
     def attach_tap(self, tap: Tap | None) -> None:
         """Set the tap of the notebook's bus interface; None: none."""
         self._line.notebook_end.tap = tap
@@ -166,6 +172,21 @@ class Kurt2SimulationFactory:
         Raises SettingsError for an unknown world or wire.
         """
         return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
+
+    def open_batch(
+        self, simulations: Sequence[FollowedSimulation], minds: Sequence[Mind], settings: DriveSettings
+    ) -> Batch:
+        """Return a batch of the robots of fresh simulations (hal.batch.BatchFactory).
+
+        Raises BatchRefusedError for what the batch does not know.
+        """
+        # Late import: the compiler takes a third of a second.
+        from simbridge.batch.batch import RobotBatch
+
+        if self.wire != NO_WIRE:
+            raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
+        robots = [each.simulated_robot for each in simulations if isinstance(each, Kurt2Simulation)]
+        return RobotBatch(self.settings, robots, minds, settings)
 
     def require_worlds(self, *worlds: str) -> None:
         """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""

@@ -36,12 +36,78 @@ class EightSettings(PolicySettings):
         return Eight(self, infrared)
 
 
-class _Column(NamedTuple):
+class Thresholds(NamedTuple):
+    """Numbers of the policy, by the names of its settings."""
+
+    near_m: float
+    far_m: float
+    front_m: float
+    lost_m: float
+    edge_m: float
+    rear_m: float
+    close_m: float
+
+
+Side = tuple[float, float, float, float, float, float]
+"""Distances in m of the sensors of one side from front to back, with the edges."""
+
+ACTIONS = (
+    "forward",
+    *("spin_left", "spin_right"),
+    *("curve_left", "curve_right"),
+    *("sharp_left", "sharp_right"),
+    *("bear_left", "bear_right"),
+)
+_FORWARD, _SPIN, _CURVE, _SHARP, _BEAR = 0, 1, 3, 5, 7
+_LEFT, _RIGHT = 0, 1
+
+
+class Column(NamedTuple):
     """View of a column by the sensors of one side."""
 
     place: int
     beside_m: float
     edge_m: float
+
+
+def view_column(side: Side, want: Thresholds) -> Column:
+    """Return the view of a column by the sensors of one side."""
+    beside_m = min(side[1], side[2], side[3], side[4])
+    if beside_m < want.lost_m:
+        place = _FOREMOST
+        while side[1 + place] != beside_m:
+            place += 1
+    elif side[0] < want.edge_m:
+        place = _AHEAD
+    else:
+        place = _BEHIND if side[5] < want.rear_m else _NOWHERE
+    return Column(place, beside_m, side[0])
+
+
+def choose_action(front_m: float, left: Column, right: Column, want: Thresholds) -> int:
+    """Return the index in ACTIONS of the right action; `front_m`: least distance of the sensors in front."""
+    if front_m < want.front_m:
+        to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)
+        return _SPIN + (_RIGHT if to_left_m <= to_right_m else _LEFT)
+    # Round the column that lies farther ahead, on the side `here`.
+    here, column, other = (_LEFT, left, right) if left.place <= right.place else (_RIGHT, right, left)
+    if column.place == _NOWHERE:
+        return _CURVE + _LEFT
+    if column.place == _AHEAD:  # across to it
+        return _CURVE + (1 - here) if column.edge_m < want.close_m else _FORWARD
+    if column.place == _BEHIND:
+        return _SHARP + here
+    if column.place == _FOREMOST and other.place < _NOWHERE:  # still on the way across
+        return _FORWARD
+    tighter = (
+        (column.place == _HINDMOST)
+        - (column.place == _FOREMOST)
+        + (column.beside_m > want.far_m)
+        - (column.beside_m < want.near_m)
+    )
+    if tighter > 0:
+        return _SHARP + here
+    return (_BEAR if tighter < 0 else _CURVE) + here
 
 
 class Eight:
@@ -50,8 +116,10 @@ class Eight:
     No memory is needed: the robot leaves a column once the other one comes into view, and then has its back to it.
     """
 
+    actions = ACTIONS
+
     def __init__(self, settings: EightSettings, infrared: InfraredSettings) -> None:
-        self._settings = settings
+        self.thresholds = Thresholds(**settings.model_dump(exclude={"kind"}))
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
         self._left = distances.of(*LEFT_WITH_EDGES)
@@ -59,43 +127,12 @@ class Eight:
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        left, right = self._column(self._left(infrared_counts)), self._column(self._right(infrared_counts))
-        if min(self._front(infrared_counts)) < self._settings.front_m:
-            to_left_m, to_right_m = min(left.beside_m, left.edge_m), min(right.beside_m, right.edge_m)
-            return "spin_right" if to_left_m <= to_right_m else "spin_left"
-        if left.place <= right.place:
-            return self._round(left, right, "left", "right")
-        return self._round(right, left, "right", "left")
+        want = self.thresholds
+        left = view_column(_side(self._left(infrared_counts)), want)
+        right = view_column(_side(self._right(infrared_counts)), want)
+        return ACTIONS[choose_action(min(self._front(infrared_counts)), left, right, want)]
 
-    def _column(self, side: tuple[float, ...]) -> _Column:
-        want = self._settings
-        edge_m, *at_side, rear_m = side
-        beside_m = min(at_side)
-        if beside_m < want.lost_m:
-            place = at_side.index(beside_m)
-        elif edge_m < want.edge_m:
-            place = _AHEAD
-        else:
-            place = _BEHIND if rear_m < want.rear_m else _NOWHERE
-        return _Column(place, beside_m, edge_m)
 
-    def _round(self, column: _Column, other: _Column, here: str, away: str) -> str:
-        """Return the action round the column that lies farther ahead, on the side `here`."""
-        want = self._settings
-        if column.place == _NOWHERE:
-            return "curve_left"
-        if column.place == _AHEAD:  # across to it
-            return f"curve_{away}" if column.edge_m < want.close_m else "forward"
-        if column.place == _BEHIND:
-            return f"sharp_{here}"
-        if column.place == _FOREMOST and other.place < _NOWHERE:  # still on the way across
-            return "forward"
-        tighter = (
-            (column.place == _HINDMOST)
-            - (column.place == _FOREMOST)
-            + (column.beside_m > want.far_m)
-            - (column.beside_m < want.near_m)
-        )
-        if tighter > 0:
-            return f"sharp_{here}"
-        return f"bear_{here}" if tighter < 0 else f"curve_{here}"
+def _side(distances_m: tuple[float, ...]) -> Side:
+    front_edge, front, mid_front, mid_back, back, rear_edge = distances_m
+    return front_edge, front, mid_front, mid_back, back, rear_edge

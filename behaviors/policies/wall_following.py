@@ -1,6 +1,6 @@
 """Wall following with the wall on the left."""
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from pydantic import Field
 
@@ -41,40 +41,71 @@ class WallFollowingSettings(PolicySettings):
         return WallFollowing(self, infrared)
 
 
+class Thresholds(NamedTuple):
+    """Numbers of the policy for one robot, by the names of its settings."""
+
+    wanted_m: float
+    tolerance_m: float
+    front_m: float
+    edge_m: float
+    corner_m: float
+    bay_m: float
+    lost_m: float
+    heading_weight_m: float
+    near_m: float
+    """Distance up to which a sensor reads the same."""
+    baseline_m: float
+    """Distance between the foremost and the hindmost sensor on the left."""
+
+
+Side = tuple[float, float, float, float]
+"""Distances in m of the sensors on the left, from front to back."""
+
+ACTIONS = ("forward", "spin_right", "spin_left", "curve_left", "curve_right", "bear_left", "bear_right")
+_FORWARD, _SPIN_RIGHT, _SPIN_LEFT, _CURVE_LEFT, _CURVE_RIGHT, _BEAR_LEFT, _BEAR_RIGHT = range(7)
+
+
+def choose_action(front_m: float, left_edge_m: float, right_edge_m: float, left: Side, want: Thresholds) -> int:
+    """Return the index in ACTIONS of the right action; `front_m`: least distance of the sensors in front."""
+    nearest_m = min(left)
+    if front_m < want.front_m or left_edge_m < want.edge_m or nearest_m <= want.near_m:
+        return _SPIN_RIGHT
+    if left[0] > want.lost_m:  # no wall next to the nose
+        past_corner = left_edge_m > want.corner_m
+        if past_corner and right_edge_m < want.bay_m:
+            return _SPIN_LEFT
+        return _CURVE_LEFT if past_corner and max(left[1], left[3]) > want.lost_m else _FORWARD
+    turned_away = (left[0] - left[3]) / want.baseline_m
+    error = nearest_m - want.wanted_m + want.heading_weight_m * turned_away
+    if error > 3 * want.tolerance_m:
+        return _CURVE_LEFT
+    if error > want.tolerance_m:
+        return _BEAR_LEFT
+    if error < -3 * want.tolerance_m:
+        return _CURVE_RIGHT
+    if error < -want.tolerance_m:
+        return _BEAR_RIGHT
+    return _FORWARD
+
+
 class WallFollowing:
     """Spin right at an obstacle ahead, curve left at the end of the wall, else hold distance and heading."""
 
+    actions = ACTIONS
+
     def __init__(self, settings: WallFollowingSettings, infrared: InfraredSettings) -> None:
-        self._settings = settings
-        self._near_m = infrared.near_m
         distances = Distances(infrared)
         self._front = distances.of(*FRONT)
         self._edges = distances.of(FRONT_LEFT_EDGE, FRONT_RIGHT_EDGE)
         self._left = distances.of(*LEFT_FRONT_TO_BACK)
         front_m, *_, back_m = distances.ahead_m(*LEFT_FRONT_TO_BACK)
-        self._baseline_m = front_m - back_m
+        self.thresholds = Thresholds(
+            **settings.model_dump(exclude={"kind"}), near_m=infrared.near_m, baseline_m=front_m - back_m
+        )
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
         """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        want = self._settings
-        left = self._left(infrared_counts)
+        front, left_1, mid_1, mid_2, left_2 = self._front(infrared_counts), *self._left(infrared_counts)
         left_edge, right_edge = self._edges(infrared_counts)
-        front = min(self._front(infrared_counts))
-        if front < want.front_m or left_edge < want.edge_m or min(left) <= self._near_m:
-            return "spin_right"
-        if left[0] > want.lost_m:  # no wall next to the nose
-            past_corner = left_edge > want.corner_m
-            if past_corner and right_edge < want.bay_m:
-                return "spin_left"
-            return "curve_left" if past_corner and max(left[1], left[3]) > want.lost_m else "forward"
-        turned_away = (left[0] - left[3]) / self._baseline_m
-        error = min(left) - want.wanted_m + want.heading_weight_m * turned_away
-        if error > 3 * want.tolerance_m:
-            return "curve_left"
-        if error > want.tolerance_m:
-            return "bear_left"
-        if error < -3 * want.tolerance_m:
-            return "curve_right"
-        if error < -want.tolerance_m:
-            return "bear_right"
-        return "forward"
+        action = choose_action(min(front), left_edge, right_edge, (left_1, mid_1, mid_2, left_2), self.thresholds)
+        return ACTIONS[action]

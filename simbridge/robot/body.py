@@ -42,10 +42,10 @@ class Body:
         self._track_m = geometry.effective_track_m
         self._mass_kg = geometry.mass_kg
         self._inertia_kg_m2 = geometry.yaw_inertia_kg_m2
-        self._force_limit_n = geometry.mass_kg * _TRACTION_M_S2
-        self._torque_limit_n_m = self._force_limit_n * geometry.outline_length_m / 2
-        self._slip_keep = math.exp(-cycle_s / SLIP_TIME_S)
-        self._slip_gain = SLIP_FRACTION * math.sqrt(1.0 - self._slip_keep**2)
+        self.force_limit_n = geometry.mass_kg * _TRACTION_M_S2
+        self.torque_limit_n_m = self.force_limit_n * geometry.outline_length_m / 2
+        self.slip_keep = math.exp(-cycle_s / SLIP_TIME_S)
+        self.slip_gain = SLIP_FRACTION * math.sqrt(1.0 - self.slip_keep**2)
         self._left_slip = 0.0
         self._right_slip = 0.0
         self._points: list[pymunk.ContactPointSet] = []
@@ -61,7 +61,7 @@ class Body:
 
     def move(self, left_m_s: float, right_m_s: float) -> None:
         """Simulate one cycle with these rim speeds in m/s."""
-        keep, gain, normal = self._slip_keep, self._slip_gain, self._noise.normal
+        keep, gain, normal = self.slip_keep, self.slip_gain, self._noise.normal
         self._left_slip = left_slip = keep * self._left_slip + gain * normal()
         self._right_slip = right_slip = keep * self._right_slip + gain * normal()
         left_m_s *= 1.0 + left_slip
@@ -76,12 +76,12 @@ class Body:
         force_x = (forward_m_s * math.cos(heading_rad) - velocity_x) * self._mass_kg / cycle_s
         force_y = (forward_m_s * math.sin(heading_rad) - velocity_y) * self._mass_kg / cycle_s
         force_n = math.hypot(force_x, force_y)
-        if force_n > self._force_limit_n:
-            force_x *= self._force_limit_n / force_n
-            force_y *= self._force_limit_n / force_n
+        if force_n > self.force_limit_n:
+            force_x *= self.force_limit_n / force_n
+            force_y *= self.force_limit_n / force_n
         torque_n_m = (yaw_rad_s - turning_rad_s) * self._inertia_kg_m2 / cycle_s
-        if abs(torque_n_m) > self._torque_limit_n_m:
-            torque_n_m = math.copysign(self._torque_limit_n_m, torque_n_m)
+        if abs(torque_n_m) > self.torque_limit_n_m:
+            torque_n_m = math.copysign(self.torque_limit_n_m, torque_n_m)
         body.force = (force_x, force_y)
         body.torque = torque_n_m
         if self._points:

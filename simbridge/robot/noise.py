@@ -1,6 +1,7 @@
 """Random numbers of the simulation, drawn in blocks because single draws cost 1 µs each."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 _BLOCK = 2048
 
@@ -25,6 +26,15 @@ class Noise:
         self._used += 1
         self.drawn += 1
         return self._block[self._used - 1]
+
+    def normals(self, count: int) -> NDArray[np.float64]:
+        """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""
+        blocks = -(-(count - (len(self._block) - self._used)) // _BLOCK)
+        fresh = self._generator.standard_normal(_BLOCK * max(0, blocks))
+        numbers = np.concatenate((np.array(self._block[self._used :]), fresh))
+        self._block, self._used = numbers[count:].tolist(), 0
+        self.drawn += count
+        return numbers[:count]
 
     def fraction(self) -> float:
         """Return the next uniform number from 0 up to 1, 1 excluded."""

@@ -27,7 +27,7 @@ class RayCaster:
         self._keep_m = reach_m + _MARGIN_M
         self._cached_world = world.settings
         self._cached_from: Point | None = None
-        self._every_face = _faces_of(world.settings)
+        self._every_face = faces_of(world.settings)
         # Near faces: corner, vector to the next corner. Near posts: centre, squared radius.
         self._faces: list[tuple[float, float, float, float]] = []
         self._posts: list[tuple[float, float, float]] = []
@@ -64,7 +64,7 @@ class RayCaster:
     def _gather(self, centre: Point) -> None:
         world = self._world.settings
         if self._cached_world is not world:
-            self._every_face = _faces_of(world)
+            self._every_face = faces_of(world)
         # Vectorised: a map may have thousands of faces, and this cycle has no extra time.
         corner_x, corner_y, edge_x, edge_y = self._every_face.T
         dx, dy = centre[0] - corner_x, centre[1] - corner_y
@@ -81,7 +81,7 @@ class RayCaster:
         self._cached_from = centre
 
 
-def _faces_of(world: WorldSettings) -> NDArray[np.float64]:
+def faces_of(world: WorldSettings) -> NDArray[np.float64]:
     """Return each face as corner and vector to the next corner, (n, 4)."""
     edges = edges_of(world.outline[:-1]) + [edge for solid in world.solids for edge in edges_of(solid)]
     return np.array([(a[0], a[1], b[0] - a[0], b[1] - a[1]) for a, b in edges])

@@ -1,11 +1,36 @@
 """Motors of the two sides with their speed loops: set points in, rim speeds and encoder ticks out."""
 
 import math
+from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 
 REVERSAL_SPEED_M_S = 0.02
 """Slower than this a side may be driven the other way (firmware's SLOW_SPEED, 120 ticks in 100 ms)."""
+
+
+class SideLaw(NamedTuple):
+    """Numbers of the motor of one side."""
+
+    loop_gain: float
+    """Fraction of the difference to the set point that a cycle takes away."""
+    speed_up_m_s: float
+    """Largest gain of speed in one cycle."""
+    brake_m_s: float
+    """Largest loss of speed in one cycle."""
+    maximum_m_s: float
+
+
+def next_speed(speed: float, target: float, brake: bool, law: SideLaw) -> float:
+    """Return the rim speed of one side after a cycle towards a target, in m/s; a braked side ignores its target."""
+    if brake:
+        return 0.0 if abs(speed) <= law.brake_m_s else speed - math.copysign(law.brake_m_s, speed)
+    if speed * target < 0 and abs(speed) > REVERSAL_SPEED_M_S:
+        target = 0.0
+    change = (target - speed) * law.loop_gain
+    limit = law.speed_up_m_s if speed * change >= 0 else law.brake_m_s
+    speed += change if -limit <= change <= limit else math.copysign(limit, change)
+    return speed if abs(speed) <= law.maximum_m_s else math.copysign(law.maximum_m_s, speed)
 
 
 class Wheels:
@@ -16,11 +41,13 @@ class Wheels:
 
     def __init__(self, robot: RobotSettings) -> None:
         motors, cycle_s = robot.motors, robot.can.cycle_s
-        self._loop_gain = 1.0 - math.exp(-cycle_s / motors.speed_loop_time_s)
-        self._speed_up_m_s = motors.acceleration_m_s2 * cycle_s
-        self._brake_m_s = motors.braking_m_s2 * cycle_s
-        self._maximum_m_s = motors.maximum_speed_m_s
-        self._ticks_per_speed = cycle_s / robot.geometry.metres_per_tick
+        self.law = SideLaw(
+            loop_gain=1.0 - math.exp(-cycle_s / motors.speed_loop_time_s),
+            speed_up_m_s=motors.acceleration_m_s2 * cycle_s,
+            brake_m_s=motors.braking_m_s2 * cycle_s,
+            maximum_m_s=motors.maximum_speed_m_s,
+        )
+        self.ticks_per_speed = cycle_s / robot.geometry.metres_per_tick
         self.left_m_s = 0.0
         self.right_m_s = 0.0
         self._left_carry = 0.0
@@ -30,13 +57,13 @@ class Wheels:
         self, left_target_m_s: float, right_target_m_s: float, left_brake: bool = False, right_brake: bool = False
     ) -> None:
         """Simulate one cycle towards the targets in m/s; a braked side decelerates at its limit."""
-        self.left_m_s = self._next_speed(self.left_m_s, left_target_m_s, left_brake)
-        self.right_m_s = self._next_speed(self.right_m_s, right_target_m_s, right_brake)
+        self.left_m_s = next_speed(self.left_m_s, left_target_m_s, left_brake, self.law)
+        self.right_m_s = next_speed(self.right_m_s, right_target_m_s, right_brake, self.law)
 
     def take_ticks(self) -> tuple[int, int]:
         """Return the encoder ticks of this cycle, left and right; fractions are carried over."""
-        left = self._left_carry + self.left_m_s * self._ticks_per_speed
-        right = self._right_carry + self.right_m_s * self._ticks_per_speed
+        left = self._left_carry + self.left_m_s * self.ticks_per_speed
+        right = self._right_carry + self.right_m_s * self.ticks_per_speed
         left_ticks, right_ticks = math.floor(left), math.floor(right)
         self._left_carry, self._right_carry = left - left_ticks, right - right_ticks
         return left_ticks, right_ticks
@@ -49,13 +76,3 @@ class Wheels:
     def state(self) -> tuple[float, ...]:
         """All numbers that the next cycle depends on, for the state hash."""
         return self.left_m_s, self.right_m_s, self._left_carry, self._right_carry
-
-    def _next_speed(self, speed: float, target: float, brake: bool) -> float:
-        if brake:
-            return 0.0 if abs(speed) <= self._brake_m_s else speed - math.copysign(self._brake_m_s, speed)
-        if speed * target < 0 and abs(speed) > REVERSAL_SPEED_M_S:
-            target = 0.0
-        change = (target - speed) * self._loop_gain
-        limit = self._speed_up_m_s if speed * change >= 0 else self._brake_m_s
-        speed += change if -limit <= change <= limit else math.copysign(limit, change)
-        return speed if abs(speed) <= self._maximum_m_s else math.copysign(self._maximum_m_s, speed)

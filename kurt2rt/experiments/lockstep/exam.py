@@ -22,7 +22,7 @@ from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import RuntimeOptions, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +101,11 @@ class ExamSetup:
     on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
     """Called in every tick with the record and the updated metric."""
 
+    @property
+    def chance_seed(self) -> str:
+        """Seed of the random choices of the course."""
+        return f"course of the exam in world {self.world}, seed {self.seed}"
+
 
 async def examine(
     simulation: Simulation,
@@ -150,22 +155,10 @@ class ExamRun(Episode):
                 round(task.learning.minimum_action_s / settings.can.cycle_s),
                 behaviour,
             )
-        runtime = build_runtime(
-            simulation.robot,
-            settings,
-            task,
-            events,
-            NoTeachingAllowed(),
-            LockstepClock(simulation.step),
-            RuntimeOptions(
-                level_override=level, active_behaviour=behaviour, checkpoint=setup.saved, teacher_available=False
-            ),
-        )
-        if setup.autonomous_values is not None:
-            values = _values_in_phase_5(setup.autonomous_values, runtime.level.system.rlas, task)
-            runtime.reinforcement.rule.restore(values)
+        options = RuntimeOptions(level_override=level, active_behaviour=behaviour)
+        runtime = build_exam_runtime(simulation, settings, task, events, setup, options)
         # Learner and teacher get the same random choices; their drives diverge at the first different action.
-        chance = random.Random(f"course of the exam in world {setup.world}, seed {setup.seed}")
+        chance = random.Random(setup.chance_seed)
         super().__init__(simulation, runtime, chance, stuck_after_s=task.exam.stuck_after_s, on_progress=on_progress)
         if task.exam.start == "in_sight":
             self.reposition(in_sight=True)
@@ -235,6 +228,35 @@ class ExamRun(Episode):
     def _command_behaviour(self, current: str) -> None:
         if self.task.mid is None and self.metric.behaviour != current:
             self.send(Pursue(self.next_id("exam"), "examiner", self.metric.behaviour))
+
+
+def build_exam_runtime(
+    simulation: Simulation,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    setup: ExamSetup,
+    options: RuntimeOptions,
+) -> Runtime:
+    """Build the runtime of a robot without a teacher, with the values of `setup` and the levels of `options`.
+
+    Raises:
+        hal.settings.SettingsError: settings do not fit each other.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+    """
+    runtime = build_runtime(
+        simulation.robot,
+        settings,
+        task,
+        events,
+        NoTeachingAllowed(),
+        LockstepClock(simulation.step),
+        replace(options, checkpoint=setup.saved, teacher_available=False),
+    )
+    if setup.autonomous_values is not None:
+        values = _values_in_phase_5(setup.autonomous_values, runtime.level.system.rlas, task)
+        runtime.reinforcement.rule.restore(values)
+    return runtime
 
 
 def _values_in_phase_5(autonomous: Statistics, rlas: Sequence[Rla], task: TaskSettings) -> Statistics:

@@ -1,0 +1,177 @@
+"""Contract of a batch: many simulated robots that drive at once, by policies or by taught RLAs, without a teacher."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple, Protocol, runtime_checkable
+
+from hal.simulation import Pose, Simulation, SimulationFactory
+
+STANDS = -1
+"""Index of the action of a robot that stands and asks."""
+
+
+class FeatureKind(IntEnum):
+    """Kind of a recent feature of a situation."""
+
+    READING = 0
+    MAXIMUM = 1
+    MINIMUM = 2
+    ORIENTATION = 3
+    """Counts by which the first sensor exceeds the second, or 0."""
+    NOTHING = 4
+    """Always 0."""
+
+
+class FeatureTable(NamedTuple):
+    """Recent features that count in a distance, in the order of the situation; a weight of 0 counts for nothing."""
+
+    kinds: tuple[FeatureKind, ...]
+    sensors: tuple[tuple[int, ...], ...]
+    """Places of each feature's sensors in the sensor table."""
+    weights: tuple[float, ...]
+
+
+@runtime_checkable
+class TabledPolicy(Protocol):
+    """Reference policy that names all its actions; a batch knows the shipped ones by their classes."""
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of the actions that the policy may choose."""
+        ...
+
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        """Return the name of the action for the counts of all sensors and a taught behaviour."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class PolicyMind:
+    """Robot that drives by a reference policy."""
+
+    policy: TabledPolicy
+
+
+@dataclass(frozen=True, slots=True)
+class TaughtMind:
+    """Robot that drives by RLAs, oldest first, and stands outside their radii."""
+
+    rla_ids: tuple[int, ...]
+    conditions: Sequence[Sequence[float]]
+    """Weighted recent features of each RLA."""
+    radii: tuple[float, ...]
+    answers: tuple[int, ...]
+    """Place of the RLA that answers where RLAs share a condition; most places name themselves."""
+    actions: tuple[str, ...]
+    features: FeatureTable
+
+
+Mind = PolicyMind | TaughtMind
+
+
+class FixedSpeeds(NamedTuple):
+    """Action with fixed set points."""
+
+    left_m_s: float
+    right_m_s: float
+
+
+class WallDistance(NamedTuple):
+    """Action that keeps a distance from a wall (behaviors.keep_distance)."""
+
+    front: int
+    """Place of the sensor in front in the sensor table."""
+    back: int
+    towards_left: float
+    distance_m: float
+    speed_m_s: float
+    gain_per_m: float
+    baseline_m: float
+
+
+class Turn(NamedTuple):
+    """Action that turns on the spot until each side has rolled so far (behaviors.turn_by_angle)."""
+
+    wanted_m: float
+    left_m_s: float
+    right_m_s: float
+
+
+Action = FixedSpeeds | WallDistance | Turn
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveSettings:
+    """Settings that all robots of a batch share."""
+
+    actions: Mapping[str, Action]
+    """Actions that the batch knows, by name."""
+    minimum_ticks: int
+    """Ticks before another action may replace the driving one."""
+
+
+class Stretch(NamedTuple):
+    """Course of one robot over the newest stretch of ticks, one value for each tick."""
+
+    poses: list[Pose]
+    actions: list[int]
+    """Indexes into `Batch.actions`, or STANDS."""
+    rlas: list[int]
+    """Places of the driving RLAs in the robot's TaughtMind; -1 for a policy and a robot that stands."""
+    distances: list[float]
+    """Distance of the nearest RLA; infinite for a policy and without RLAs."""
+
+
+class Batch(Protocol):
+    """Robots that drive at once, each in a world of its own."""
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of the actions, by index."""
+        ...
+
+    def drive(self, robots: Sequence[int], ticks: int) -> None:
+        """Let these robots drive so many ticks on; robots that leave the batch stop early."""
+        ...
+
+    def reason_to_leave(self, robot: int) -> str:
+        """Return why a robot cannot be driven in the batch any further; empty if it can.
+
+        It touches something, or a watch would stop it. Its whole drive belongs on the loop over the CAN bus.
+        """
+        ...
+
+    def stretch(self, robot: int) -> Stretch:
+        """Return the course of a robot over the newest call of `drive`."""
+        ...
+
+    def state_hash(self, robot: int, laps: float) -> str:
+        """Return the state hash of a robot, as the simulated robot on the CAN bus has it after these ticks."""
+        ...
+
+
+class FollowedSimulation(Simulation, Protocol):
+    """Simulation whose robot is driven in a batch, and which follows its pose, to measure its drive."""
+
+    def follow(self, pose: Pose) -> None:
+        """Be at a pose after one more cycle that a batch simulated; the simulation can be stepped no more."""
+        ...
+
+
+@runtime_checkable
+class BatchFactory(SimulationFactory, Protocol):
+    """Opens simulations, and batches of their robots."""
+
+    def open(self, world: str, seed: int, purpose: str) -> FollowedSimulation:
+        """Open a simulation (hal.simulation.SimulationFactory)."""
+        ...
+
+    def open_batch(
+        self, simulations: Sequence[FollowedSimulation], minds: Sequence[Mind], settings: DriveSettings
+    ) -> Batch:
+        """Return a batch of the robots of fresh simulations, which themselves stay where they are.
+
+        Raises hal.batch_refusal.BatchRefusedError for what the batch does not know.
+        """
+        ...

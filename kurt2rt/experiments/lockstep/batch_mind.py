@@ -1,0 +1,158 @@
+"""Minds of a batch, from a task and its knowledge, and the refusal of exams that a batch does not know."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from behaviors.behaviour import Behaviour
+from behaviors.keep_distance import KeepDistance
+from behaviors.motor_primitive import MotorPrimitive
+from behaviors.turn_by_angle import TurnByAngle
+from hal.batch import (
+    Action,
+    DriveSettings,
+    FeatureKind,
+    FeatureTable,
+    FixedSpeeds,
+    FollowedSimulation,
+    Mind,
+    PolicyMind,
+    TabledPolicy,
+    TaughtMind,
+    Turn,
+    WallDistance,
+)
+from hal.batch_refusal import BatchRefusedError
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.perception.definition import Extreme, Feature, Orientation, Reading, SituationDefinition
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from kurt2rt.runtime import Runtime, RuntimeOptions
+
+_COURSES = ("laps", "way", "rounds", "eights")
+"""Courses that never reposition the robot and want one behaviour."""
+_ON_THE_BUS = "examine it on the CAN bus"
+
+
+def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
+    """Check that a batch can drive exams of a task. Raises BatchRefusedError."""
+    doubt = task.learning.doubt
+    if task.course.kind not in _COURSES:
+        raise _refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
+    if doubt is not None and doubt.asks and doubt.alone:
+        raise _refused(task, "a robot that stands at a doubt without a teacher")
+    if task.mid is not None and not all(setup.teacher_policy for setup in setups):
+        raise _refused(task, "a mid level")
+    if len(task.behaviours) > 1:
+        raise _refused(task, "several behaviours")
+    if not all(setup.stuck_ends for setup in setups):
+        raise _refused(task, "rescues")
+
+
+def build_drive_settings(settings: RobotSettings, task: TaskSettings) -> DriveSettings:
+    """Return the actions of the task's repertoire that a batch knows, and the minimum time of an action."""
+    actions = {name: _action_of(each) for name, each in load_task_repertoire(task, settings).items()}
+    return DriveSettings(
+        actions={name: each for name, each in actions.items() if each is not None},
+        minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s),
+    )
+
+
+def _action_of(behaviour: Behaviour) -> Action | None:
+    """Return an action of the repertoire as numbers; None for a taught one."""
+    match behaviour:
+        case MotorPrimitive():
+            return FixedSpeeds(*behaviour.wheel_speeds)
+        case KeepDistance():
+            return WallDistance(behaviour.front, behaviour.back, *behaviour.numbers)
+        case TurnByAngle():
+            return Turn(behaviour.wanted_m, *behaviour.turning)
+    return None
+
+
+def build_minds(
+    simulations: Sequence[FollowedSimulation],
+    settings: RobotSettings,
+    task: TaskSettings,
+    exams: Sequence[tuple[Sequence[TeachingEvent], ExamSetup]],
+) -> list[Mind]:
+    """Return the mind of each exam, given by its lessons and setup; equal knowledge makes one mind.
+
+    Raises:
+        BatchRefusedError: the batch does not know the policy, or averages count in a distance.
+        SettingsError: settings do not fit each other.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+    """
+    policy = task.policy.build(settings.infrared)
+    minds: list[Mind] = []
+    taught: dict[tuple[int, int, int], TaughtMind] = {}
+    for simulation, (events, setup) in zip(simulations, exams, strict=True):
+        if setup.teacher_policy:
+            if not isinstance(policy, TabledPolicy):
+                raise _refused(task, f"policy {task.policy.kind}")
+            minds.append(PolicyMind(policy))
+            continue
+        key = id(events), id(setup.saved), id(setup.autonomous_values)
+        if key not in taught:
+            runtime = build_exam_runtime(simulation, settings, task, events, setup, RuntimeOptions())
+            taught[key] = _taught_mind(runtime, settings, task)
+        minds.append(taught[key])
+    return minds
+
+
+def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) -> TaughtMind:
+    """Return the RLAs that answer in an exam: without those whose action was withdrawn."""
+    level, definition = runtime.level, runtime.definition
+    system, width = level.system, len(definition.features)
+    if system.weights[width:].any():
+        raise _refused(task, "averages that count in a distance")
+    behaviour = runtime.active_behaviour.behaviour
+    rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not rla.is_withdrawn]
+    place = {rla.rla_id: index for index, rla in enumerate(rlas)}
+    groups = [system.competitors(rla) for rla in rlas]
+    answers = [
+        place[level.would_answer(group).rla_id] if len(group) > 1 else index for index, group in enumerate(groups)
+    ]
+    conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:width].tolist() for rla in rlas]
+    return TaughtMind(
+        rla_ids=tuple(place),
+        conditions=conditions,
+        radii=tuple(system.whole_radius(rla) for rla in rlas),
+        answers=tuple(answers),
+        actions=tuple(rla.action for rla in rlas),
+        features=_feature_table(definition, settings, system.weights[:width].tolist(), task),
+    )
+
+
+def _feature_table(
+    definition: SituationDefinition, settings: RobotSettings, weights: Sequence[float], task: TaskSettings
+) -> FeatureTable:
+    place = {name: index for index, name in enumerate(settings.infrared.names)}
+    kinds, sensors = [], []
+    for feature in definition.features:
+        kind, names = _kind_and_sensors(feature, definition, task)
+        kinds.append(kind)
+        sensors.append(tuple(place[name] for name in names))
+    return FeatureTable(tuple(kinds), tuple(sensors), tuple(weights))
+
+
+def _kind_and_sensors(
+    feature: Feature, definition: SituationDefinition, task: TaskSettings
+) -> tuple[FeatureKind, tuple[str, ...]]:
+    match feature:
+        case Reading():
+            return FeatureKind.READING, (feature.sensor,)
+        case Extreme():
+            kind = FeatureKind.MAXIMUM if feature.kind == "maximum" else FeatureKind.MINIMUM
+            return kind, feature.sensors
+        case Orientation():
+            return FeatureKind.ORIENTATION, (feature.nearer, feature.farther)
+    if definition.wheel_speed_counts_per_m_s:
+        raise _refused(task, "wheel speeds that count in a situation")
+    return FeatureKind.NOTHING, ()
+
+
+def _refused(task: TaskSettings, what: str) -> BatchRefusedError:
+    return BatchRefusedError(f"a batch does not know {what}", where=f"task {task.name}", do=_ON_THE_BUS)

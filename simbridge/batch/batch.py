@@ -1,0 +1,120 @@
+"""Batch of simulated robots (hal.batch.Batch): their state is copied from fresh simulations on the CAN bus."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hal.batch import STANDS, DriveSettings, Mind, Stretch
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
+from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, SLIDES, STAYS, TOUCHES, drive
+from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
+from simbridge.batch.setup import build_laws, build_robots
+from simbridge.batch.tables import build_knowledge, require_known
+from simbridge.simulated_robot import SimulatedRobot, hash_state
+
+_REASONS = {
+    STAYS: "",
+    TOUCHES: "it may touch something",
+    SLIDES: "its wheels lose their grip",
+    FROZEN: "a board of sensors repeats itself",
+    BROKEN: "a sensor looks broken",
+    CROWDED: "too many walls are near",
+}
+
+
+_MOVING = (
+    *("x_m", "y_m", "heading_rad", "vx_m_s", "vy_m_s", "yaw_rad_s", "left_slip", "right_slip"),
+    *("left_m_s", "right_m_s", "left_carry", "right_carry", "left_told_m_s", "right_told_m_s"),
+)
+"""Names of the numbers of a moving robot, in the order of its state hash."""
+
+
+class RobotBatch:
+    """Robots in compiled loops; each is equal bit by bit to the same robot on the CAN bus until it leaves."""
+
+    def __init__(
+        self,
+        robot: RobotSettings,
+        simulated: Sequence[SimulatedRobot],
+        minds: Sequence[Mind],
+        settings: DriveSettings,
+    ) -> None:
+        """Copy the state of simulated robots that have not driven yet.
+
+        Args:
+            robot: settings of all robots.
+            simulated: robots with their worlds.
+            minds: what drives each robot.
+            settings: actions, and their minimum time.
+
+        Raises:
+            BatchRefusedError: for what the batch does not know.
+        """
+        require_known(robot, simulated, minds, settings)
+        self.actions = tuple(settings.actions)
+        self._laws = build_laws(robot, simulated[0], minds, settings)
+        self._knowledge, tables = build_knowledge(minds, self.actions)
+        self._robots, self._world = build_robots(robot, simulated, minds, tables)
+        self._first_rows = self._knowledge.first[tables]
+        self._streams = [(each.slip_noise, each.infrared_noise) for each in simulated]
+        self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
+        """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
+        self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
+        self._driven = 0
+
+    def drive(self, robots: Sequence[int], ticks: int) -> None:
+        """Let these robots drive so many ticks on, at most the longest stretch; robots that leave stop early.
+
+        Raises ValueError for a longer stretch, and for a robot that left the batch before.
+        """
+        if not 0 < ticks <= STRETCH:
+            raise ValueError(f"a stretch of {ticks} ticks: give 1 to {STRETCH}")
+        for r in robots:
+            if self._robots[r]["left"]:
+                raise ValueError(f"robot {r} has left the batch")
+            self._draw_noise(r, ticks)
+        self._driven = ticks
+        drive(np.array(robots, dtype=np.int64), ticks, self._robots, self._world, self._laws, self._knowledge)
+
+    def reason_to_leave(self, robot: int) -> str:
+        """Return why a robot cannot be driven in the batch any further; empty if it can."""
+        return _REASONS[int(self._robots[robot]["left"])]
+
+    def stretch(self, robot: int) -> Stretch:
+        """Return the course of a robot over the newest call of `drive`."""
+        record, end = self._robots[robot], self._driven
+        columns = [record[f"track_{name}"][:end].tolist() for name in Pose._fields]
+        rlas = record["track_rla"][:end]
+        return Stretch(
+            list(map(Pose, *columns)),
+            record["track_action"][:end].tolist(),
+            np.where(rlas == STANDS, STANDS, rlas - self._first_rows[robot]).tolist(),
+            record["track_distance"][:end].tolist(),
+        )
+
+    def state_hash(self, robot: int, laps: float) -> str:
+        """Return the state hash of a robot, as the simulated robot on the CAN bus has it after these ticks.
+
+        `laps`: its progress along walls, which the batch does not measure.
+        """
+        record = self._robots[robot]
+        ticks = int(record["tick"])
+        braked = float(ticks < 2)  # by the controller's watchdog, before the first CONTROL
+        moving = [float(record[name]) for name in _MOVING]
+        numbers = (*moving, braked, braked, *record["due_s"].tolist(), laps)
+        slip, noise = self._drawn[robot]
+        drawn = (noise + int(record["noise_used"]), slip + int(record["slip_used"]))
+        return hash_state(numbers, (*record["counts"].tolist(), ticks, 0, 0, *drawn, 0, 1, 0, 0))
+
+    def _draw_noise(self, robot: int, ticks: int) -> None:
+        """Draw random numbers, after those that are left, unless enough for so many ticks lie ahead."""
+        record, drawn = self._robots[robot], self._drawn[robot]
+        for place, (name, stream) in enumerate(zip(("slip", "noise"), self._streams[robot], strict=True)):
+            numbers, used = record["slip_noise" if name == "slip" else "noise"], int(record[f"{name}_used"])
+            if (len(numbers) - used) * STRETCH >= len(numbers) * ticks:
+                continue
+            numbers[: len(numbers) - used] = numbers[used:].copy()
+            numbers[len(numbers) - used :] = stream.normals(used)
+            record[f"{name}_used"] = 0
+            drawn[place] += used

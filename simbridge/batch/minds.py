@@ -1,0 +1,156 @@
+"""Decisions in a batch: the policies' laws, the exact match, and the minimum time of a held action."""
+
+import math
+
+from behaviors.keep_distance import KeepDistanceNumbers, steer
+from behaviors.policies import circle, eight, fleeing, wall_following
+from hal.batch import FeatureKind
+from simbridge.batch.compiled import compiled
+from simbridge.batch.parts import Features, Floats, Integers, Knowledge, MindLaw, Robot
+
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT = range(5)
+"""Kinds of minds."""
+READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
+LANES = 8
+"""Partial sums of numpy's pairwise sum: the value at place i belongs to sum i % 8."""
+
+_steer = compiled(steer)
+_follow_wall = compiled(wall_following.choose_action)
+_flee = compiled(fleeing.choose_action)
+_circle = compiled(circle.choose_action)
+_view_column = compiled(eight.view_column)
+_drive_eight = compiled(eight.choose_action)
+
+
+@compiled
+def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
+    """Return the index of a policy's answer among its actions.
+
+    `seen`: distances in m, (15,), of front (3), front edges (2), left (4), right (4), rear edges (2), in the order of
+    `behaviors.policies.distances`.
+    """
+    front_m = min(seen[0], seen[1], seen[2])
+    left = (seen[5], seen[6], seen[7], seen[8])
+    if kind == WALL_FOLLOWING:
+        return _follow_wall(front_m, seen[3], seen[4], left, law.wall_following)
+    if kind == FLEEING:
+        return _flee(front_m, seen[3], seen[4], law.fleeing)
+    if kind == CIRCLE:
+        return _circle(left, law.circle)
+    left_column = _view_column((seen[3], seen[5], seen[6], seen[7], seen[8], seen[13]), law.eight)
+    right_column = _view_column((seen[4], seen[9], seen[10], seen[11], seen[12], seen[14]), law.eight)
+    return _drive_eight(front_m, left_column, right_column, law.eight)
+
+
+@compiled
+def fill_features(counts: Integers, features: Features, situation: Floats) -> None:
+    """Write the weighted recent features of a robot's counts (sensors,) to `situation`, (64,), in counts."""
+    for i in range(features.kind.shape[0]):
+        kind = features.kind[i]
+        value = counts[features.sensors[i, 0]]
+        if kind == NOTHING:
+            value = 0
+        elif kind == ORIENTATION:
+            value = max(0, value - counts[features.sensors[i, 1]])
+        elif kind != READING:
+            for k in range(1, features.sensor_count[i]):
+                other = counts[features.sensors[i, k]]
+                value = max(value, other) if kind == MAXIMUM else min(value, other)
+        situation[i] = value * features.weights[i]
+
+
+@compiled
+def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
+    """Return the sum of squared differences in counts squared, added as numpy's pairwise sum of up to 128 values.
+
+    `row`: of the condition in `conditions`, (rows, values); values are a multiple of eight. `situation`: (64,).
+    """
+    a = b = c = d = e = f = g = h = 0.0
+    for i in range(0, conditions.shape[1], LANES):
+        a += (conditions[row, i] - situation[i]) * (conditions[row, i] - situation[i])
+        b += (conditions[row, i + 1] - situation[i + 1]) * (conditions[row, i + 1] - situation[i + 1])
+        c += (conditions[row, i + 2] - situation[i + 2]) * (conditions[row, i + 2] - situation[i + 2])
+        d += (conditions[row, i + 3] - situation[i + 3]) * (conditions[row, i + 3] - situation[i + 3])
+        e += (conditions[row, i + 4] - situation[i + 4]) * (conditions[row, i + 4] - situation[i + 4])
+        f += (conditions[row, i + 5] - situation[i + 5]) * (conditions[row, i + 5] - situation[i + 5])
+        g += (conditions[row, i + 6] - situation[i + 6]) * (conditions[row, i + 6] - situation[i + 6])
+        h += (conditions[row, i + 7] - situation[i + 7]) * (conditions[row, i + 7] - situation[i + 7])
+    return ((a + b) + (c + d)) + ((e + f) + (g + h))
+
+
+@compiled
+def nearest(first: int, end: int, conditions: Floats, situation: Floats) -> tuple[int, float]:
+    """Return row and distance of the condition nearest to a situation among rows `first` to `end`; -1 without rows.
+
+    `conditions`: (rows, values), in counts. `situation`: (64,). Of equally near conditions the older one wins.
+    """
+    best, least_square, least = -1, math.inf, math.inf
+    for row in range(first, end):
+        square = exact_square(row, conditions, situation)
+        if square < least_square:
+            distance = math.sqrt(square)
+            if distance < least:
+                best, least_square, least = row, square, distance
+    return best, least
+
+
+@compiled
+def hold_or_change(robot: Robot, action: int, law: MindLaw) -> bool:
+    """Let an action drive a robot; return False if another one is held because its minimum time is not over."""
+    if robot.action >= 0:
+        if robot.action == action:
+            return True
+        if robot.action_ticks < law.minimum_ticks and robot.turned_m < law.wanted_m[robot.action]:
+            return False
+    robot.action = action
+    robot.action_ticks = 0
+    robot.turned_m = 0.0
+    return True
+
+
+@compiled
+def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
+    """Return the wheel speeds in m/s of the action that drives a robot."""
+    action = robot.action
+    robot.action_ticks += 1
+    if law.wall[action, 0] >= 0:
+        front_m = law.distance_m[robot.counts[law.wall[action, 0]]]
+        back_m = law.distance_m[robot.counts[law.wall[action, 1]]]
+        keep = law.keep
+        want = KeepDistanceNumbers(keep[action, 0], keep[action, 1], keep[action, 2], keep[action, 3], keep[action, 4])
+        return _steer(front_m, back_m, want)
+    if law.wanted_m[action] < math.inf:
+        sign = 1.0 if law.fixed[action, 1] > 0.0 else -1.0
+        robot.turned_m += 0.5 * (sign * (robot.right_ticks - robot.left_ticks)) * law.metres_per_tick
+        if robot.turned_m >= law.wanted_m[action]:
+            return 0.0, 0.0
+    return law.fixed[action, 0], law.fixed[action, 1]
+
+
+@compiled
+def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[float, float]:
+    """Return the wheel speeds in m/s that a robot decides in tick `k` of the stretch, and enter the decision."""
+    robot.track_distance[k] = math.inf
+    if robot.kind == KNOWLEDGE:
+        _match(robot, k, law, knowledge)
+    else:
+        for i in range(law.seen.shape[0]):
+            robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
+        hold_or_change(robot, law.actions[policy_answer(robot.kind, robot.seen, law)], law)
+    robot.track_action[k], robot.track_rla[k] = robot.action, robot.rla
+    return step_action(robot, law) if robot.action >= 0 else (0.0, 0.0)
+
+
+@compiled
+def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
+    """Let the nearest RLA answer, or stand outside its radius."""
+    fill_features(robot.counts, knowledge.features, robot.situation)
+    first, end = knowledge.first[robot.knowledge], knowledge.first[robot.knowledge + 1]
+    row, distance = nearest(first, end, knowledge.conditions, robot.situation)
+    robot.track_distance[k] = distance
+    if row < 0 or not distance <= knowledge.radius[row]:
+        robot.action = robot.rla = -1
+        return
+    answer = knowledge.answer[row]
+    if hold_or_change(robot, knowledge.action[answer], law):
+        robot.rla = answer

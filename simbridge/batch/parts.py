@@ -1,0 +1,286 @@
+"""State of one robot of a batch as a record, and the numbers and tables that all robots share.
+
+A function gets the record of its robot, so compiled code passes one pointer, and plain Python reads the same names.
+"""
+
+from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
+
+import numpy as np
+from numpy.typing import NDArray
+
+from behaviors.policies import circle, eight, fleeing, wall_following
+from hal.infrared_law import InfraredLawNumbers
+from simbridge.robot.wheels import SideLaw
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+STRETCH = 500
+"""Most ticks in one call of the loop."""
+NEAR_FACES, NEAR_POSTS = 64, 16
+"""Most faces and posts near a robot."""
+SIGNS = 13
+"""Numbers of the state of one sensor in its watch."""
+MOST_RAYS = 3
+MOST_VALUES = 64
+"""Most recent features: numpy adds the squares of more than twice as many in another order."""
+SEEN = 15
+"""Sensors that policies look at."""
+SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
+"""Random numbers that lie ahead of a robot at the begin of a stretch: of slip, of its sensors."""
+
+
+class Robot:
+    """Record of one robot; arrays have the shape that is annotated, in `Sizes` or in numbers."""
+
+    tick: int
+    left: int
+    """Reason that the robot must drive on the bus (simbridge.batch.drive); 0: none."""
+    world: int
+    knowledge: int
+    """Its table of RLAs; -1 for a policy."""
+
+    # Body
+    x_m: float
+    y_m: float
+    heading_rad: float
+    vx_m_s: float
+    vy_m_s: float
+    yaw_rad_s: float
+    left_slip: float
+    right_slip: float
+    slip_noise: Annotated[Floats, (SLIP_AHEAD,)]
+    """Standard normal numbers ahead."""
+    slip_used: int
+
+    # Wheels
+    left_m_s: float
+    right_m_s: float
+    left_carry: float
+    right_carry: float
+    left_ticks: int
+    """Encoder ticks of the newest cycle."""
+    right_ticks: int
+    left_told_m_s: float
+    """Set point that the motor followed in the newest cycle."""
+    right_told_m_s: float
+    left_cm_s: int
+    """Set point in the last CONTROL frame."""
+    right_cm_s: int
+
+    # What is near, and from where the robot is known to be free for `free_m`
+    near: Annotated[Floats, (NEAR_FACES, 4)]
+    near_count: int
+    posts: Annotated[Floats, (NEAR_POSTS, 4)]
+    post_count: int
+    gathered_x_m: float
+    gathered_y_m: float
+    free_x_m: float
+    free_y_m: float
+    free_m: float
+
+    # Infra-red sensors
+    counts: Annotated[Integers, ("sensors",)]
+    gains: Annotated[Floats, ("sensors",)]
+    periods_s: Annotated[Floats, ("sensors",)]
+    due_s: Annotated[Floats, ("sensors",)]
+    rays: Annotated[Floats, ("sensors", MOST_RAYS, 4)]
+    """Start ahead, left and direction ahead, left of each ray of a sensor."""
+    ray_count: int
+    calendar: Annotated[Integers, ("slots", "sensors")]
+    """Sensors that are due in each slot of a ring of cycles."""
+    calendar_count: Annotated[Integers, ("slots",)]
+    slots: int
+    """Slots of the ring that this robot uses."""
+    noise: Annotated[Floats, (NOISE_AHEAD,)]
+    noise_used: int
+
+    # Watches of sensors
+    signs: Annotated[Integers, ("sensors", SIGNS)]
+    board: Annotated[Integers, ("sensors",)]
+    before: Annotated[Integers, ("sensors",)]
+    after: Annotated[Integers, ("sensors",)]
+    """Neighbours of each sensor."""
+    driven: int
+    """Ticks that the robot has driven."""
+    board_still_s: Annotated[Floats, ("boards",)]
+    """Time that the sensors of a board repeat themselves."""
+    looked_at_s: float
+
+    # Guard
+    guarded_left_m_s: float
+    guarded_right_m_s: float
+    driven_at_s: float
+    turned: int
+    """1 if the last CONTROL frame let a wheel turn."""
+
+    # Mind
+    kind: int
+    """Kind of mind (simbridge.batch.minds)."""
+    action: int
+    """Action that drives; -1: none."""
+    action_ticks: int
+    """Ticks that the action has driven."""
+    turned_m: float
+    """Way of each side since a turn began."""
+    rla: int
+    """RLA whose action drives, by its row in the table; -1: none."""
+    seen: Annotated[Floats, (SEEN,)]
+    """Distances in m that a policy looks at."""
+    situation: Annotated[Floats, (MOST_VALUES,)]
+    """Weighted situation."""
+
+    # Course of the newest stretch
+    track_x_m: Annotated[Floats, (STRETCH,)]
+    track_y_m: Annotated[Floats, (STRETCH,)]
+    track_heading_rad: Annotated[Floats, (STRETCH,)]
+    track_action: Annotated[Integers, (STRETCH,)]
+    """-1 where the robot stands and asks."""
+    track_rla: Annotated[Integers, (STRETCH,)]
+    track_distance: Annotated[Floats, (STRETCH,)]
+
+
+class Sizes(NamedTuple):
+    """Sizes of the arrays in a record."""
+
+    sensors: int
+    slots: int
+    boards: int
+
+
+Robots = np.ndarray[tuple[int], np.dtype[np.record]]
+"""Records of all robots, (n,)."""
+
+
+def empty_robots(count: int, sizes: Sizes) -> Robots:
+    """Return the records of so many robots, filled with zeros."""
+    fields: list[tuple[str, type, tuple[int, ...]]] = []
+    for name, hint in get_type_hints(Robot, include_extras=True).items():
+        if get_origin(hint) is Annotated:
+            array, shape = get_args(hint)
+            number = float if array == Floats else int
+            fields.append((name, number, tuple(getattr(sizes, n) if isinstance(n, str) else n for n in shape)))
+        else:
+            fields.append((name, hint, ()))
+    return np.zeros(count, dtype=fields).view(np.recarray)
+
+
+class World(NamedTuple):
+    """Static faces and posts of the worlds of a batch; the first index is the world."""
+
+    faces: Floats
+    """Corner x, y and vector to the next corner, in m, (worlds, faces, 4)."""
+    face_count: Integers
+    posts: Floats
+    """Centre x, y, radius and its square, (worlds, posts, 4)."""
+    post_count: Integers
+    reach_m: float
+    """Longest reach of a ray from the centre of a robot."""
+
+
+class BodyLaw(NamedTuple):
+    """Numbers of the body that all robots share."""
+
+    cycle_s: float
+    track_m: float
+    mass_kg: float
+    inertia_kg_m2: float
+    inverse_mass: float
+    inverse_inertia: float
+    force_limit_n: float
+    torque_limit_n_m: float
+    slip_keep: float
+    slip_gain: float
+    half_length_m: float
+    half_width_m: float
+
+
+class SensorLaw(NamedTuple):
+    """Numbers of the sensors that all robots share."""
+
+    cycle_s: float
+    law: InfraredLawNumbers
+    ray_m: float
+    recess_m: float
+    noise_share: float
+    noise_least: float
+
+
+class WatchLaw(NamedTuple):
+    """Limits of the watches."""
+
+    lowest: float
+    highest: float
+    stuck_ticks: int
+    frozen_s: float
+
+
+class GuardLaw(NamedTuple):
+    """Limits of the guard."""
+
+    cycle_s: float
+    maximum_speed_m_s: float
+    acceleration_m_s2: float
+    braking_m_s2: float
+
+
+class MindLaw(NamedTuple):
+    """Tables of the policies and actions."""
+
+    minimum_ticks: int
+    distance_m: Floats
+    """Distance by count, (1024,)."""
+    seen: Integers
+    """Sensors that a policy looks at, (15,)."""
+    metres_per_tick: float
+    fixed: Floats
+    """Set points of each action in m/s, (actions, 2); those of a turn while it lasts."""
+    wanted_m: Floats
+    """Way of each side in a turn; infinite for other actions, (actions,)."""
+    wall: Integers
+    """Places of the front and the back sensor of actions along a wall, (actions, 2); -1 for others."""
+    keep: Floats
+    """Numbers of such actions (behaviors.keep_distance), (actions, 5)."""
+    actions: Integers
+    """Action of the repertoire for each answer of the policy."""
+    wall_following: wall_following.Thresholds
+    fleeing: fleeing.Thresholds
+    circle: circle.Thresholds
+    eight: eight.Thresholds
+
+
+class Features(NamedTuple):
+    """Recent features of a situation."""
+
+    kind: Integers
+    """Kind of each feature (simbridge.batch.minds)."""
+    sensors: Integers
+    """Sensors of each feature, (features, sensors)."""
+    sensor_count: Integers
+    weights: Floats
+
+
+class Knowledge(NamedTuple):
+    """Taught RLAs of all knowledges of a batch, oldest first; withdrawn ones are left out."""
+
+    first: Integers
+    """First row of each knowledge, and the end of the last one, (knowledges + 1,)."""
+    conditions: Floats
+    """Weighted conditions, (rows, values)."""
+    radius: Floats
+    answer: Integers
+    """Row of the RLA that answers for the RLAs of one condition."""
+    action: Integers
+    features: Features
+
+
+class Laws(NamedTuple):
+    """All numbers that the robots share."""
+
+    body: BodyLaw
+    side: SideLaw
+    ticks_per_speed: float
+    sensor: SensorLaw
+    watch: WatchLaw
+    guard: GuardLaw
+    mind: MindLaw

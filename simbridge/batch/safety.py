@@ -1,0 +1,142 @@
+"""Guard's limits and watches of a batch, for robots that nothing disturbs and nothing touches.
+
+Readings are always fresh, no bumper is pressed and no other node sends CONTROL, so only the limits of speed and slew,
+the watch for frozen boards and the watch for single broken sensors can act. The watch of the wheels cannot: a sound
+motor stays within its band (tests/simbridge/batch/test_safety.py).
+"""
+
+import math
+
+from hal.sensor_watch import (
+    DIFFERS_COUNTS,
+    LOOK_TICKS,
+    PHANTOM_TICKS,
+    QUIET_COUNTS,
+    QUIET_RATIO,
+    RANGE_TICKS,
+    SEES_NOTHING_TICKS,
+    STUCK_BAND,
+    SWING_COUNTS,
+)
+from simbridge.batch.compiled import compiled
+from simbridge.batch.parts import SIGNS, GuardLaw, Integers, Robot, WatchLaw
+
+_LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
+_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS = range(8, SIGNS)
+UNSEEN = -1000
+"""First value of the bands of `hal.sensor_watch`."""
+_ROUNDING = 1e-6
+"""Set points are truncated to whole cm/s beyond this (hal.control)."""
+_LONGEST_SLEW_CYCLES = 2
+
+
+@compiled
+def is_frozen(robot: Robot, now_s: float, law: WatchLaw) -> bool:
+    """Return whether a board of a robot repeats itself for too long (hal.infrared_watch); call it in each tick."""
+    elapsed_s = max(0.0, now_s - robot.looked_at_s)
+    robot.looked_at_s = now_s
+    if not robot.turned:
+        return False
+    frozen = False
+    for board in range(robot.board_still_s.shape[0]):
+        robot.board_still_s[board] += elapsed_s
+        frozen = frozen or robot.board_still_s[board] >= law.frozen_s
+    return frozen
+
+
+@compiled
+def looks_broken(robot: Robot, law: WatchLaw) -> bool:
+    """Return whether a sensor of a robot shows a sign of a fault (hal.sensor_watch); call it in each tick."""
+    robot.driven += robot.turned
+    if robot.tick % LOOK_TICKS:
+        return False
+    found = False
+    for i in range(robot.counts.shape[0]):
+        if _update_signs(robot, i, law):
+            found = found or _shows_fault(robot, i, law)
+    return found
+
+
+@compiled
+def _update_signs(robot: Robot, i: int, law: WatchLaw) -> bool:
+    """Update the signs of sensor `i`; return whether it may be broken."""
+    signs = robot.signs[i]
+    value, driven = robot.counts[i], robot.driven
+    drove = driven - signs[_DRIVEN]
+    signs[_DRIVEN] = driven
+    in_range = law.lowest <= value <= law.highest
+    signs[_OUT_TICKS] = 0 if in_range else min(signs[_OUT_TICKS] + LOOK_TICKS, RANGE_TICKS)
+    _widen(signs, _LOW, _HIGH, value)
+    if signs[_HIGH] - signs[_LOW] > STUCK_BAND:
+        signs[_LOW] = signs[_HIGH] = value
+        signs[STILL_FROM] = driven
+    _widen(signs, _QUIET_LOW, _QUIET_HIGH, value)
+    before, after = robot.counts[robot.before[i]], robot.counts[robot.after[i]]
+    if signs[_QUIET_HIGH] - signs[_QUIET_LOW] > QUIET_COUNTS + QUIET_RATIO * signs[_QUIET_HIGH]:
+        signs[_QUIET_LOW] = signs[_QUIET_HIGH] = value
+        signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
+        signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
+        signs[_LOW_TICKS] = signs[_HIGH_TICKS] = 0
+    elif drove:
+        _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
+        _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
+        high, low = signs[_QUIET_HIGH], signs[_QUIET_LOW]
+        if before - high > DIFFERS_COUNTS and after - high > DIFFERS_COUNTS:
+            signs[_LOW_TICKS] += drove
+        elif low - before > DIFFERS_COUNTS and low - after > DIFFERS_COUNTS:
+            signs[_HIGH_TICKS] += drove
+    still = driven - signs[STILL_FROM] >= law.stuck_ticks
+    return bool(signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[_OUT_TICKS] > 0 or still)
+
+
+@compiled
+def _widen(signs: Integers, low: int, high: int, value: int) -> None:
+    """Widen a band of `signs` to hold `value`."""
+    if value < signs[low]:
+        signs[low] = value
+    elif value > signs[high]:
+        signs[high] = value
+
+
+@compiled
+def _shows_fault(robot: Robot, i: int, law: WatchLaw) -> bool:
+    signs = robot.signs[i]
+    if signs[_OUT_TICKS] >= RANGE_TICKS or robot.driven - signs[STILL_FROM] >= law.stuck_ticks:
+        return True
+    swing = min(signs[_BEFORE_HIGH] - signs[_BEFORE_LOW], signs[_AFTER_HIGH] - signs[_AFTER_LOW])
+    contradicts = signs[_LOW_TICKS] >= SEES_NOTHING_TICKS or signs[_HIGH_TICKS] >= PHANTOM_TICKS
+    return bool(swing >= SWING_COUNTS and contradicts)
+
+
+@compiled
+def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, law: GuardLaw) -> None:
+    """Move the set points of a robot toward wanted speeds in m/s within the guard's limits, and send CONTROL."""
+    left_m_s, right_m_s = wanted
+    fastest_m_s = max(abs(left_m_s), abs(right_m_s))
+    if fastest_m_s > law.maximum_speed_m_s:
+        share = law.maximum_speed_m_s / fastest_m_s
+        left_m_s *= share
+        right_m_s *= share
+    elapsed_s = min(now_s - robot.driven_at_s, _LONGEST_SLEW_CYCLES * law.cycle_s)
+    left_m_s = slewed(robot.guarded_left_m_s, left_m_s, elapsed_s, law)
+    right_m_s = slewed(robot.guarded_right_m_s, right_m_s, elapsed_s, law)
+    robot.guarded_left_m_s, robot.guarded_right_m_s = left_m_s, right_m_s
+    robot.driven_at_s = now_s
+    left, right = left_m_s * 100.0, right_m_s * 100.0
+    robot.left_cm_s = int(left + math.copysign(_ROUNDING, left))
+    robot.right_cm_s = int(right + math.copysign(_ROUNDING, right))
+    robot.turned = 1 if robot.left_cm_s != 0 or robot.right_cm_s != 0 else 0
+
+
+@compiled
+def slewed(from_m_s: float, to_m_s: float, elapsed_s: float, law: GuardLaw) -> float:
+    """Return the set point of one side after `elapsed_s` on its way between two speeds in m/s (hal.guard)."""
+    if to_m_s == from_m_s or to_m_s == 0.0:
+        return to_m_s
+    if from_m_s * to_m_s < 0.0:
+        to_m_s = 0.0
+    speeds_up = abs(to_m_s) > abs(from_m_s)
+    step_m_s = (law.acceleration_m_s2 if speeds_up else law.braking_m_s2) * elapsed_s
+    if to_m_s > from_m_s:
+        return min(to_m_s, from_m_s + step_m_s)
+    return max(to_m_s, from_m_s - step_m_s)

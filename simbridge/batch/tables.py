@@ -1,0 +1,108 @@
+"""Knowledge of a batch as arrays, and the refusal of what the batch does not know."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from behaviors.policies.circle import Circle
+from behaviors.policies.eight import Eight
+from behaviors.policies.fleeing import Fleeing
+from behaviors.policies.wall_following import WallFollowing
+from hal.batch import DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
+from hal.batch_refusal import BatchRefusedError
+from hal.robot_settings import RobotSettings, SpeedMode
+from simbridge.batch.minds import CIRCLE, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
+from simbridge.batch.parts import MOST_VALUES, Features, Knowledge
+from simbridge.simulated_robot import SimulatedRobot
+
+_POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT}
+_NO_FEATURES = FeatureTable((), (), ())
+
+
+def kind_of(mind: Mind) -> int:
+    """Return the kind of a mind (simbridge.batch.minds)."""
+    return KNOWLEDGE if isinstance(mind, TaughtMind) else _POLICIES[type(mind.policy)]
+
+
+def require_known(
+    robot: RobotSettings, simulated: Sequence[SimulatedRobot], minds: Sequence[Mind], settings: DriveSettings
+) -> None:
+    """Check that the batch knows all that decides a drive. Raises BatchRefusedError."""
+    if len(simulated) != len(minds) or not minds:
+        raise BatchRefusedError(f"{len(simulated)} robots and {len(minds)} minds", do="give one mind for each robot")
+    if robot.can.speed_mode is not SpeedMode.SPEED_CM:
+        raise BatchRefusedError(f"speed mode {robot.can.speed_mode}: the batch knows SPEED_CM", do=_ON_THE_BUS)
+    if any(each.time_s for each in simulated):
+        raise BatchRefusedError("a robot has driven already", do="open a fresh simulation")
+    policies = {mind.policy for mind in minds if isinstance(mind, PolicyMind)}
+    for policy in policies:
+        if type(policy) not in _POLICIES:
+            raise BatchRefusedError(f"policy {type(policy).__name__}: the batch does not know it", do=_ON_THE_BUS)
+    if len({(type(policy), getattr(policy, "thresholds", None)) for policy in policies}) > 1:
+        raise BatchRefusedError("two policies in one batch", do="give each task a batch of its own")
+    tables = {mind.features for mind in minds if isinstance(mind, TaughtMind)}
+    if len(tables) > 1:
+        raise BatchRefusedError("two situations in one batch", do="give each task a batch of its own")
+    if any(len(table.kinds) > MOST_VALUES for table in tables):
+        raise BatchRefusedError(f"a situation has at most {MOST_VALUES} features in a batch", do=_ON_THE_BUS)
+    _require_actions(minds, settings)
+
+
+_ON_THE_BUS = "drive it on the CAN bus"
+
+
+def _require_actions(minds: Sequence[Mind], settings: DriveSettings) -> None:
+    for mind in minds:
+        named = mind.actions if isinstance(mind, TaughtMind) else getattr(mind.policy, "actions", ())
+        unknown = sorted(set(named) - set(settings.actions))
+        if unknown:
+            raise BatchRefusedError(f"action {', '.join(unknown)}: the batch does not know it", do=_ON_THE_BUS)
+
+
+def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Knowledge, list[int]]:
+    """Return the RLAs of all taught minds, and the table of each robot; -1 for a policy.
+
+    Robots that share a mind share its table.
+    """
+    taught: dict[int, tuple[int, TaughtMind]] = {}
+    of = []
+    for mind in minds:
+        if isinstance(mind, TaughtMind):
+            of.append(taught.setdefault(id(mind), (len(taught), mind))[0])
+        else:
+            of.append(-1)
+    tables = [mind for _, mind in taught.values()]
+    features = tables[0].features if tables else _NO_FEATURES
+    width = -(-len(features.kinds) // LANES) * LANES
+    first = np.concatenate(([0], np.cumsum([len(mind.rla_ids) for mind in tables]))).astype(np.int64)
+    rows = int(first[-1])
+    conditions = np.zeros((rows, width))
+    answer = np.zeros(rows, dtype=np.int64)
+    for mind, start in zip(tables, first[:-1].tolist(), strict=True):
+        end = start + len(mind.rla_ids)
+        shape = (end - start, len(features.kinds))
+        conditions[start:end, : len(features.kinds)] = np.array(mind.conditions).reshape(shape)
+        answer[start:end] = np.array(mind.answers, dtype=np.int64) + start
+    place = {name: index for index, name in enumerate(actions)}
+    knowledge = Knowledge(
+        first=first,
+        conditions=conditions,
+        radius=np.array([radius for mind in tables for radius in mind.radii], dtype=np.float64),
+        answer=answer,
+        action=np.array([place[name] for mind in tables for name in mind.actions], dtype=np.int64),
+        features=_features(features),
+    )
+    return knowledge, of
+
+
+def _features(table: FeatureTable) -> Features:
+    most = max((len(each) for each in table.sensors), default=1)
+    sensors = np.zeros((len(table.kinds), most), dtype=np.int64)
+    for row, places in enumerate(table.sensors):
+        sensors[row, : len(places)] = places
+    return Features(
+        kind=np.array(table.kinds, dtype=np.int64),
+        sensors=sensors,
+        sensor_count=np.array([len(each) for each in table.sensors], dtype=np.int64),
+        weights=np.array(table.weights, dtype=np.float64),
+    )

@@ -1,0 +1,78 @@
+"""Robots in a batch drive as on the CAN bus, bit by bit."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.exam import ExamSetup
+from simbridge.batch.compiled import IS_COMPILED
+from tests.experiments.helpers import short_task, teach
+from tests.simbridge.batch.both_ways import drive_in_batch, drive_on_bus, first_difference
+
+SECONDS = 4.0 if IS_COMPILED else 0.5
+DRIVES = [
+    ("wall_following", "a"),
+    ("wall_following", "rooms-1000"),
+    ("fleeing", "b"),
+    ("circle", "one_object"),
+    ("eight", "two_objects"),
+]
+
+
+@pytest.mark.parametrize(("name", "world"), DRIVES)
+def test_policy_drives_alike_in_the_batch(name: str, world: str) -> None:
+    task = load_task(name, changes={"exam.duration_s": str(max(1.0, SECONDS))})
+    setups = [ExamSetup(world, seed, teacher_policy=True) for seed in (1, 2)]
+    driven = drive_in_batch(task, [((), setup) for setup in setups])
+    for setup, batch in zip(setups, driven, strict=True):
+        assert first_difference(drive_on_bus(task, (), setup), batch) == ""
+
+
+def test_taught_robots_and_policies_share_a_batch(tmp_path: Path) -> None:
+    taught = teach(tmp_path / "k", short_task(exam_s=max(1.0, SECONDS)))
+    exams = [(taught.events, ExamSetup(world, 1)) for world in ("a", "b", "c")]
+    exams.append((taught.events, ExamSetup("a", 1, teacher_policy=True)))
+    driven = drive_in_batch(taught.task, exams)
+    assert any(step.rla_id is not None for step in driven[0].steps)
+    for (events, setup), batch in zip(exams, driven, strict=True):
+        assert first_difference(drive_on_bus(taught.task, events, setup), batch) == ""
+
+
+def test_untaught_robot_stands_in_the_batch_too() -> None:
+    task = short_task(exam_s=1.0)
+    setup = ExamSetup("a", 1)
+    (batch,) = drive_in_batch(task, [((), setup)])
+    assert batch.steps[-1].action is None
+    assert first_difference(drive_on_bus(task, (), setup), batch) == ""
+
+
+def test_without_the_compiler_the_numbers_are_the_same() -> None:
+    code = (
+        "from tests.simbridge.batch.test_equal_drives import *\n"
+        "task = load_task('wall_following', changes={'exam.duration_s': '1'})\n"
+        "setup = ExamSetup('a', 3, teacher_policy=True)\n"
+        "print(IS_COMPILED, drive_in_batch(task, [((), setup)])[0].state_hash)"
+    )
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    told = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True, timeout=120
+    )
+    task = load_task("wall_following", changes={"exam.duration_s": "1"})
+    bus = drive_on_bus(task, (), ExamSetup("a", 3, teacher_policy=True))
+    assert told.stdout.split() == ["False", bus.state_hash]
+
+
+def test_robot_that_may_touch_something_leaves_the_batch() -> None:
+    # With its own policy's thresholds at the least it does not turn away in time.
+    changes = {"exam.duration_s": "6", "policy.front_m": "0.05", "policy.edge_m": "0.05", "policy.wary_m": "0.05"}
+    task = load_task("fleeing", changes=changes)
+    setup = ExamSetup("a", 1, teacher_policy=True)
+    (batch,) = drive_in_batch(task, [((), setup)])
+    bus = drive_on_bus(task, (), setup)
+    assert batch.left == "it may touch something"
+    assert 0 < len(batch.steps) < len(bus.steps)
+    assert batch.steps == bus.steps[: len(batch.steps)]

@@ -1,0 +1,144 @@
+"""Parts of the batch that have a law of their own are held equal to the parts on the CAN bus."""
+
+import math
+import random
+import uuid
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.batch import PolicyMind, TabledPolicy
+from hal.bus import open_bus
+from hal.guard import Guard
+from hal.robot import WheelSpeeds
+from hal.sensor_watch import SensorWatch
+from hal.simulation import Pose
+from hal.wheel_watch import WheelWatch
+from kurt2rt.core.rla.matching import exact_distances
+from kurt2rt.core.task_settings import load_task
+from simbridge.batch.minds import nearest
+from simbridge.batch.parts import GuardLaw, World
+from simbridge.batch.safety import looks_broken, slewed
+from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
+from simbridge.batch.sight import cast, gather, has_moved, may_touch
+from simbridge.robot.ray_caster import RayCaster
+from simbridge.robot.wheels import Wheels
+from simbridge.simulated_robot import SimulatedRobot
+from tests.simbridge.batch.both_ways import FACTORY, ROBOT
+
+
+@given(rows=st.integers(1, 40), seed=st.integers(0, 2**32 - 1), twice=st.booleans())
+def test_nearest_equals_the_match_to_the_last_bit(rows: int, seed: int, twice: bool) -> None:
+    chance = np.random.default_rng(seed)
+    conditions = np.zeros((rows, 72))
+    conditions[:, :36] = chance.integers(0, 1024, (rows, 36)) * chance.choice([0.0, 0.5, 1.0, 1.5, 2.0], 36)
+    situation = np.zeros(72)
+    situation[:36] = chance.integers(0, 1024, 36) * 1.5
+    if twice:
+        conditions[-1] = conditions[0]
+    distances = exact_distances(conditions, situation)
+    packed = np.zeros((rows, 40))
+    packed[:, :36] = conditions[:, :36]
+    ahead = np.zeros(64)
+    ahead[:36] = situation[:36]
+    assert nearest(0, rows, packed, ahead) == (int(distances.argmin()), float(distances.min()))
+
+
+def test_nearest_of_no_condition_is_none() -> None:
+    assert nearest(3, 3, np.zeros((3, 40)), np.zeros(64)) == (-1, math.inf)
+
+
+def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
+    """Return a simulated robot, its record in a batch, and the batch's worlds."""
+    simulation = FACTORY.open(world, 1, "exam")
+    simulation.close()
+    policy = load_task("fleeing").policy.build(ROBOT.infrared)
+    assert isinstance(policy, TabledPolicy)
+    robots, worlds = build_robots(ROBOT, [simulation.simulated_robot], [PolicyMind(policy)], [-1])
+    return simulation.simulated_robot, robots[0], worlds
+
+
+@pytest.mark.parametrize("world", ["a", "b", "manhattan", "two_objects"])
+def test_rays_hit_what_the_ray_caster_hits(world: str) -> None:
+    simulated, record, worlds = _standing_in(world)
+    chance, caster = random.Random(world), RayCaster(simulated.world, 0.9)
+    width_m, height_m = simulated.world.settings.size_m
+    for _ in range(300):
+        x_m, y_m, towards_rad = chance.uniform(0, width_m), chance.uniform(0, height_m), chance.uniform(-4, 4)
+        record["x_m"], record["y_m"] = x_m, y_m
+        assert gather(record, worlds)
+        caster.set_origin(x_m, y_m)
+        along = math.cos(towards_rad), math.sin(towards_rad)
+        assert cast(record, (x_m, y_m), along, 0.66) == caster.distance_m(x_m, y_m, *along, 0.66)
+
+
+@pytest.mark.parametrize("world", ["a", "two_objects"])
+def test_may_touch_is_false_only_where_the_body_is_free(world: str) -> None:
+    simulated, record, worlds = _standing_in(world)
+    settings, chance = simulated.world.settings, random.Random(world)
+    room, law = settings.free_space, build_body_law(ROBOT, simulated.body)
+    width_m, height_m = settings.size_m
+    shapely.prepare(room)
+    touched = 0
+    for _ in range(400):
+        pose = Pose(chance.uniform(0, width_m), chance.uniform(0, height_m), chance.uniform(-4, 4))
+        if not shapely.contains_xy(room, pose.x_m, pose.y_m):
+            continue
+        record["x_m"], record["y_m"], record["heading_rad"] = pose
+        assert not has_moved(record) or gather(record, worlds)
+        clear_m, touches = settings.clearance_m(pose, ROBOT.geometry), may_touch(record, worlds.reach_m, law)
+        touched += touches
+        assert touches == (clear_m < 1e-4)
+    assert touched > 20
+
+
+@given(
+    from_m_s=st.floats(-0.6, 0.6),
+    to_m_s=st.floats(-0.6, 0.6) | st.just(0.0),
+    elapsed_s=st.floats(0.0, 0.02),
+)
+def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: float) -> None:
+    limits = ROBOT.guard
+    law = GuardLaw(ROBOT.can.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2)
+    bus = open_bus(f"virtual:{uuid.uuid4()}")
+    try:
+        guard = Guard(ROBOT, bus)
+        assert slewed(from_m_s, to_m_s, elapsed_s, law) == guard._slewed(from_m_s, to_m_s, elapsed_s)
+    finally:
+        bus.shutdown()
+
+
+@given(seed=st.integers(0, 2**32 - 1), quiet=st.integers(0, 17))
+def test_watch_finds_a_sign_when_the_sensor_watch_does(seed: int, quiet: int) -> None:
+    _, record, _ = _standing_in("a")
+    chance, watch = random.Random(seed), SensorWatch(ROBOT)
+    law = build_watch_law(ROBOT)
+    counts = [chance.randint(70, 550) for _ in range(18)]
+    for tick in range(1, 700):
+        for i in range(18):
+            if chance.random() < 0.2:
+                noise = 0 if i == quiet else round(chance.gauss(0, max(1.5, 0.02 * counts[i])))
+                counts[i] = min(560, max(60, counts[i] + noise + chance.choice((0, 0, 0, 0, 60, -60))))
+        record["counts"][:] = counts
+        record["turned"], record["tick"] = 1, tick
+        looks, found = looks_broken(record, law), watch.update(tuple(counts), driving=True)
+        assert looks or not found
+        if looks:
+            return
+
+
+@given(targets=st.lists(st.tuples(st.floats(-0.6, 0.6), st.integers(1, 60)), min_size=1, max_size=8))
+def test_sound_motor_never_looks_disobedient(targets: list[tuple[float, int]]) -> None:
+    wheels, watch = Wheels(ROBOT), WheelWatch(ROBOT)
+    tick, told_m_s = 0, 0.0
+    for target_m_s, ticks in targets:
+        for _ in range(ticks):
+            tick += 1
+            wheels.turn(told_m_s, -told_m_s)
+            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.can.cycle_s) == ""
+            told_m_s = int(target_m_s * 100) / 100
+            watch.set_command(WheelSpeeds(told_m_s, -told_m_s))
