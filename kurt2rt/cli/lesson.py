@@ -1,6 +1,7 @@
 """`kurt2rt lesson`."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -19,8 +20,11 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import SUPERHUMAN, load_teacher
+from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
+from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.lockstep.exam_driver import ExamLoop, choose_drivers
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
 from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
@@ -64,8 +68,12 @@ def lesson(options: LessonOptions) -> None:
     name = _task_name(options)
     setup = _setup(name, options)
     task = setup.task
+    if options.seeds is None and options.exams is not ExamLoop.BUS:
+        raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
+    if options.exams is ExamLoop.BATCH:
+        _require_batch(task, options)
     if runs_errands(task):
         errands(setup, options)
     elif not teaches_route(task):
@@ -75,6 +83,18 @@ def lesson(options: LessonOptions) -> None:
         one_route(setup, options)
     else:
         many_routes(setup, options, _command(name, options))
+
+
+def _require_batch(task: TaskSettings, options: LessonOptions) -> None:
+    """Check before any lesson that a batch can drive the exams. Raises BatchRefusedError, typer.BadParameter."""
+    from simbridge.batch.compiled import IS_COMPILED
+    from simbridge.wire.line import NO_WIRE
+
+    if options.wire != NO_WIRE:
+        raise typer.BadParameter("a batch has no wire: leave --wire out, or give --exams bus", param_hint="--exams")
+    require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
+    if not IS_COMPILED:
+        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
 
 
 def _task_name(options: LessonOptions) -> str:
@@ -136,6 +156,8 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
             file = out / f"{task.name}-{seed}{f'-control-{place}' if place else ''}.knowledge"
             archive_existing(file)
             work.append(SeedJob(setup.factory, setup.robot, task, task.exam.worlds, seed, file))
+    drivers = choose_drivers(options.exams, len(work), setup.task.exam.worlds)
+    work = [replace(job, driver=driver) for job, driver in zip(work, drivers, strict=True)]
     columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))

@@ -24,6 +24,7 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
+from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
 
 DEFAULT_TASK = "wall_following"
 LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
@@ -54,6 +55,13 @@ class LessonOptions:
         ),
     ] = None
     jobs: Jobs = ALL_PROCESSORS
+    exams: Annotated[
+        ExamLoop,
+        typer.Option(
+            help="With --seeds: what drives the exams. batch: compiled loops with equal results, some 30 times faster "
+            "(extra fast); 1 % of the exams, at least three, are driven on the bus too and must agree."
+        ),
+    ] = ExamLoop.BUS
     out: Annotated[
         Path | None,
         typer.Option(

@@ -33,7 +33,7 @@ from kurt2rt.runtime import Runtime, RuntimeOptions
 
 _COURSES = ("laps", "way", "rounds", "eights")
 """Courses that never reposition the robot and want one behaviour."""
-_ON_THE_BUS = "examine it on the CAN bus"
+_ON_THE_BUS = "examine it on the CAN bus (--exams bus)"
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:

@@ -5,11 +5,15 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+from hal.batch import BatchFactory
+from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver, ExamLoop, require_equal
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
@@ -107,7 +111,7 @@ async def run_exam(
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command.
     """
-    drive_name = "the teacher's own drive" if setup.teacher_policy else "exam without teacher"
+    drive_name = _drive_name(setup)
     with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
         return await examine(
             simulation,
@@ -115,7 +119,7 @@ async def run_exam(
             task,
             events,
             setup,
-            lambda done_s: report(f"{drive_name}, world {setup.world}", done_s, task.exam.duration_s),
+            lambda done_s: report(drive_name, done_s, task.exam.duration_s),
         )
 
 
@@ -128,6 +132,7 @@ async def run_exams(
     *,
     seed: int,
     report: Report,
+    driver: ExamDriver = ON_BUS,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
 
@@ -139,6 +144,7 @@ async def run_exams(
         worlds: names of the worlds.
         seed: of robot and start pose.
         report: progress callback.
+        driver: loop that drives the exams.
 
     Returns:
         One result per world, in order.
@@ -146,11 +152,37 @@ async def run_exams(
     Raises:
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command.
+        BatchRefusedError: the driver is a batch, which does not know the task.
+        BatchDiffersError: the batch and a witness on the CAN bus differ.
     """
+    setups = [ExamSetup(world, seed, policy) for world in worlds for policy in (False, True)]
+    finished: list[ExamResult | None] = [None] * len(setups)
+    if driver.loop is ExamLoop.BATCH:
+        finished = _run_in_batch(factory, settings, task, [BatchExam(setup, events) for setup in setups])
+    drives = []
+    for setup, in_batch in zip(setups, finished, strict=True):
+        drive = in_batch
+        if drive is None or setup.world in driver.witnesses:
+            drive = await run_exam(factory, settings, task, events, setup, report)
+        else:
+            report(_drive_name(setup), task.exam.duration_s, task.exam.duration_s)
+        if in_batch is not None:
+            require_equal(in_batch, drive)
+        drives.append(drive)
+    return tuple(
+        WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success))
+        for learned, teacher in zip(drives[::2], drives[1::2], strict=True)
+    )
 
-    results = []
-    for world in worlds:
-        learned = await run_exam(factory, settings, task, events, ExamSetup(world, seed), report)
-        teacher = await run_exam(factory, settings, task, events, ExamSetup(world, seed, teacher_policy=True), report)
-        results.append(WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success)))
-    return tuple(results)
+
+def _run_in_batch(
+    factory: SimulationFactory, settings: RobotSettings, task: TaskSettings, exams: Sequence[BatchExam]
+) -> list[ExamResult | None]:
+    if not isinstance(factory, BatchFactory):
+        raise BatchRefusedError("this simulation has no batch", do="examine on the CAN bus")
+    return examine_in_batch(factory, settings, task, exams)
+
+
+def _drive_name(setup: ExamSetup) -> str:
+    what = "the teacher's own drive" if setup.teacher_policy else "exam without teacher"
+    return f"{what}, world {setup.world}"

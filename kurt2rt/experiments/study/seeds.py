@@ -10,6 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver
 from kurt2rt.experiments.study.pool import JobKilledError, Progress, run_jobs
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 
@@ -24,6 +25,8 @@ class SeedJob:
     worlds: tuple[str, ...]
     seed: int
     knowledge: Path
+    driver: ExamDriver = ON_BUS
+    """Loop of the exams."""
 
     @property
     def name(self) -> str:
@@ -38,7 +41,7 @@ class SeedJob:
     def run(self, tell: Progress) -> CurriculumResult:
         """Teach and examine the robot of one seed and return the result; `tell` gets the simulated seconds.
 
-        Raises KnowledgeError, SettingsError, LessonLostError.
+        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
         """
         report = ProgressSum(tell).report
 
@@ -47,7 +50,14 @@ class SeedJob:
                 self.factory, self.settings, self.task, self.knowledge, seed=self.seed, report=report
             )
             exams = await run_exams(
-                self.factory, self.settings, self.task, events, self.worlds, seed=self.seed, report=report
+                self.factory,
+                self.settings,
+                self.task,
+                events,
+                self.worlds,
+                seed=self.seed,
+                report=report,
+                driver=self.driver,
             )
             return CurriculumResult(lesson, exams)
 
