@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
+    DEFAULT_OF_THE_TASK,
     Changes,
     OutFolder,
     Plain,
@@ -22,8 +23,7 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_settings import load_task, taught_by
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER, load_teacher
+from kurt2rt.core.task_settings import load_task, load_teacher_of, taught_by
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
@@ -36,7 +36,7 @@ class _Options:
     """Options of `kurt2rt demo`."""
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
-    teacher: Annotated[str, teacher_option(DEFAULT_TEACHER)] = DEFAULT_TEACHER
+    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     plain: Plain = False
     changes: Changes = None
     seed: Seed = 1
@@ -69,8 +69,8 @@ def demo(options: _Options) -> None:
     from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(options.robot_settings)
-    profile = load_teacher(options.teacher)
-    taught = taught_by(load_task(options.task, plain=options.plain, changes=changes_of(options.changes)), profile)
+    task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
+    taught = taught_by(task, load_teacher_of(task, options.teacher))
     stage = Kurt2SimulationFactory(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)

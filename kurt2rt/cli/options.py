@@ -41,6 +41,9 @@ def teacher_option(default: str) -> Any:
     return _named("--teacher", "teachers", f"{_TEACHER} Default: {default}.")
 
 
+DEFAULT_OF_THE_TASK = "the task's (teaching.default_teacher)"
+
+
 def world_option(default: str = "") -> Any:
     """Return --world, the same in every command; `default` tells which world is taken without it."""
     return _named("--world", "worlds", f"{_WORLD} {default}".rstrip())

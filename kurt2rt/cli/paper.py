@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
+    DEFAULT_OF_THE_TASK,
     ALL_PROCESSORS,
     Jobs,
     parse_seeds,
@@ -20,7 +21,6 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
@@ -41,7 +41,7 @@ class _Options:
         list[str] | None,
         task_option("Repeat for several. Default: all tasks of config/paper."),
     ] = None
-    teacher: Annotated[str, teacher_option(DEFAULT_TEACHER)] = DEFAULT_TEACHER
+    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     jobs: Jobs = ALL_PROCESSORS
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
@@ -120,5 +120,5 @@ def _command(options: _Options, seeds: str) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
     words = ["kurt2rt paper", *(["--quick"] if options.quick else []), f"--seeds {seeds}"]
     words += [f"--task {Path(name).name}" for name in options.task or ()]
-    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != DEFAULT_TEACHER else []
+    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher is not None else []
     return " ".join([*words, *([] if options.plain else ["--no-plain"])])

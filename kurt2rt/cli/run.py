@@ -251,7 +251,7 @@ def _program(options: _Options) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
-    run_options = _run_options(options, live_view)
+    run_options = _run_options(options, taught, live_view)
     screen = TerminalScreen(
         Console(),
         Path(settings.devices),
@@ -262,7 +262,7 @@ def _program(options: _Options) -> "RobotProgram":
     return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
 
 
-def _run_options(options: _Options, live_view: tuple[str, int] | None) -> "RunOptions":
+def _run_options(options: _Options, task: "TaskSettings", live_view: tuple[str, int] | None) -> "RunOptions":
     from kurt2rt.service.run_options import RunOptions
 
     simulated, attended = options.bus == SIMULATED, options.teacher != _NO_TEACHER
@@ -275,7 +275,7 @@ def _run_options(options: _Options, live_view: tuple[str, int] | None) -> "RunOp
         behaviour=options.behaviour or "",
         page=options.page or options.phone,
         phones=options.phone,
-        scripted_teacher=_scripted_teacher(options),
+        scripted_teacher=_scripted_teacher(options, task),
         page_port=options.page_port,
         can_log=options.can_log,
         record=not options.no_record,
@@ -286,13 +286,13 @@ def _run_options(options: _Options, live_view: tuple[str, int] | None) -> "RunOp
     )
 
 
-def _scripted_teacher(options: _Options) -> str | None:
+def _scripted_teacher(options: _Options, task: "TaskSettings") -> str | None:
     """Return the name or path of the scripted teacher; None without --auto. Raises SettingsError."""
-    from kurt2rt.core.teacher_settings import DEFAULT_TEACHER, load_teacher
+    from kurt2rt.core.teacher_settings import load_teacher
 
     if not options.auto:
         return None
-    name = DEFAULT_TEACHER if options.teacher == _CHANNEL else options.teacher
+    name = task.teaching.default_teacher if options.teacher == _CHANNEL else options.teacher
     load_teacher(name)
     return name
 

@@ -15,12 +15,11 @@ from rich.console import Console
 from hal.robot_settings import load_robot
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
-from kurt2rt.cli.options import task_option, teacher_option
+from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, task_option, teacher_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.programs import AUTO, PROGRAMS
-from kurt2rt.core.task_settings import load_task, taught_by
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER, load_teacher
+from kurt2rt.core.task_settings import load_task, load_teacher_of, taught_by
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
@@ -66,7 +65,7 @@ _PublicAddress = Annotated[
     str | None, typer.Option(help="Address of a TLS proxy in front of the page, such as https://robot.example.")
 ]
 _Task = Annotated[str | None, task_option("Taught by the scripted teacher. Default: the task of the settings.")]
-_Teacher = Annotated[str, teacher_option(DEFAULT_TEACHER)]
+_Teacher = Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)]
 _Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the scripted teacher.")]
 _Settings = Annotated[str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")]
 _WhileStdin = Annotated[
@@ -86,7 +85,7 @@ def teach(
     host_name: _HostNames = None,
     public_address: _PublicAddress = None,
     task: _Task = None,
-    teacher: _Teacher = DEFAULT_TEACHER,
+    teacher: _Teacher = None,
     seed: _Seed = 1,
     settings: _Settings = "default",
     while_stdin: _WhileStdin = False,
@@ -132,7 +131,7 @@ class _Arguments:
     host_name: list[str] | None
     public_address: str | None
     task: str | None
-    teacher: str
+    teacher: str | None
     seed: int
     settings: str
     while_stdin: bool
@@ -248,6 +247,7 @@ async def _by_script(
     instead = "run the robot on another file, or let kurt2rt run --auto do so"
     if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):
         return
-    task = taught_by(load_task(arguments.task or service.task), load_teacher(arguments.teacher))
+    task = load_task(arguments.task or service.task)
+    task = taught_by(task, load_teacher_of(task, arguments.teacher))
     robot = load_robot(service.robot)
     await teach_by_script(client, robot, task, print_line, seed=arguments.seed)

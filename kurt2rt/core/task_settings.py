@@ -14,7 +14,7 @@ from kurt2rt.core.lesson_speed import SLOWEST
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
-from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile
+from kurt2rt.core.teacher_settings import QUICK_TEACHER, SUPERHUMAN, TeacherProfile, load_teacher
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -117,6 +117,9 @@ class TeachingSettings(Settings):
     reposition_every_s: Seconds = 0.0
     """Interval at which the robot is set down elsewhere; 0: never."""
     reposition_to: Place = "starts"
+    default_teacher: Annotated[str, Field(min_length=1, max_length=256)] = SUPERHUMAN
+    """Scripted teacher of `kurt2rt demo`, `paper`, `run --auto` and `teach --auto` if the command line names none: a
+    name in `config/teachers`, or a path."""
     teacher: TeacherSettings
     profile: TeacherProfile = QUICK_TEACHER
     """Teacher by name; its own limits count in place of `teacher` where it has some."""
@@ -267,6 +270,15 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
             )
     task = load_settings(path, TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task
+
+
+def load_teacher_of(task: TaskSettings, name_or_path: str | None) -> TeacherProfile:
+    """Load the profile of a teacher by name or path; None: the default teacher of the task.
+
+    Raises:
+        hal.settings.SettingsError: for a missing or invalid file.
+    """
+    return load_teacher(name_or_path or task.teaching.default_teacher)
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:

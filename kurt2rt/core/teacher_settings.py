@@ -9,8 +9,6 @@ from hal.settings import Settings, find_config, load_settings
 
 SUPERHUMAN = "superhuman"
 """Teacher without a person's limits, whose times are those of the task (`teaching.teacher`)."""
-DEFAULT_TEACHER = SUPERHUMAN
-"""Teacher of `kurt2rt demo`, `kurt2rt run --auto` and `kurt2rt paper` if the command line names none."""
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]

@@ -11,7 +11,6 @@ from config import CONFIG_DIR
 from hal.settings import SettingsError, shipped_names
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import (
-    DEFAULT_TEACHER,
     QUICK_TEACHER,
     SUPERHUMAN,
     Delay,
@@ -29,7 +28,7 @@ def test_load_teacher_superhuman_is_the_teacher_of_a_task() -> None:
 
 
 def test_load_teacher_each_shipped_file_is_named_after_itself() -> None:
-    assert {*PEOPLE, SUPERHUMAN, DEFAULT_TEACHER} <= set(shipped_names("teachers"))
+    assert {*PEOPLE, SUPERHUMAN} <= set(shipped_names("teachers"))
     assert all(load_teacher(name).name == name for name in shipped_names("teachers"))
 
 

@@ -6,7 +6,6 @@ from pydantic import Field, model_validator
 
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from hal.simulation import SimulationFactory
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
 
 Share = Annotated[float, Field(gt=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=10_000)]
@@ -73,8 +72,9 @@ class PaperSettings(Settings):
     """Worlds of Fig. 6."""
     eight: str
     """Task of Fig. 7."""
-    teacher: str = DEFAULT_TEACHER
-    """Scripted teacher of all experiments: a name in `config/teachers`, or the path of a YAML file."""
+    teacher: str | None = None
+    """Scripted teacher of all experiments: a name in `config/teachers`, or the path of a YAML file; None: each task's
+    `teaching.default_teacher`."""
 
     @model_validator(mode="after")
     def _each_task_once(self) -> Self:

@@ -9,8 +9,8 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
-from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
+from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.plan import PaperPlan, make_plan, unseen_of
@@ -100,8 +100,9 @@ def test_fig_2_is_drawn_where_its_task_is_taught() -> None:
 
 def test_the_plain_reading_has_the_settings_of_its_own() -> None:
     shipped, plain = planned("circle", readings=("shipped", "plain")).experiments
-    assert shipped.task == load_task("circle")
-    assert plain.task == load_task("circle", plain=True)
+    ordinary = load_teacher("ordinary")
+    assert shipped.task == taught_by(load_task("circle"), ordinary)
+    assert plain.task == taught_by(load_task("circle", plain=True), ordinary)
     assert plain.jobs[0].made_of.differences(shipped.jobs[0].made_of) == ["task"]
 
 
@@ -168,5 +169,8 @@ def test_make_plan_teacher_of_the_paper_teaches_every_task() -> None:
     assert slow != quick
 
 
-def test_make_plan_without_a_teacher_takes_the_default() -> None:
-    assert {each.task.teaching.profile.name for each in planned("circle").experiments} == {DEFAULT_TEACHER}
+def test_make_plan_without_a_teacher_takes_that_of_each_task() -> None:
+    plan = planned("circle", "streets")
+    assert [each.task.teaching.profile.name for each in plan.experiments] == [
+        load_task(name).teaching.default_teacher for name in ("circle", "streets")
+    ]

@@ -10,7 +10,6 @@ import pytest
 from matplotlib.image import imread
 
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
 from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
 from kurt2rt.experiments.paper.report import write_report
 from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_table, learning_table
@@ -122,7 +121,7 @@ def test_report_lists_all_settings(tiny: Tiny) -> None:
     )
     assert shipped["weights that are not 1"].startswith("1.5: s15; 2: maximum front; 0: minimum front; 0.5: s5, s6")
     assert plain["weights that are not 1"] == "none"
-    assert {shipped["teacher"], plain["teacher"]} == {DEFAULT_TEACHER}
+    assert {shipped["teacher"], plain["teacher"]} == {load_task("wall_following").teaching.default_teacher}
     eight = next(dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "eight")
     assert (eight["re-positions"], eight["sets it down at"]) == ("every 30 s", "a start pose")
     assert eight["rescues"] == "after 15 s within 1 m"
