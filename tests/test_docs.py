@@ -80,7 +80,7 @@ def shortened_lesson(words: Sequence[str]) -> list[str]:
 
 SOONER = 5
 """Divisor of the replayed seconds; the deep suite replays all of them."""
-TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
+TAUGHT_BY_THE_DEMO = "results/demo/wall_following-0.knowledge"
 
 
 class Block(NamedTuple):
@@ -352,9 +352,9 @@ def printed_demos() -> set[str]:
 
 
 def seed_of(line: str) -> int:
-    """Return the seed of a printed command; 1 if it names none."""
+    """Return the seed of a printed command; 0 if it names none."""
     words = shlex.split(line)
-    return int(words[words.index("--seed") + 1]) if "--seed" in words else 1
+    return int(words[words.index("--seed") + 1]) if "--seed" in words else 0
 
 
 def examined(task: TaskSettings, seed: int, folder: Path) -> tuple[WorldResult, ...]:

@@ -39,7 +39,7 @@ class _Options:
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     plain: Plain = False
     changes: Changes = None
-    seed: Seed = 1
+    seed: Seed = 0
     out: OutFolder = Path("results/demo")
     robot_settings: RobotName = "kurt2"
     wire: WireName = "none"

@@ -54,7 +54,7 @@ def exam(options: _Options) -> None:
 
     For example:
 
-        kurt2rt exam results/demo/wall_following-1.knowledge
+        kurt2rt exam results/demo/wall_following-0.knowledge
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
