@@ -10,8 +10,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
-    DEFAULT_OF_THE_TASK,
     ALL_PROCESSORS,
+    DEFAULT_OF_THE_TASK,
     Jobs,
     parse_seeds,
     results_option,
