@@ -30,6 +30,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
         *("file", "task", "robot", "definition", "lessons", "rlas", "named", "hidden")
     },
     ("knowledge", "check", "mine.knowledge"): {"file", "sound", "faults"},
+    ("knowledge", "contradictions", "mine.knowledge"): {"file", "rlas", "contradictions"},
     ("knowledge", "diff", "mine.knowledge", "mine.knowledge"): {
         *("common_rows", "lessons_only_here", "lessons_only_there", "rlas_only_here", "rlas_only_there"),
         "rlas_with_another_action",
@@ -39,7 +40,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
 REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
-    *(("knowledge", name) for name in ("list", "lessons", "show", "check", "diff", "table")),
+    *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
 }
 
 
