@@ -121,6 +121,8 @@ class Stretch(NamedTuple):
     """Places of the driving RLAs in the robot's TaughtMind; -1 for a policy and a robot that stands."""
     distances: list[float]
     """Distance of the nearest RLA; infinite for a policy and without RLAs."""
+    collisions: list[int]
+    """Collisions so far."""
 
 
 class Batch(Protocol):
@@ -138,7 +140,7 @@ class Batch(Protocol):
     def reason_to_leave(self, robot: int) -> str:
         """Return why a robot cannot be driven in the batch any further; empty if it can.
 
-        It touches something, or a watch would stop it. Its whole drive belongs on the loop over the CAN bus.
+        A watch would stop it. Its whole drive belongs on the loop over the CAN bus.
         """
         ...
 

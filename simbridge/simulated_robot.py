@@ -50,9 +50,11 @@ class SimulatedRobot:
         self.body = Body(self.world, robot.geometry, cycle_s, self.slip_noise)
         build = Noise(seed if robot_seed is None else robot_seed, "robot")
         self.infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self.infrared_noise, build)
-        self._bumpers = Bumpers(robot.bumpers, robot.geometry)
+        self.bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = CollisionCounter(cycle_s)
         self._progress = WallProgress(self.world)
+        self._followed: Pose | None = None
+        """Pose in a batch; None for a robot that drives itself."""
         self._passed: list[Pose] = []
         """Poses that were followed and whose progress was not asked for yet."""
         self._pressed = 0
@@ -73,7 +75,7 @@ class SimulatedRobot:
             body.move(wheels.left_m_s, wheels.right_m_s)
         pose = body.pose
         self._collisions.update(body.touching)
-        self._pressed = self._bumpers.pressed(body.contacts()) if body.touching else 0
+        self._pressed = self.bumpers.pressed(body.contacts()) if body.touching else 0
         controller.update_readings(self.infrared.measure(pose), self.infrared.counts)
         if self._cycles % _LAPS_EVERY_CYCLES == 0:
             self._progress.update(*pose)
@@ -85,7 +87,7 @@ class SimulatedRobot:
         Its place and its progress along walls go on; its sensors, wheels and bus do not.
         """
         self._cycles += 1
-        self.body.pose = pose
+        self._followed = pose
         if self._cycles % _LAPS_EVERY_CYCLES == 0:
             self._passed.append(pose)
 
@@ -107,7 +109,7 @@ class SimulatedRobot:
     @property
     def pose(self) -> Pose:
         """True pose of the robot, in m and rad."""
-        return self.body.pose
+        return self.body.pose if self._followed is None else self._followed
 
     @property
     def wheel_speeds(self) -> WheelSpeeds:

@@ -1,22 +1,24 @@
 """Batch of simulated robots (hal.batch.Batch): their state is copied from fresh simulations on the CAN bus."""
 
+import copy
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hal.batch import STANDS, DriveSettings, Mind, Stretch
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
-from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, SLIDES, STAYS, TOUCHES, drive
+from simbridge.batch.contacts import ContactBody
+from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting
 from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import build_knowledge, require_known
+from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedRobot, hash_state
 
 _REASONS = {
     STAYS: "",
-    TOUCHES: "it may touch something",
-    SLIDES: "its wheels lose their grip",
     FROZEN: "a board of sensors repeats itself",
     BROKEN: "a sensor looks broken",
     CROWDED: "too many walls are near",
@@ -57,7 +59,14 @@ class RobotBatch:
         self._knowledge, tables = build_knowledge(minds, self.actions)
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
-        self._streams = [(each.slip_noise, each.infrared_noise) for each in simulated]
+        # The bodies in the engine draw their slip themselves, when they catch up.
+        self._streams = [(copy.deepcopy(each.slip_noise), each.infrared_noise) for each in simulated]
+        self._bodies = [ContactBody(each) for each in simulated]
+        self._behind: list[list[NDArray[np.int16]]] = [[] for _ in simulated]
+        """Set points (ticks, 2) in cm/s of the stretches that each body in the engine lags behind."""
+        self._caught_up = [0] * len(simulated)
+        """Ticks of the present stretch that it has driven."""
+        self._gap_cycles = CollisionCounter(robot.can.cycle_s).gap_cycles
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
@@ -74,8 +83,32 @@ class RobotBatch:
             if self._robots[r]["left"]:
                 raise ValueError(f"robot {r} has left the batch")
             self._draw_noise(r, ticks)
+            self._robots[r]["at"] = self._caught_up[r] = 0
         self._driven = ticks
-        drive(np.array(robots, dtype=np.int64), ticks, self._robots, self._world, self._laws, self._knowledge)
+        active = list(robots)
+        while active:
+            drive(np.array(active, dtype=np.int64), ticks, self._robots, self._world, self._laws, self._knowledge)
+            active = [r for r in active if self._robots[r]["waits"]]
+            for r in active:
+                self._move_in_engine(r)
+        for r in robots:
+            self._behind[r].append(self._told(r, ticks))
+
+    def _move_in_engine(self, r: int) -> None:
+        """Let the engine move the body of a robot that waits for it, and finish the robot's tick."""
+        record = self._robots[r]
+        end = int(record["at"]) + 1
+        behind = [each for stretch in (*self._behind[r], self._told(r, end)) for each in stretch.tolist()]
+        self._bodies[r].move(record, behind, self._gap_cycles)
+        self._behind[r].clear()
+        self._caught_up[r] = end
+        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
+
+    def _told(self, r: int, end: int) -> NDArray[np.int16]:
+        """Return the set points of the present stretch that the body in the engine lags behind, up to a tick."""
+        record, begin = self._robots[r], self._caught_up[r]
+        sides = [record[f"track_{side}_cm_s"][begin:end] for side in ("left", "right")]
+        return np.stack(sides, axis=1).astype(np.int16)
 
     def reason_to_leave(self, robot: int) -> str:
         """Return why a robot cannot be driven in the batch any further; empty if it can."""
@@ -91,6 +124,7 @@ class RobotBatch:
             record["track_action"][:end].tolist(),
             np.where(rlas == STANDS, STANDS, rlas - self._first_rows[robot]).tolist(),
             record["track_distance"][:end].tolist(),
+            record["track_collisions"][:end].tolist(),
         )
 
     def state_hash(self, robot: int, laps: float) -> str:
@@ -105,7 +139,8 @@ class RobotBatch:
         numbers = (*moving, braked, braked, *record["due_s"].tolist(), laps)
         slip, noise = self._drawn[robot]
         drawn = (noise + int(record["noise_used"]), slip + int(record["slip_used"]))
-        return hash_state(numbers, (*record["counts"].tolist(), ticks, 0, 0, *drawn, 0, 1, 0, 0))
+        met = (int(record["bumpers"]), int(record["collisions"]))
+        return hash_state(numbers, (*record["counts"].tolist(), ticks, *met, *drawn, 0, 1, 0, 0))
 
     def _draw_noise(self, robot: int, ticks: int) -> None:
         """Draw random numbers, after those that are left, unless enough for so many ticks lie ahead."""

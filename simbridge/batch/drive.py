@@ -8,41 +8,73 @@ from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure
 from simbridge.batch.sight import gather, has_moved, may_touch
 
-STAYS, TOUCHES, SLIDES, FROZEN, BROKEN, CROWDED = range(6)
+STAYS, FROZEN, BROKEN, CROWDED = range(4)
 """Reasons that a robot leaves the batch; 0: it stays."""
 
 
 @compiled
 def drive(active: Integers, ticks: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
-    """Drive the robots of the indexes `active` for so many ticks, or until one leaves the batch."""
+    """Drive the robots of the indexes `active` to the end of a stretch of so many ticks.
+
+    A robot ends sooner that leaves the batch, or that waits for the physics engine.
+    """
     for place in range(active.shape[0]):
         robot = robots[active[place]]
-        for k in range(ticks):
-            robot.left = run_tick(robot, k, world, laws, knowledge)
-            if robot.left != STAYS:
+        while robot.at < ticks and robot.left == STAYS:
+            begin_tick(robot, world, laws)
+            if robot.waits:
                 break
+            if robot.left == STAYS:
+                finish_tick(robot, world, laws, knowledge)
 
 
 @compiled
-def run_tick(robot: Robot, k: int, world: World, laws: Laws, knowledge: Knowledge) -> int:
-    """Run tick `k` of the stretch for a robot; return why it must leave the batch, or STAYS."""
+def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
+    """Run the robot's cycle up to its new pose: CONTROL of the tick before, motors, body."""
     robot.tick += 1
-    # The robot's cycle: CONTROL of the tick before, motors, body, sensors.
+    k = robot.at
+    robot.last_x_m, robot.last_y_m, robot.last_heading_rad = robot.x_m, robot.y_m, robot.heading_rad
+    robot.track_left_cm_s[k], robot.track_right_cm_s[k] = robot.left_cm_s, robot.right_cm_s
     turn_wheels(robot, laws)
-    if not move(robot, laws.body):
-        return SLIDES
+    if robot.engine_ticks > 0:
+        robot.slip_used += 2
+        robot.waits = 1
+        return
+    grips = move(robot, laws.body)
     if has_moved(robot) and not gather(robot, world):
-        return CROWDED
-    if may_touch(robot, world.reach_m, laws.body):
-        return TOUCHES
+        robot.left = CROWDED
+        return
+    if not grips or may_touch(robot, world.reach_m, laws.body):
+        robot.waits = 1
+        return
+    robot.bumpers = 0
+    robot.free_cycles += 1
+
+
+@compiled
+def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) -> None:
+    """Run the rest of a tick from the robot's new pose: sensors; then sense, check, decide, guard of the notebook."""
+    if has_moved(robot) and not gather(robot, world):
+        robot.left = CROWDED
+        return
     measure(robot, laws.sensor)
+    k = robot.at
     robot.track_x_m[k], robot.track_y_m[k], robot.track_heading_rad[k] = robot.x_m, robot.y_m, robot.heading_rad
-    # The notebook's tick: sense, check, decide, guard.
+    robot.track_collisions[k] = robot.collisions
     now_s = robot.tick * laws.body.cycle_s
     if is_frozen(robot, now_s, laws.watch):
-        return FROZEN
-    if looks_broken(robot, laws.watch):
-        return BROKEN
-    wanted = decide(robot, k, laws.mind, knowledge)
-    drive_guarded(robot, wanted, now_s, laws.guard)
-    return STAYS
+        robot.left = FROZEN
+    elif looks_broken(robot, laws.watch):
+        robot.left = BROKEN
+    else:
+        wanted = decide(robot, k, laws.mind, knowledge)
+        drive_guarded(robot, wanted, now_s, laws.guard)
+        robot.at += 1
+
+
+@compiled
+def finish_waiting(r: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
+    """Run the rest of a tick for robot `r`, whose body the physics engine has moved."""
+    robot = robots[r]
+    robot.waits = 0
+    finish_tick(robot, world, laws, knowledge)

@@ -34,6 +34,10 @@ class Robot:
     """Record of one robot; arrays have the shape that is annotated, in `Sizes` or in numbers."""
 
     tick: int
+    at: int
+    """Place of the present tick in the stretch."""
+    waits: int
+    """1 while the physics engine has to move the body in this tick."""
     left: int
     """Reason that the robot must drive on the bus (simbridge.batch.drive); 0: none."""
     world: int
@@ -52,6 +56,20 @@ class Robot:
     slip_noise: Annotated[Floats, (SLIP_AHEAD,)]
     """Standard normal numbers ahead."""
     slip_used: int
+
+    last_x_m: float
+    """Pose before the present tick, which the engine must agree with."""
+    last_y_m: float
+    last_heading_rad: float
+
+    # Contacts, which the engine finds
+    engine_ticks: int
+    """Ticks for which the engine has to move the body still, because it may remember a contact."""
+    bumpers: int
+    """Bit n set: bumper n is pressed."""
+    free_cycles: int
+    """Cycles without a touch, as in simbridge.robot.bumpers.CollisionCounter."""
+    collisions: int
 
     # Wheels
     left_m_s: float
@@ -138,6 +156,10 @@ class Robot:
     """-1 where the robot stands and asks."""
     track_rla: Annotated[Integers, (STRETCH,)]
     track_distance: Annotated[Floats, (STRETCH,)]
+    track_collisions: Annotated[Integers, (STRETCH,)]
+    track_left_cm_s: Annotated[Integers, (STRETCH,)]
+    """Set points that the motors followed."""
+    track_right_cm_s: Annotated[Integers, (STRETCH,)]
 
 
 class Sizes(NamedTuple):
@@ -222,6 +244,9 @@ class GuardLaw(NamedTuple):
     maximum_speed_m_s: float
     acceleration_m_s2: float
     braking_m_s2: float
+    front_bits: int
+    """Bumpers in front."""
+    rear_bits: int
 
 
 class MindLaw(NamedTuple):

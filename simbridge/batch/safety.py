@@ -1,8 +1,8 @@
-"""Guard's limits and watches of a batch, for robots that nothing disturbs and nothing touches.
+"""Guard's limits and watches of a batch, for robots that nothing disturbs.
 
-Readings are always fresh, no bumper is pressed and no other node sends CONTROL, so only the limits of speed and slew,
-the watch for frozen boards and the watch for single broken sensors can act. The watch of the wheels cannot: a sound
-motor stays within its band (tests/simbridge/batch/test_safety.py).
+Readings are always fresh and no other node sends CONTROL, so only bumpers, the limits of speed and slew, the watch for
+frozen boards and the watch for single broken sensors can act. The watch of the wheels cannot: a sound motor stays
+within its band (tests/simbridge/batch/test_laws.py).
 """
 
 import math
@@ -117,9 +117,16 @@ def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, law: 
         share = law.maximum_speed_m_s / fastest_m_s
         left_m_s *= share
         right_m_s *= share
+    from_left_m_s, from_right_m_s = robot.guarded_left_m_s, robot.guarded_right_m_s
+    if robot.bumpers & law.front_bits:
+        left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
+        from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
+    if robot.bumpers & law.rear_bits:
+        left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
+        from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
     elapsed_s = min(now_s - robot.driven_at_s, _LONGEST_SLEW_CYCLES * law.cycle_s)
-    left_m_s = slewed(robot.guarded_left_m_s, left_m_s, elapsed_s, law)
-    right_m_s = slewed(robot.guarded_right_m_s, right_m_s, elapsed_s, law)
+    left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, law)
+    right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, law)
     robot.guarded_left_m_s, robot.guarded_right_m_s = left_m_s, right_m_s
     robot.driven_at_s = now_s
     left, right = left_m_s * 100.0, right_m_s * 100.0

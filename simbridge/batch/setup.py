@@ -18,7 +18,7 @@ from behaviors.policies.distances import (
 )
 from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
 from hal.robot import HIGHEST_COUNTS
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import BumperEnd, RobotSettings
 from hal.sensor_ring import neighbours_of
 from hal.sensor_watch import HIGHEST, LOWEST, STUCK_TIMES
 from simbridge.batch.parts import (
@@ -37,6 +37,7 @@ from simbridge.batch.parts import (
 from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
 from simbridge.robot.body import Body
+from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors
 from simbridge.robot.ray_caster import faces_of
 from simbridge.simulated_robot import SimulatedRobot
@@ -77,9 +78,16 @@ def build_laws(robot: RobotSettings, one: SimulatedRobot, minds: Sequence[Mind],
             maximum_speed_m_s=robot.guard.maximum_speed_m_s,
             acceleration_m_s2=robot.guard.acceleration_m_s2,
             braking_m_s2=robot.guard.braking_m_s2,
+            front_bits=bumper_bits(robot, BumperEnd.FRONT),
+            rear_bits=bumper_bits(robot, BumperEnd.REAR),
         ),
         mind=_mind_law(robot, minds, settings),
     )
+
+
+def bumper_bits(robot: RobotSettings, end: BumperEnd) -> int:
+    """Return the bits of the bumpers at one end of a robot."""
+    return sum(1 << bit for bit, bumper in enumerate(robot.bumpers) if bumper.end is end)
 
 
 def build_body_law(robot: RobotSettings, body: Body) -> BodyLaw:
@@ -172,6 +180,7 @@ def build_robots(
     robots["looked_at_s"], robots["driven_at_s"] = math.inf, -math.inf
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
     robots["action"] = robots["rla"] = STANDS
+    robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
     robots["kind"] = [kind_of(mind) for mind in minds]
     robots["knowledge"] = knowledge_of
     world, robots["world"] = _world(simulated)

@@ -53,8 +53,8 @@ class CollisionCounter:
     EPISODE_GAP_S = 0.5
 
     def __init__(self, cycle_s: float) -> None:
-        self._gap_cycles = round(self.EPISODE_GAP_S / cycle_s)
-        self._free_cycles = self._gap_cycles + 1
+        self.gap_cycles = round(self.EPISODE_GAP_S / cycle_s)
+        self._free_cycles = self.gap_cycles + 1
         self.count = 0
 
     def update(self, touching: bool) -> None:
@@ -62,10 +62,10 @@ class CollisionCounter:
         if not touching:
             self._free_cycles += 1
             return
-        if self._free_cycles > self._gap_cycles:
+        if self._free_cycles > self.gap_cycles:
             self.count += 1
         self._free_cycles = 0
 
     def end_episode(self) -> None:
         """Count the next touch as a new collision, after the robot was repositioned."""
-        self._free_cycles = self._gap_cycles + 1
+        self._free_cycles = self.gap_cycles + 1

@@ -1,4 +1,4 @@
-"""Exams in a batch: the same drives as on the CAN bus, many times faster, for robots that nothing disturbs."""
+"""Exams in a batch: the same drives as on the CAN bus, many times faster, for robots whose sensors work."""
 
 import math
 import random
@@ -35,8 +35,7 @@ def examine_in_batch(
 ) -> list[ExamResult | None]:
     """Drive all exams at once, and return their results in order; None for one that belongs on the CAN bus.
 
-    A result is equal to that of `examine`. A robot that touches something, or that a watch would stop, leaves the
-    batch.
+    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch.
 
     Raises:
         BatchRefusedError: the batch does not know the task, its policy or an action.
@@ -91,6 +90,7 @@ class _Drive:
         self._pose = simulation.pose
         self._trail: list[Position] = []
         self._ask_positions: list[Position] = []
+        self._collision_positions: list[Position] = []
         self._ticks = self._unknown_ticks = self._action_changes = 0
         self._travelled_m = 0.0
         self._action: int | None = None
@@ -102,7 +102,7 @@ class _Drive:
         if self._left:
             return False
         stretch = batch.stretch(robot)
-        ticks = self._follow_poses(stretch.poses)
+        ticks = self._follow_poses(stretch)
         self._count_actions(stretch, ticks)
         poses = stretch.poses[:ticks]
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
@@ -128,26 +128,30 @@ class _Drive:
             progress=self._metric.progress,
             unit=self._metric.unit,
             distance_travelled_m=self._travelled_m,
-            collisions=0,
+            collisions=len(self._collision_positions),
             stuck=self._is_stuck,
             share_unknown=self._unknown_ticks / self._ticks,
             action_changes_per_s=self._action_changes / duration_s,
             trail=tuple(self._trail),
             unknown_positions=tuple(self._ask_positions),
             findings=self._metric.findings,
+            collision_positions=tuple(self._collision_positions),
             least_progress=self._task.course.least_progress(self._simulation, self._task.exam.duration_s),
         )
 
-    def _follow_poses(self, poses: Sequence[Pose]) -> int:
+    def _follow_poses(self, stretch: Stretch) -> int:
         """Measure the drive at each pose; return the number of ticks until the robot is stuck, or all."""
+        collided = self._collision_positions
         follow, update, none_since_window = self._simulation.follow, self._metric.update, self._stuck.none_since_window
-        for ticks, pose in enumerate(poses, start=1):
+        for ticks, (pose, collisions) in enumerate(zip(stretch.poses, stretch.collisions, strict=True), start=1):
+            if collisions > len(collided):
+                collided.append(Position(pose.x_m, pose.y_m))
             follow(pose)
             update(pose)
             if none_since_window(Position(pose.x_m, pose.y_m)):
                 self._is_stuck = True
                 return ticks
-        return len(poses)
+        return len(stretch.poses)
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
         before = self._action

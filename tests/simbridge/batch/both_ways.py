@@ -37,6 +37,7 @@ class Drive:
     state_hash: str
     left: str = ""
     """Reason that the robot left the batch."""
+    collisions: int = 0
 
 
 def drive_on_bus(task: TaskSettings, events: Sequence[TeachingEvent], setup: ExamSetup) -> Drive:
@@ -65,6 +66,7 @@ def drive_in_batch(
     batch = FACTORY.open_batch(simulations, minds, build_drive_settings(ROBOT, task))
     ids = [getattr(mind, "rla_ids", ()) for mind in minds]
     steps: list[list[Step]] = [[] for _ in exams]
+    collisions = [0] * len(exams)
     ticks = round(task.exam.duration_s / ROBOT.can.cycle_s)
     for begin in range(0, ticks, stretch):
         active = [r for r in range(len(exams)) if not batch.reason_to_leave(r)]
@@ -73,12 +75,14 @@ def drive_in_batch(
             if batch.reason_to_leave(r):
                 continue
             course = batch.stretch(r)
-            for pose, action, rla, distance in zip(*course, strict=True):
+            collisions[r] = course.collisions[-1]
+            for pose, action, rla, distance, _ in zip(*course, strict=True):
                 simulations[r].follow(pose)
                 name, rla_id = batch.actions[action] if action >= 0 else None, ids[r][rla] if rla >= 0 else None
                 steps[r].append(Step(pose, name, rla_id, distance))
     return [
-        Drive(steps[r], batch.state_hash(r, simulations[r].laps), batch.reason_to_leave(r)) for r in range(len(exams))
+        Drive(steps[r], batch.state_hash(r, simulations[r].laps), batch.reason_to_leave(r), collisions[r])
+        for r in range(len(exams))
     ]
 
 

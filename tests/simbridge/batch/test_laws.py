@@ -103,7 +103,7 @@ def test_may_touch_is_false_only_where_the_body_is_free(world: str) -> None:
 )
 def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: float) -> None:
     limits = ROBOT.guard
-    law = GuardLaw(ROBOT.can.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2)
+    law = GuardLaw(ROBOT.can.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
     bus = open_bus(f"virtual:{uuid.uuid4()}")
     try:
         guard = Guard(ROBOT, bus)

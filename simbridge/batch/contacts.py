@@ -1,0 +1,58 @@
+"""Bodies of a batch at walls: there the physics engine moves the body, as it does on the CAN bus."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hal.batch_refusal import BatchRefusedError
+from simbridge.simulated_robot import SimulatedRobot
+
+REMEMBERED_TICKS = 5
+"""Ticks without a touch after which the engine has forgotten a contact; it keeps one for three steps."""
+
+
+class ContactBody:
+    """Body of one robot in the engine, which lags behind until it may touch something.
+
+    The engine's answer depends on the order in which it met the walls. So the body drives all ticks that it lagged
+    behind with the set points of then, and agrees with the free motion of the compiled loop to the last bit.
+    """
+
+    def __init__(self, simulated: SimulatedRobot) -> None:
+        """Take the body, the wheels and the bumpers of a simulated robot that has not driven yet."""
+        self._body, self._wheels, self._bumpers = simulated.body, simulated.wheels, simulated.bumpers
+
+    def move(self, record: np.record, behind: Sequence[tuple[int, int]], gap_cycles: int) -> None:
+        """Move the body through the ticks that it lags behind and the present one, and enter what it met.
+
+        Args:
+            record: of the robot, in the tick for which it waits.
+            behind: set points of those ticks, left and right, in cm/s; the last ones are of the present tick.
+            gap_cycles: cycles without a touch after which a touch is a new collision.
+
+        Raises:
+            BatchRefusedError: engine and compiled loop do not agree on this machine.
+        """
+        for left_cm_s, right_cm_s in behind[:-1]:
+            self._step(left_cm_s, right_cm_s)
+        if self._body.pose != (record["last_x_m"], record["last_y_m"], record["last_heading_rad"]):
+            raise BatchRefusedError("the physics engine moves a free robot otherwise here", do="give --exams bus")
+        self._step(*behind[-1])
+        body = self._body
+        record["x_m"], record["y_m"], record["heading_rad"] = body.pose
+        record["vx_m_s"], record["vy_m_s"], record["yaw_rad_s"] = body.velocity
+        record["left_slip"], record["right_slip"] = body.slip
+        record["bumpers"] = 0
+        remembers = int(record["engine_ticks"])
+        if body.touching:
+            record["bumpers"] = self._bumpers.pressed(body.contacts())
+            record["collisions"] += record["free_cycles"] > gap_cycles
+            record["free_cycles"] = 0
+            record["engine_ticks"] = REMEMBERED_TICKS
+        else:
+            record["free_cycles"] += 1
+            record["engine_ticks"] = max(0, remembers - 1)
+
+    def _step(self, left_cm_s: int, right_cm_s: int) -> None:
+        self._wheels.turn(left_cm_s / 100.0, right_cm_s / 100.0)
+        self._body.move(self._wheels.left_m_s, self._wheels.right_m_s)
