@@ -107,8 +107,9 @@ def test_load_teacher_invalid_file_names_the_key(tmp_path: Path, key: str, value
         load_teacher(str(path))
 
 
-def test_taught_by_robot_asks_as_its_teacher_wants() -> None:
-    task = load_task("wall_following")
-    shares = {name: taught_by(task, load_teacher(name)).learning.asks_beyond_share for name in (*PEOPLE, SUPERHUMAN)}
+@pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])
+def test_taught_by_robot_asks_as_its_teacher_wants(name: str) -> None:
+    task = load_task(name)
+    shares = {each: taught_by(task, load_teacher(each)).learning.asks_beyond_share for each in (*PEOPLE, SUPERHUMAN)}
     assert shares == {**dict.fromkeys(PEOPLE, task.learning.asks_beyond_share), SUPERHUMAN: 1.0}
     assert task.learning.asks_beyond_share < 1.0

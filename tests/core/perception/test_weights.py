@@ -94,3 +94,22 @@ def test_feature_weights_decide_which_rla_drives() -> None:
 def test_feature_weights_unknown_feature_stops_the_start() -> None:
     with pytest.raises(SettingsError, match="'s99'"):
         first_tick(weights=(FeatureWeight(weight=2.0, features=("s99",)),))
+
+
+MIRRORED = {"s1": "s5", "s2": "s6", "s3": "s7", "s4": "s8", "s9": "s10", "s12": "s13", "s15": "s16", "s17": "s18"}
+"""Sensors that the robot has on both sides, left to right."""
+
+
+def mirrored(feature: str) -> str:
+    """Return the feature that a robot sees in place of another one in the mirrored world."""
+    swap = {**MIRRORED, **{right: left for left, right in MIRRORED.items()}, "left": "right", "right": "left"}
+    return " ".join(">".join(swap.get(name, name) for name in word.split(">")) for word in feature.split(" "))
+
+
+@pytest.mark.parametrize("name", ["fleeing", "eight"])
+def test_weights_of_a_task_without_sides_are_symmetric(name: str) -> None:
+    learning = load_task(name).learning
+    changed = [(each.features, each.weight) for each in learning.weights]
+    weights = dict(zip(NAMES[:34], feature_weights(DEFINITION, changed, learning.past_weight, name), strict=False))
+    assert {feature: weights[mirrored(feature)] for feature in weights} == weights
+    assert len(set(weights.values())) > 1
