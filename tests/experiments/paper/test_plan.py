@@ -109,7 +109,7 @@ def test_the_plain_reading_has_the_settings_of_its_own() -> None:
 def test_a_part_shortens_times_and_nothing_of_learning() -> None:
     (experiment,) = planned("eight", extent=QUICK).experiments
     whole = load_task("eight")
-    assert experiment.task.learning == whole.learning
+    assert experiment.task.learning == taught_by(whole, load_teacher(whole.teaching.default_teacher)).learning
     assert experiment.task.teaching.duration_s == pytest.approx(60.0, abs=1.0)
     share = whole.teaching.supervised_s / whole.teaching.duration_s
     assert experiment.task.teaching.supervised_s == pytest.approx(60.0 * share, abs=1.0)
