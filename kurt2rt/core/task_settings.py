@@ -282,14 +282,16 @@ def load_teacher_of(task: TaskSettings, name_or_path: str | None) -> TeacherProf
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
-    """Return a copy of the task that this scripted teacher teaches, in which the robot asks as the teacher wants."""
+    """Return a copy of the task that this scripted teacher teaches; the robot asks and drives as the teacher wants."""
     teaching = task.teaching.model_copy(update={"profile": profile})
     return as_its_teacher_wants(task.model_copy(update={"teaching": teaching}))
 
 
 def as_its_teacher_wants(task: TaskSettings) -> TaskSettings:
-    """Return a copy of the task in which the robot asks its scripted teacher as soon as that teacher's profile says."""
-    share = task.teaching.profile.asks_beyond_share
-    if share is None:
-        return task
-    return task.model_copy(update={"learning": task.learning.model_copy(update={"asks_beyond_share": share})})
+    """Return a copy of the task in which the robot asks, and drives its lessons, as its scripted teacher wants."""
+    profile, learning, teaching = task.teaching.profile, task.learning, task.teaching
+    if profile.asks_beyond_share is not None:
+        learning = learning.model_copy(update={"asks_beyond_share": profile.asks_beyond_share})
+    if task.name in profile.lesson_speeds:
+        teaching = teaching.model_copy(update={"lesson_speed": profile.lesson_speeds[task.name]})
+    return task.model_copy(update={"learning": learning, "teaching": teaching})

@@ -1,11 +1,13 @@
 """Schema of `config/teachers/*.yaml`: scripted teachers, quick ones and those with the limits of a person."""
 
 import random
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
 from hal.settings import Settings, find_config, load_settings
+from kurt2rt.core.lesson_speed import SLOWEST
 
 SUPERHUMAN = "superhuman"
 """Teacher without a person's limits, whose times are those of the task (`teaching.teacher`)."""
@@ -131,6 +133,9 @@ class TeacherProfile(Settings):
     """Way to correct what led to a touch: a look back for the last thing that looked wrong before it, or not at all."""
     asks_beyond_share: Annotated[float, Field(gt=0, le=1)] | None = None
     """Fraction of R beyond which the robot asks this teacher (`learning.asks_beyond_share`); None: as the task says."""
+    lesson_speeds: Mapping[str, Annotated[float, Field(ge=SLOWEST, le=1)]] = {}
+    """Fraction of their speed at which actions drive in this teacher's lessons, by task; in other tasks the task's own
+    (`teaching.lesson_speed`)."""
     answers_by: Literal["press", "hold"] = "press"
     """Way to answer a question."""
     corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"

@@ -107,6 +107,13 @@ def test_load_teacher_invalid_file_names_the_key(tmp_path: Path, key: str, value
         load_teacher(str(path))
 
 
+def test_taught_by_robot_drives_lessons_as_its_teacher_wants() -> None:
+    ordinary = load_teacher("ordinary")
+    speeds = {name: taught_by(load_task(name), ordinary).teaching.lesson_speed for name in ("wall_following", "circle")}
+    assert speeds == {"wall_following": ordinary.lesson_speeds["wall_following"], "circle": 1.0}
+    assert speeds["wall_following"] < 1.0
+
+
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])
 def test_taught_by_robot_asks_as_its_teacher_wants(name: str) -> None:
     task = load_task(name)

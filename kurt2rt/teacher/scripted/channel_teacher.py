@@ -59,6 +59,10 @@ async def teach_by_script(
     supervisor = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
     profile = task.teaching.profile
     await _begin(robot, f"scripted, {profile.name}, seed {seed}")
+    percent = round(100 * task.teaching.lesson_speed)
+    if percent < 100:
+        await _must(robot, lambda: robot.set_lesson_speed(percent), lambda state: state.lesson_speed < 1.0)
+        say(f"slow lessons: the robot drives at {percent} % of the speed of its actions in phases 1 and 2")
     if task.teaching.reposition_every_s:
         say(_reposition_notice(task))
     if supervisor.plan:

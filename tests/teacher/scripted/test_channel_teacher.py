@@ -13,6 +13,7 @@ from kurt2rt.channel.protocol.requests import (
     CorrectRequest,
     HelloRequest,
     HoldRequest,
+    LessonSpeedRequest,
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
@@ -373,6 +374,20 @@ async def test_teach_by_script_teaches_phases_1_and_2_then_5(client: TeacherClie
     assert said[-2].startswith("0 lessons")
     assert ALONE in said[-1]
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.AUTONOMOUS]
+
+
+@pytest.mark.parametrize(("share", "percents"), [(1.0, []), (0.6, [60])])
+async def test_teach_by_script_slow_teacher_sets_the_lesson_speed(
+    client: TeacherClient, robot: StandInRobot, share: float, percents: list[int]
+) -> None:
+    robot.mind = Mind(robot)
+    profile = QUICK_TEACHER.model_copy(update={"lesson_speeds": {"wall_following": share}})
+    await lesson(client, robot, ALONE, taught_by(short(), profile))
+    orders = robot.orders()
+    speeds = [n for n, order in enumerate(orders) if isinstance(order, LessonSpeedRequest)]
+    assert [getattr(orders[n], "percent") for n in speeds] == percents  # noqa: B009
+    phase_2 = next(n for n, o in enumerate(orders) if isinstance(o, PhaseRequest) and o.phase is Phase.CORRECTIONS)
+    assert all(n < phase_2 for n in speeds)
 
 
 async def test_teach_by_script_lost_answers_are_asked_again(client: TeacherClient, robot: StandInRobot) -> None:
