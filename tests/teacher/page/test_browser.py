@@ -107,7 +107,9 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
             break
     assert room.state().lessons == 10
 
-    # The last one is taken back, with a second touch to be sure.
+    # The last one is taken back, with a second touch to be sure; a list that comes too late would refuse it.
+    listed = "return document.querySelectorAll('#lesson-list li').length"
+    phone.wait(lambda: phone.run(listed) >= 10, "the page's list has them all")
     phone.touch("#undo-last")
     assert phone.text("#undo-last .word") == "sure?"
     assert room.state().lessons == 10
