@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from hal.simulation import Pose, Simulation, SimulationFactory
+from hal.simulation import Pose, Position, Simulation, SimulationFactory
 
 STANDS = -1
 """Index of the action of a robot that stands and asks."""
@@ -153,11 +153,19 @@ class Batch(Protocol):
         ...
 
 
+@runtime_checkable
 class FollowedSimulation(Simulation, Protocol):
     """Simulation whose robot is driven in a batch, and which follows its pose, to measure its drive."""
 
-    def follow(self, pose: Pose) -> None:
-        """Be at a pose after one more cycle that a batch simulated; the simulation can be stepped no more."""
+    def follow(self, poses: Sequence[Pose]) -> None:
+        """Be at the last of these poses, one for each cycle that a batch simulated.
+
+        The simulation can be stepped no more.
+        """
+        ...
+
+    def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
+        """Return the distance in m from each position to the nearest wall or obstacle."""
         ...
 
 

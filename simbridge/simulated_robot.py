@@ -81,15 +81,15 @@ class SimulatedRobot:
             self._progress.update(*pose)
         controller.send(*wheels.take_ticks(), self._pressed)
 
-    def follow(self, pose: Pose) -> None:
-        """Be at a pose after one more cycle that was simulated elsewhere, in a batch; the robot drives no more itself.
+    def follow(self, poses: Sequence[Pose]) -> None:
+        """Be at the last of these poses, one for each cycle that was simulated in a batch.
 
-        Its place and its progress along walls go on; its sensors, wheels and bus do not.
+        The robot drives no more itself: its place and its progress along walls go on; its sensors, wheels and bus do
+        not.
         """
-        self._cycles += 1
-        self._followed = pose
-        if self._cycles % _LAPS_EVERY_CYCLES == 0:
-            self._passed.append(pose)
+        self._passed += poses[-(self._cycles + 1) % _LAPS_EVERY_CYCLES :: _LAPS_EVERY_CYCLES]
+        self._cycles += len(poses)
+        self._followed = poses[-1]
 
     def place(self, pose: Pose) -> None:
         """Move the robot to a pose: wheels still, sensors settled, no lap or collision counted."""

@@ -111,9 +111,16 @@ class Kurt2Simulation:
         """Advance the world by one cycle of 10 ms. Raises hal.bus.BusError."""
         self._line.cycle(self.simulated_robot.step)
 
-    def follow(self, pose: Pose) -> None:
-        """Be at a pose after one more cycle that a batch simulated; the simulation can be stepped no more."""
-        self.simulated_robot.follow(pose)
+    def follow(self, poses: Sequence[Pose]) -> None:
+        """Be at the last of these poses, one for each cycle that a batch simulated.
+
+        The simulation can be stepped no more.
+        """
+        self.simulated_robot.follow(poses)
+
+    def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
+        """Return the distance in m from each position to the nearest wall or obstacle."""
+        return self._nearest.distances_m(positions)
 
     def attach_tap(self, tap: Tap | None) -> None:
         """Set the tap of the notebook's bus interface; None: none."""

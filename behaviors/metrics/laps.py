@@ -1,13 +1,15 @@
 """Way along the walls in laps, with the wall on the left."""
 
 import random
-from typing import Annotated
+from collections.abc import Sequence
+from typing import Annotated, cast
 
 from pydantic import Field
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
-from hal.simulation import Pose, Simulation
+from hal.batch import FollowedSimulation
+from hal.simulation import Pose, Position, Simulation
 
 
 class LapsSettings(MetricSettings):
@@ -56,6 +58,14 @@ class Laps:
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(self._simulation.nearest_m - self._wanted_m))
         self._ticks += 1
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Measure the distance error at every tenth of the poses of ticks in a row."""
+        followed = cast(FollowedSimulation, self._simulation)  # a check at run time would read all that it measures
+        due = poses[-self._ticks % MEASURE_EVERY :: MEASURE_EVERY]
+        for nearest_m in followed.nearest_all_m([Position(pose.x_m, pose.y_m) for pose in due]):
+            self._error_m.add(abs(nearest_m - self._wanted_m))
+        self._ticks += len(poses)
 
     def abort(self) -> None:
         """Do nothing: progress so far counts."""

@@ -2,7 +2,7 @@
 
 import random
 from abc import abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
 from hal.settings_by_kind import KindSettings
@@ -61,6 +61,18 @@ class TaskMetric(Protocol):
 
     def abort(self) -> None:
         """End the drive early, stuck or stopped: the current requirement counts as missed."""
+        ...
+
+
+@runtime_checkable
+class StretchMetric(TaskMetric, Protocol):
+    """Metric that takes the poses of many ticks at once, and is quicker so."""
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Update the metric with the true poses of ticks in a row, as so many calls of `update` would.
+
+        Only in a simulation that follows a batch (hal.batch.FollowedSimulation).
+        """
         ...
 
 

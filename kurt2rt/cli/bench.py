@@ -46,6 +46,7 @@ def bench(
     channel   over UDP: from a press to the wheels, also on the teacher's page;
               what it costs the loop that a teacher is there; lessons until
               answered
+    batch     exams of many robots at once (extra fast); with the CAN bus
 
     The ratio says how many times longer the reference took in the same run.
     The goals are meant for an idle machine; a benchmark informs, and ends with
@@ -75,7 +76,9 @@ def _measure(benches: frozenset[BenchName], folder: Path, lengths: Lengths) -> t
     settings = load_robot()
     task = load_task("wall_following")
     factory = Kurt2SimulationFactory(settings)
-    fixture = BenchFixture(settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose))
+    fixture = BenchFixture(
+        settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose), batches=factory
+    )
     # No automatic refresh: it would run in the middle of a measurement.
     with (
         Progress(console=Console(stderr=True), auto_refresh=False) as progress,

@@ -14,6 +14,8 @@ READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in Feature
 LANES = 8
 """Partial sums of numpy's pairwise sum: the value at place i belongs to sum i % 8."""
 
+_SLACK = 1.000001
+"""Factor beyond which a sum of some squares is larger than another sum of all, whatever was rounded."""
 _steer = compiled(steer)
 _follow_wall = compiled(wall_following.choose_action)
 _flee = compiled(fleeing.choose_action)
@@ -79,18 +81,38 @@ def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
 
 
 @compiled
-def nearest(first: int, end: int, conditions: Floats, situation: Floats) -> tuple[int, float]:
+def _least_square(row: int, conditions: Floats, situation: Floats) -> float:
+    """Return a lower bound of `exact_square`, but for rounding: of the first eight values."""
+    a = (conditions[row, 0] - situation[0]) * (conditions[row, 0] - situation[0])
+    b = (conditions[row, 1] - situation[1]) * (conditions[row, 1] - situation[1])
+    c = (conditions[row, 2] - situation[2]) * (conditions[row, 2] - situation[2])
+    d = (conditions[row, 3] - situation[3]) * (conditions[row, 3] - situation[3])
+    e = (conditions[row, 4] - situation[4]) * (conditions[row, 4] - situation[4])
+    f = (conditions[row, 5] - situation[5]) * (conditions[row, 5] - situation[5])
+    g = (conditions[row, 6] - situation[6]) * (conditions[row, 6] - situation[6])
+    h = (conditions[row, 7] - situation[7]) * (conditions[row, 7] - situation[7])
+    return float(((a + b) + (c + d)) + ((e + f) + (g + h)))
+
+
+@compiled
+def nearest(first: int, end: int, guess: int, conditions: Floats, situation: Floats) -> tuple[int, float]:
     """Return row and distance of the condition nearest to a situation among rows `first` to `end`; -1 without rows.
+
+    `guess`: a row that is probably near, which spares most sums.
 
     `conditions`: (rows, values), in counts. `situation`: (64,). Of equally near conditions the older one wins.
     """
     best, least_square, least = -1, math.inf, math.inf
+    bound = _SLACK * exact_square(guess, conditions, situation) if first <= guess < end else math.inf
     for row in range(first, end):
+        if _least_square(row, conditions, situation) > bound:
+            continue
         square = exact_square(row, conditions, situation)
         if square < least_square:
             distance = math.sqrt(square)
             if distance < least:
                 best, least_square, least = row, square, distance
+                bound = min(bound, _SLACK * square)
     return best, least
 
 
@@ -146,7 +168,8 @@ def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     """Let the nearest RLA answer, or stand outside its radius."""
     fill_features(robot.counts, knowledge.features, robot.situation)
     first, end = knowledge.first[robot.knowledge], knowledge.first[robot.knowledge + 1]
-    row, distance = nearest(first, end, knowledge.conditions, robot.situation)
+    row, distance = nearest(first, end, robot.nearest, knowledge.conditions, robot.situation)
+    robot.nearest = row
     robot.track_distance[k] = distance
     if row < 0 or not distance <= knowledge.radius[row]:
         robot.action = robot.rla = -1

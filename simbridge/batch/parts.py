@@ -143,6 +143,8 @@ class Robot:
     """Way of each side since a turn began."""
     rla: int
     """RLA whose action drives, by its row in the table; -1: none."""
+    nearest: int
+    """Row of the RLA that was nearest last."""
     seen: Annotated[Floats, (SEEN,)]
     """Distances in m that a policy looks at."""
     situation: Annotated[Floats, (MOST_VALUES,)]

@@ -1,6 +1,7 @@
 """Distance from a position to the nearest wall or obstacle."""
 
 import math
+from collections.abc import Sequence
 
 import shapely
 
@@ -23,6 +24,20 @@ class Clearance:
         away_m = float(shapely.distance(self._faces, shapely.Point(position)))
         posts_m = (math.dist(position, (post.x_m, post.y_m)) - post.radius_m for post in world.round_obstacles)
         return max(0.0, min([away_m, *posts_m]))
+
+    def distances_m(self, positions: Sequence[Point]) -> list[float]:
+        """Return the distance in m from each position to the nearest face; 0 inside a solid."""
+        world = self._world.settings
+        if world is not self._surveyed:
+            self._survey()
+        away_m: list[float] = shapely.distance(self._faces, shapely.points(positions)).tolist()
+        if not world.round_obstacles:
+            return [max(0.0, each) for each in away_m]
+        posts = world.round_obstacles
+        return [
+            max(0.0, min([each, *(math.dist(at, (post.x_m, post.y_m)) - post.radius_m for post in posts)]))
+            for each, at in zip(away_m, positions, strict=True)
+        ]
 
     def _survey(self) -> None:
         world = self._surveyed = self._world.settings

@@ -2,9 +2,10 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hal.batch import BatchFactory
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.rla.events import TeachingEvent
@@ -31,6 +32,8 @@ class BenchFixture:
     open_simulation: Callable[[str], Simulation]
     """Start the simulation in the task's teaching world, for a named purpose."""
     events: tuple[TeachingEvent, ...] = ()
+    batches: BatchFactory | None = None
+    """Opens batches; None where none is measured."""
 
 
 async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgress) -> BenchFixture:
@@ -46,7 +49,7 @@ async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgres
             seed=SEED,
             on_progress=lambda done_s: on_progress(done_s / duration_s),
         )
-    return BenchFixture(fixture.settings, fixture.task, fixture.open_simulation, tuple(notebook.events))
+    return replace(fixture, events=tuple(notebook.events))
 
 
 def with_duration(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:

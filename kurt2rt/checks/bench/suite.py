@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
+from kurt2rt.checks.bench.batch import BatchLengths, measure_batch
 from kurt2rt.checks.bench.channel import ChannelLengths, measure_channel
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
@@ -27,6 +28,7 @@ class BenchName(StrEnum):
     LESSON = "lesson"
     CHANNEL = "channel"
     RECORDING = "recording"
+    BATCH = "batch"
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +45,7 @@ class Lengths:
     lessons: int
     channel: ChannelLengths
     recording: LoadShifts
+    batch: BatchLengths
 
 
 FULL = Lengths(
@@ -54,6 +57,7 @@ FULL = Lengths(
     lessons=200,
     channel=ChannelLengths(presses=200, shifts=LoadShifts(rounds=8, ticks=250), lessons=200),
     recording=LoadShifts(rounds=10, ticks=600),
+    batch=BatchLengths(robots=30, exam_s=60.0, batches=5, on_bus=6),
 )
 QUICK = Lengths(
     learning_s=90.0,
@@ -64,6 +68,7 @@ QUICK = Lengths(
     lessons=50,
     channel=ChannelLengths(presses=15, shifts=LoadShifts(rounds=2, ticks=100), lessons=15),
     recording=LoadShifts(rounds=3, ticks=150),
+    batch=BatchLengths(robots=6, exam_s=20.0, batches=3, on_bus=2),
 )
 
 
@@ -83,6 +88,7 @@ async def run_suite(
         LessonLostError: a lesson did not become durable.
         WrongWinnerError: the match differs from a brute force.
         HelperLostError: a helper process ended or did not answer.
+        BatchRefusedError: the batch does not know the task.
         OSError: this machine has no timerfd, or the disk fails.
     """
     results: list[BenchResult] = []
@@ -110,4 +116,6 @@ async def run_suite(
         results.extend(
             await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
         )
+    if BenchName.BATCH in benches:
+        results.append(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
     return tuple(results)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise, starmap
 
-from behaviors.metrics.task_metric import TaskMetric
+from behaviors.metrics.task_metric import StretchMetric, TaskMetric
 from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Stretch
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
@@ -82,6 +82,8 @@ class _Drive:
         self._simulation, self._task, self._setup = simulation, task, setup
         self._period_s = settings.can.cycle_s
         self._metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
+        # Asked once, because it reads all members of the protocol.
+        self._stretch_metric = self._metric if isinstance(self._metric, StretchMetric) else None
         self._metric.reset(simulation.pose)
         if task.exam.start == "in_sight":
             simulation.reposition(chance, in_sight=True)
@@ -141,17 +143,21 @@ class _Drive:
 
     def _follow_poses(self, stretch: Stretch) -> int:
         """Measure the drive at each pose; return the number of ticks until the robot is stuck, or all."""
-        collided = self._collision_positions
-        follow, update, none_since_window = self._simulation.follow, self._metric.update, self._stuck.none_since_window
-        for ticks, (pose, collisions) in enumerate(zip(stretch.poses, stretch.collisions, strict=True), start=1):
-            if collisions > len(collided):
-                collided.append(Position(pose.x_m, pose.y_m))
-            follow(pose)
-            update(pose)
-            if none_since_window(Position(pose.x_m, pose.y_m)):
-                self._is_stuck = True
-                return ticks
-        return len(stretch.poses)
+        stuck_after = self._stuck.ticks_until_stuck(stretch.poses)
+        self._is_stuck = stuck_after is not None
+        ticks = len(stretch.poses) if stuck_after is None else stuck_after
+        poses = stretch.poses[:ticks]
+        if stretch.collisions[ticks - 1] > len(self._collision_positions):
+            for pose, collisions in zip(poses, stretch.collisions, strict=False):
+                if collisions > len(self._collision_positions):
+                    self._collision_positions.append(Position(pose.x_m, pose.y_m))
+        self._simulation.follow(poses)
+        if self._stretch_metric is not None:
+            self._stretch_metric.update_all(poses)
+            return ticks
+        for pose in poses:
+            self._metric.update(pose)
+        return ticks
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
         before = self._action

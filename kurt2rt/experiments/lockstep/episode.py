@@ -4,7 +4,7 @@ import math
 import random
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
@@ -28,8 +28,19 @@ class StuckDetector:
         """Return whether the robot stayed within `least_m` for a whole window; call it in every tick."""
         due = self._ticks % self._stride == 0
         self._ticks += 1
-        if not due:
-            return False
+        return due and self._looks_stuck(position)
+
+    def ticks_until_stuck(self, poses: Sequence[Pose]) -> int | None:
+        """Return the number of ticks in a row, at these poses, after which the robot is stuck; None if it is not."""
+        first = -self._ticks % self._stride
+        self._ticks += len(poses)
+        for place in range(first, len(poses), self._stride):
+            if self._looks_stuck(Position(poses[place].x_m, poses[place].y_m)):
+                return place + 1
+        return None
+
+    def _looks_stuck(self, position: Position) -> bool:
+        """Enter a position, and return whether the robot stayed near it for a whole window."""
         self._positions.append(position)
         full = len(self._positions) == self._positions.maxlen
         return full and all(

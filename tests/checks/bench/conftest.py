@@ -13,7 +13,7 @@ from simbridge.simulation import Kurt2SimulationFactory
 def untaught() -> BenchFixture:
     settings, task = load_robot(), load_task("wall_following")
     stage = Kurt2SimulationFactory(settings)
-    return BenchFixture(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
+    return BenchFixture(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose), batches=stage)
 
 
 @pytest.fixture(scope="session")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.checks.bench.batch import BatchLengths
 from kurt2rt.checks.bench.channel import ChannelLengths
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.match import Size
@@ -19,6 +20,7 @@ TINY = Lengths(
     loop_block_s=1,
     lessons=2,
     channel=ChannelLengths(presses=1, shifts=LoadShifts(rounds=1, ticks=10), lessons=1),
+    batch=BatchLengths(robots=2, exam_s=1.0, batches=1, on_bus=2),
     recording=LoadShifts(rounds=1, ticks=20),
 )
 
@@ -42,7 +44,7 @@ async def test_run_suite_measures_all_in_order_with_one_drive(untaught: BenchFix
     ]  # its processes take seconds: test_channel.py
     results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
-    assert len(jobs.names) == 6
+    assert len(jobs.names) == 7
     assert all(result.goals for result in results if not result.what.startswith("  "))
 
 

@@ -45,11 +45,12 @@ def test_nearest_equals_the_match_to_the_last_bit(rows: int, seed: int, twice: b
     packed[:, :36] = conditions[:, :36]
     ahead = np.zeros(64)
     ahead[:36] = situation[:36]
-    assert nearest(0, rows, packed, ahead) == (int(distances.argmin()), float(distances.min()))
+    guess = int(chance.integers(-1, rows))
+    assert nearest(0, rows, guess, packed, ahead) == (int(distances.argmin()), float(distances.min()))
 
 
 def test_nearest_of_no_condition_is_none() -> None:
-    assert nearest(3, 3, np.zeros((3, 40)), np.zeros(64)) == (-1, math.inf)
+    assert nearest(3, 3, 3, np.zeros((3, 40)), np.zeros(64)) == (-1, math.inf)
 
 
 def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
