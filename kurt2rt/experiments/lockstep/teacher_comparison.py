@@ -23,7 +23,7 @@ def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
         QUICK_TEACHER,
         load_teacher("answers_only"),
     )
-    return {f"{each.name}, {each.corrects_by}": taught_by(task, each) for each in dict.fromkeys((own, *ways))}
+    return {f"{each.name}, {each.corrects_by}": taught_by(task, each) for each in (own, *ways)}
 
 
 def render_teachers(results: Mapping[str, Sequence[CurriculumResult]]) -> TextTable:
