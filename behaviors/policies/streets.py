@@ -41,6 +41,11 @@ class StreetsSettings(PolicySettings):
     """Distance ahead below which the robot turns on the spot."""
     open_m: Distance
     """Distance above which a side is open."""
+    askew_m: Distance | None = None
+    """Distance ahead below which a robot that goes straight on is askew and curves away; None: it takes no notice."""
+    straight_m: Tolerance | None = None
+    """Largest distance of a point from a wall's line; beyond it a robot that goes straight on sees a corner, no wall.
+    None: every line is a wall."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
         """Return a policy with these thresholds. Raises KeyError if the robot lacks one of its sensors."""
@@ -51,7 +56,8 @@ class Streets:
     """Keep to the middle between both walls or off the only one; turn round the corner of an open side.
 
     On the way straight through a crossing the edge sensors' view of the corners decides. All side sensors look into
-    the open there, and a robot that enters askew would run into the far corner.
+    the open there, and a robot that enters askew would run into the far corner. With `askew_m` and `straight_m` it
+    takes the near corner for no wall, and curves away from the far one in time.
     """
 
     def __init__(self, settings: StreetsSettings, infrared: InfraredSettings) -> None:
@@ -74,20 +80,25 @@ class Streets:
             return f"spin_{turn or ('left' if front[0] > front[-1] else 'right')}"
         if turn and (left if turn == "left" else right)[_FIRST_BESIDE] > want.open_m:
             return f"sharp_{turn}"
+        if not turn and want.askew_m is not None and min(front) < want.askew_m:
+            return f"sharp_{'left' if front[0] > front[-1] else 'right'}"
         crossing = min(left[_FIRST_BESIDE], right[_FIRST_BESIDE]) > want.open_m
-        error_m = self._error_m(left, right, with_edges=not turn)
+        error_m = self._error_m(left, right, straight_on=not turn)
         side = "left" if error_m > 0 else "right"
         if abs(error_m) > want.curve_m and not crossing:
             return f"sharp_{side}"
         tolerance_m = want.crossing_tolerance_m if crossing else want.tolerance_m
         return f"bear_{side}" if abs(error_m) > tolerance_m else "forward"
 
-    def _error_m(self, left: Sequence[float], right: Sequence[float], *, with_edges: bool) -> float:
+    def _error_m(self, left: Sequence[float], right: Sequence[float], *, straight_on: bool) -> float:
         """Return the offset in m of the street's middle to the left of the robot's course."""
         want = self._settings
-        sensors = slice(None) if with_edges else _BESIDE
-        to_left_m = self._left_wall.away_m(left, sensors, want.look_m, want.open_m)
-        to_right_m = self._right_wall.away_m(right, sensors, want.look_m, want.open_m)
+        sensors = slice(None) if straight_on else _BESIDE
+        straight_m = math.inf if want.straight_m is None or not straight_on else want.straight_m
+        to_left_m, to_right_m = (
+            wall.away_m(distances[sensors], sensors, want, straight_m)
+            for wall, distances in ((self._left_wall, left), (self._right_wall, right))
+        )
         if to_left_m is not None and to_right_m is not None:
             return (to_left_m - to_right_m) / 2
         if to_left_m is not None:
@@ -115,17 +126,25 @@ class _Wall:
             for sensor in sensors
         ]
 
-    def away_m(self, distances: Sequence[float], sensors: slice, look_m: float, reach_m: float) -> float | None:
-        """Return the wall's distance in m at `look_m` ahead of the robot's centre; None for fewer than two points."""
+    def away_m(
+        self, distances: Sequence[float], sensors: slice, want: StreetsSettings, straight_m: float
+    ) -> float | None:
+        """Return the wall's distance in m at `look_m` ahead of the robot's centre.
+
+        Returns None for fewer than two points, and if one of them is more than `straight_m` off the line.
+        """
         points = [
             (x_m + along * distance_m, y_m + across * distance_m)
-            for (x_m, y_m, along, across), distance_m in zip(self._rays[sensors], distances[sensors], strict=True)
-            if distance_m < reach_m
+            for (x_m, y_m, along, across), distance_m in zip(self._rays[sensors], distances, strict=True)
+            if distance_m < want.open_m
         ]
         if len(points) < 2:
             return None
         (first_x, first_y), (last_x, last_y) = points[0], points[-1]
-        return first_y + (look_m - first_x) * (first_y - last_y) / (first_x - last_x)
+        slope = (first_y - last_y) / (first_x - last_x)
+        if any(abs(y_m - first_y - (x_m - first_x) * slope) > straight_m for x_m, y_m in points[1:-1]):
+            return None
+        return first_y + (want.look_m - first_x) * (first_y - last_y) / (first_x - last_x)
 
 
 def _turn_of(behaviour: str) -> str:
