@@ -35,3 +35,13 @@ class DrivesOn(Protocol):
     def forward_m_s(self) -> float:
         """Return the speed of the robot's centre in m/s; negative when it backs."""
         ...
+
+
+@runtime_checkable
+class HasSetPoints(Protocol):
+    """Action that drives at the same set points in each of its ticks."""
+
+    @property
+    def wheel_speeds(self) -> WheelSpeeds:
+        """Return the set points in m/s."""
+        ...

@@ -10,7 +10,8 @@ from hal.robot_settings import RobotSettings
 from hal.sensor_ring import SubstituteReadings
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead
+from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead, set_points
+from kurt2rt.core.basic.obstacle_memory import ObstacleMemory
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Critic
@@ -186,7 +187,10 @@ class _Assembly:
         if settings is None:
             return None
         ahead = features_ahead(self.definition, self._settings.infrared)
-        return DoubtMeter(self._system, settings, ahead, actions_ahead(repertoire))
+        memory = None
+        if settings.contact is not None:
+            memory = ObstacleMemory(settings.contact, self._settings, set_points(repertoire))
+        return DoubtMeter(self._system, settings, ahead, actions_ahead(repertoire), memory)
 
     def _restored_reinforcement(self) -> Reinforcement:
         recent, checkpoint = DecisionHistory(self.definition.dimensions), self._options.checkpoint

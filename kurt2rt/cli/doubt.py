@@ -14,7 +14,7 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.doubt.drive import DoubtSetup, with_doubt
+from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
 from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.table import as_rich
@@ -42,8 +42,9 @@ class _Options:
 def doubt(options: _Options) -> None:
     """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
 
-    Each robot drives without a teacher in each world twice: once with doubt
-    that is only told, once with doubt that stops it.
+    Each robot drives without a teacher in each world three times: with doubt
+    that is only told, avoiding the obstacles that it remembers, and with doubt
+    that stops it.
 
     For example:
 
@@ -54,7 +55,7 @@ def doubt(options: _Options) -> None:
     from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(options.robot_settings)
-    task = with_doubt(load_task(options.task), stands=False)
+    task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
     factory = Kurt2SimulationFactory(settings)
     worlds = options.world or list(task.exam.worlds)
     factory.require_worlds(*worlds)
@@ -64,9 +65,9 @@ def doubt(options: _Options) -> None:
             settings,
             task,
             options.taught / f"{task.name}-{seed}.knowledge",
-            DoubtSetup(world, seed, options.seconds, stands),
+            DoubtSetup(world, seed, options.seconds, response),
         )
-        for stands in (False, True)
+        for response in DoubtResponse
         for seed in parse_seeds(options.seeds)
         for world in worlds
     ]
@@ -74,11 +75,15 @@ def doubt(options: _Options) -> None:
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("drives", total=len(work))
         logs = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
-    told, stands = logs[: len(work) // 2], logs[len(work) // 2 :]
+    each = len(work) // len(DoubtResponse)
+    by_response = {response.value: logs[n * each : (n + 1) * each] for n, response in enumerate(DoubtResponse)}
     assert task.learning.doubt is not None
-    tables = [score_table(told, task.learning.doubt.threshold), collision_table(told, stands)]
+    tables = [
+        score_table(by_response[DoubtResponse.TELLS], task.learning.doubt.threshold),
+        collision_table(by_response),
+    ]
     if options.as_json:
         print_json({"tables": tables_of(tables)})
         return
-    for each in tables:
-        print_whole(console_of(), as_rich(each))
+    for table in tables:
+        print_whole(console_of(), as_rich(table))

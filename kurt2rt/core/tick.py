@@ -430,6 +430,7 @@ class Tick:
             case RobotRepositioned():
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()
+                self._handler.forget_obstacles()
                 self._reset_transitions()
 
     def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
@@ -442,6 +443,9 @@ class Tick:
         if new and result.accepted:
             if isinstance(command, Resume) and self._sensor_watch is not None:
                 self._sensor_watch.readmit()
+            if isinstance(command, Resume):
+                # The person who says Go may have carried the robot away from what it touched.
+                self._handler.forget_obstacles()
             # A late copy of a resume does not end a new emergency stop.
             if isinstance(command, Resume) and self._latched:
                 self._robot.release()

@@ -8,7 +8,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LessonFact, LevelFacts
+from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LessonFact, LevelFacts
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.sentences import (
     format_guard,
@@ -38,6 +38,8 @@ NOTHING_ABOVE = replace(level((1.0,)), level=MID)
 LOST = replace(level((math.nan,), replace(PLACE, distance=math.inf)), driver=None, level=MID)
 STOOD = WheelSpeeds(0, 0)
 OBSTACLE = DoubtFacts(3.41, 2.8, "front left", "13 cm", "40 cm")
+CONTACT = DoubtFacts(7.2, 7.0, contact=ContactFacts("forward", 0.2, "front left (s9)", 0.45))
+AVOIDED = facts(replace(KNOWN, driver=ELSE), DecisionCause.AVOIDS.value, "back")
 
 
 def standing(cause: DecisionCause, basic: LevelFacts = KNOWN) -> DecisionFacts:
@@ -55,6 +57,7 @@ STOPPED = standing(DecisionCause.STOPPED)
 OF_CAUSE: dict[DecisionCause, DecisionFacts] = {
     DecisionCause.RLA: facts(KNOWN),
     DecisionCause.HELD: facts(replace(KNOWN, driver=ELSE), DecisionCause.HELD.value, "back"),
+    DecisionCause.AVOIDS: replace(AVOIDED, doubt=CONTACT),
     DecisionCause.TEACHER: replace(LED, teacher="Ann"),
     DecisionCause.UNKNOWN: standing(DecisionCause.UNKNOWN, OUTSIDE),
     DecisionCause.BLIND: replace(standing(DecisionCause.BLIND), infrared_age_s=0.07),
@@ -77,6 +80,8 @@ def reasons() -> Iterator[tuple[str, str]]:
         "rla, of one condition": facts(replace(CROWD, driver=TWIN)),
         "rla, pushes": replace(facts(KNOWN), granted=STOOD, reasons=("rear bumper",)),
         "rla, doubts a little": replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8)),
+        "rla, meets an obstacle": replace(facts(KNOWN), doubt=CONTACT),
+        "avoids, of an unknown obstacle": AVOIDED,
         "rla, usual doubt": replace(facts(KNOWN), doubt=DoubtFacts(0.9, 2.8)),
         "rla, sensor broken": replace(facts(KNOWN), broken_sensors=("front left edge (s15)",)),
         "rla, alarm": replace(facts(KNOWN), granted=STOOD, reasons=("bus lost",), latched=True),

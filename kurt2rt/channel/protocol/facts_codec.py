@@ -9,7 +9,15 @@ from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, O
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing_text import stop_of_text
-from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, DoubtFacts, LessonFact, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import (
+    MOST_OTHERS,
+    ContactFacts,
+    DecisionFacts,
+    DoubtFacts,
+    LessonFact,
+    LevelFacts,
+    RlaFacts,
+)
 
 _MOST_LESSONS = 32
 _MOST_FEATURES = 512
@@ -78,6 +86,17 @@ def _facts(
     )
 
 
+_CONTACT = MapOf(ContactFacts, action=NAME, within_s=_REAL, sensor=NAME, seen_s=_REAL)
+_DOUBT = MapOf(
+    DoubtFacts,
+    score=_REAL,
+    threshold=_REAL,
+    sensor=NAME,
+    reads=NAME,
+    taught=NAME,
+    contact=MayLack(OrNone(_CONTACT)),
+)
+
 _FACTS = MapOf(
     _facts,
     tick=COUNT,
@@ -108,7 +127,7 @@ _FACTS = MapOf(
     hindrances=ManyOf(NAME, most=8),
     broken_sensors=MayLack(ManyOf(NAME, most=64)),
     lesson_speed=MayLack(Float(1.0)),
-    doubt=MayLack(OrNone(MapOf(DoubtFacts, score=_REAL, threshold=_REAL, sensor=NAME, reads=NAME, taught=NAME))),
+    doubt=MayLack(OrNone(_DOUBT)),
 )
 
 _FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)

@@ -8,9 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
-from behaviors.behaviour import Behaviour, DrivesOn
+from behaviors.behaviour import Behaviour, DrivesOn, HasSetPoints
+from hal.robot import WheelSpeeds
 from hal.robot_settings import InfraredSettings
 from hal.settings import Settings
+from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.perception.definition import Reading, SituationDefinition
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, Rla
@@ -24,6 +26,9 @@ _RELEASE = 0.8
 
 _LESSONS = 2
 """A reading is new if fewer lessons than this were given at one as high, so that one wrong lesson hides no obstacle."""
+
+_VERY_SITUATION = 0.5
+"""Fraction of the usual distance up to which a situation is that of the lesson: noise takes less at a standstill."""
 
 
 class DoubtSettings(Settings):
@@ -41,6 +46,8 @@ class DoubtSettings(Settings):
     """Stand and ask at a doubt; False only tells the score."""
     alone: bool = False
     """Stand at a doubt if no teacher can be asked, too: in phase 5 and exams."""
+    contact: ContactSettings | None = None
+    """Remembered obstacles; an action that meets one is doubted by the threshold. None: none are remembered."""
 
     @model_validator(mode="after")
     def _rare_is_beyond_usual(self) -> Self:
@@ -82,14 +89,24 @@ def actions_ahead(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
     )
 
 
-class DoubtMeter:
-    """Score of doubt: distance of the nearest RLA, plus an obstacle ahead nearer than in lessons that drive on.
+def set_points(repertoire: Mapping[str, Behaviour]) -> dict[str, WheelSpeeds]:
+    """Return the wheel speeds in m/s of the actions that have fixed ones, by name."""
+    return {name: action.wheel_speeds for name, action in repertoire.items() if isinstance(action, HasSetPoints)}
 
-    Deterministic and without history: a function of the situation and the knowledge.
+
+class DoubtMeter:
+    """Score of doubt: distance of the nearest RLA, an obstacle ahead nearer than in lessons, and a coming contact.
+
+    Deterministic: a function of the situation, the knowledge and the remembered obstacles.
     """
 
     def __init__(
-        self, system: RlaSystem, settings: DoubtSettings, features: tuple[int, ...], actions: Iterable[str]
+        self,
+        system: RlaSystem,
+        settings: DoubtSettings,
+        features: tuple[int, ...],
+        actions: Iterable[str],
+        memory: ObstacleMemory | None = None,
     ) -> None:
         """Connect the knowledge.
 
@@ -98,8 +115,10 @@ class DoubtMeter:
             settings: scales and threshold.
             features: indices of the readings that look ahead.
             actions: names of the actions that drive on.
+            memory: remembered obstacles; its owner updates it once a tick. None: no contact is foreseen.
         """
         self.settings = settings
+        self.memory = memory
         self._usual = settings.usual_distance
         self._per_distance = 1.0 / (settings.rare_distance - settings.usual_distance)
         self._per_count = 1.0 / settings.rare_counts
@@ -124,8 +143,8 @@ class DoubtMeter:
 
         `match`: nearest RLA of the situation. `behaviour`: active taught behaviour, whose lessons count.
         """
-        rla, distance, radius, _, _ = match
-        off = distance * self._system.radius_share / radius - self._usual if radius > 0.0 else 0.0
+        rla = match.rla
+        off = self._share(match) - self._usual
         score = off * self._per_distance if off > 0.0 else 0.0
         if action in self.actions:
             # In most ticks the nearest RLA is that of the tick before.
@@ -134,7 +153,24 @@ class DoubtMeter:
                 most = max(map(sub, map(situation.item, self._features), limits))
                 if most > 0.0:
                     score += most * self._per_count
+        if self.meets_obstacle(match, action):
+            score += self.settings.threshold
         return score
+
+    def meets_obstacle(self, match: Match, action: str, *, avoiding: bool = False) -> bool:
+        """Return whether the outline would soon meet a remembered obstacle if `action` drove.
+
+        `match`: False if it is a lesson about this very situation, because its teacher saw the obstacle, too.
+        `avoiding`: whether the robot avoids an obstacle already; it then looks farther ahead.
+        """
+        memory = self.memory
+        if memory is None or not memory.meets(action, avoiding=avoiding):
+            return False
+        return self._share(match) > self._usual * _VERY_SITUATION
+
+    def _share(self, match: Match) -> float:
+        """Return distance / R, by the whole R also of a robot that asks sooner."""
+        return match.distance * self._system.radius_share / match.radius if match.radius > 0.0 else 0.0
 
     def obstacle(self, situation: NDArray[np.float64], match: Match, action: str, behaviour: str) -> NewObstacle | None:
         """Return the sensor ahead that exceeds the lessons most in a situation (d,); None if none does.
@@ -188,6 +224,8 @@ class DoubtWatch:
         settings = meter.settings
         self._threshold, self._release = settings.threshold, settings.threshold * _RELEASE
         self._asks, self._stands_alone = settings.asks, settings.asks and settings.alone
+        self.avoids = settings.contact is not None and settings.contact.avoids
+        """Whether the robot avoids the obstacles that it remembers, instead of only telling its doubt."""
         self._doubts = False
 
     def update(self, score: float, *, alone: bool) -> bool:

@@ -17,6 +17,8 @@ class DecisionCause(StrEnum):
     """The situation lies inside the radius of the nearest RLA, whose action drives."""
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
+    AVOIDS = "avoids"
+    """The nearest RLA's action would meet a remembered obstacle; the nearest RLA whose action does not drives."""
     TEACHER = "teacher"
     """A teacher drives by hand, or a reference policy drives."""
     UNKNOWN = "unknown"
@@ -42,7 +44,7 @@ class DecisionCause(StrEnum):
 ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})
 """Causes by which the robot waits for an answer."""
 
-BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD})
+BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.AVOIDS})
 """Causes by which an RLA drives."""
 
 
@@ -83,8 +85,8 @@ class Decision(NamedTuple):
     plan: PlanStep | None = None
     """Progress toward the goal; None without a goal."""
     doubt: float | None = None
-    """Doubt of the basic level about the action that drives, or would; None if the task sets none, and at standstill
-    for another reason."""
+    """Doubt of the basic level about the action that drives, or would without it; None if the task sets none, and at
+    standstill for another reason."""
 
     @property
     def driving(self) -> bool:

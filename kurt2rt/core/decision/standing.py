@@ -122,7 +122,7 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
         return Standing(StandReason.DOUBTS, asks=True)
     if cause == DecisionCause.TOUCHES:
         return Standing(StandReason.FRONT_BUMPER, asks=True)
-    if cause in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.TEACHER):
+    if cause in BY_RLA or cause == DecisionCause.TEACHER:
         return DRIVES
     if cause not in DecisionCause.__members__.values():
         return Standing(StandReason.HALTED, says=cause)

@@ -191,17 +191,25 @@ class CommandHandler:
     def before_decision(self, tick: int, *, was_driving: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
-        Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner.
+        Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner,
+        and avoids no obstacles.
         The decisions before a standstill are kept for a teacher who rewinds.
         """
         if was_driving is not self._rewind.was_driving:
             self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
-        self._level.system.radius_share = self._asks_beyond_share if self._is_taught else 1.0
+        taught = self._is_taught
+        self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
+        # A teacher is to see what the robot would do by its lessons alone.
+        self._level.avoids = not taught
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
+
+    def forget_obstacles(self) -> None:
+        """Forget the obstacles that the basic level remembers, because the robot was set down elsewhere."""
+        self._level.forget_obstacles()
 
     @property
     def _is_taught(self) -> bool:

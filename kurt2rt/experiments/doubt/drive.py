@@ -4,6 +4,7 @@ import random
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -26,26 +27,37 @@ _STUCK_S = 15.0
 _SETTLES_S = 1.0
 
 
+class DoubtResponse(StrEnum):
+    """Response of the robot to its doubt, without a teacher."""
+
+    TELLS = "only told"
+    AVOIDS = "avoids"
+    """It drives by the nearest RLA whose action meets no remembered obstacle."""
+    STANDS = "stands"
+
+
 @dataclass(frozen=True, slots=True)
 class DoubtSetup:
-    """World, seed and duration of one drive."""
+    """World, seed, duration and response of one drive."""
 
     world: str
     seed: int
     duration_s: float
-    stands: bool
-    """True if the robot stands at a doubt; False if it only tells the score."""
+    response: DoubtResponse
 
 
-def with_doubt(task: TaskSettings, *, stands: bool) -> TaskSettings:
-    """Return the task with a robot that stands at a doubt also without a teacher, or only tells its score.
+def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
+    """Return the task with a robot that responds so to its doubt also without a teacher.
 
     Raises hal.settings.SettingsError if the task sets no doubt.
     """
     doubt = task.learning.doubt
     if doubt is None:
         raise SettingsError("sets no doubt", where=f"task {task.name}: learning.doubt", do="give its scales there")
-    doubt = doubt.model_copy(update={"asks": stands, "alone": stands})
+    stands, contact = response is DoubtResponse.STANDS, doubt.contact
+    if contact is not None:
+        contact = contact.model_copy(update={"avoids": response is DoubtResponse.AVOIDS})
+    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "contact": contact})
     return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
 
 
@@ -71,7 +83,7 @@ async def drive(
         hal.settings.SettingsError: task and world do not fit, or the task sets no doubt.
         UnknownActionError, UnknownBehaviourError: the lessons name an action or behaviour that the task lacks.
     """
-    task = with_doubt(task, stands=setup.stands)
+    task = with_doubt(task, setup.response)
     with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:
         runtime = build_unattended_runtime(simulation, settings, task, events, Statistics())
         run = DoubtRun(simulation, runtime, setup, on_progress)
@@ -122,6 +134,7 @@ class DoubtRun(Episode):
         self._asked_ticks = self._asked_ticks + 1 if decision.asking else 0
         if self._asked_ticks >= self._unanswered or self.is_stuck(waiting=decision.asking):
             self.reposition()
+            self.runtime.reposition()
             self._asked_ticks = 0
             self._settled_at = record.tick + self._settles
 

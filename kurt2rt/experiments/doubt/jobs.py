@@ -1,6 +1,6 @@
-"""Jobs of the doubt study: one robot in one world, with doubt that is only told, and with doubt that stops it."""
+"""Jobs of the doubt study: one robot in one world, which tells its doubt, avoids what it remembers, or stands."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,10 +75,11 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     )
 
 
-def collision_table(told: Sequence[DriveLog], stands: Sequence[DriveLog]) -> Table:
-    """Return the collisions of drives with doubt that is only told, and with doubt that stops the robot."""
-    rows = []
-    for name, logs in (("only told", told), ("stands", stands)):
+def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]]) -> Table:
+    """Return the collisions of drives by the robot's response to its doubt; all have as many drives."""
+    rows, drives = [], 0
+    for name, logs in logs_by_response.items():
+        drives = len(logs)
         minutes = sum(len(log.doubt) for log in logs) / TICKS_PER_MINUTE
         driven = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
         count = sum(len(log.collisions) for log in logs)
@@ -92,7 +93,7 @@ def collision_table(told: Sequence[DriveLog], stands: Sequence[DriveLog]) -> Tab
             )
         )
     return Table(
-        title=f"Collisions without a teacher, {len(told)} drives each",
+        title=f"Collisions without a teacher, {drives} drives each",
         columns=("doubt", "collisions", "in 100 min", "in 100 driven min", "time driven"),
         rows=tuple(rows),
         note="A question that is not answered for 10 s sets the robot down at another start.",

@@ -17,7 +17,15 @@ from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, DoubtFacts, LessonFact, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import (
+    MOST_OTHERS,
+    ContactFacts,
+    DecisionFacts,
+    DoubtFacts,
+    LessonFact,
+    LevelFacts,
+    RlaFacts,
+)
 from kurt2rt.runtime import Runtime
 
 _PASSED_OVER = 12
@@ -101,12 +109,30 @@ def _doubt(runtime: Runtime, decision: Decision, vector: NDArray[np.float64]) ->
     meter, score, match = runtime.level.doubt, decision.doubt, decision.match
     if meter is None or score is None or match is None:
         return None
+    contact = _contact(runtime, _doubted_action(runtime, decision, match))
     new = runtime.level.new_obstacle(match, vector)
     if new is None:
-        return DoubtFacts(score, meter.settings.threshold)
+        return DoubtFacts(score, meter.settings.threshold, contact=contact)
     words, name = words_for(runtime.robot.infrared), runtime.definition.names[new.feature]
     reads, taught = words.reading(name, new.here), words.reading(name, new.taught)
-    return DoubtFacts(score, meter.settings.threshold, words.place(name), reads, taught)
+    return DoubtFacts(score, meter.settings.threshold, words.place(name), reads, taught, contact)
+
+
+def _doubted_action(runtime: Runtime, decision: Decision, match: Match) -> str:
+    """Return the action that drives, or that would drive if the robot did not doubt it."""
+    if decision.cause is DecisionCause.AVOIDS or decision.action is None:
+        return runtime.level.held_action or match.rla.action
+    return decision.action
+
+
+def _contact(runtime: Runtime, action: str) -> ContactFacts | None:
+    """Return the remembered obstacle that an action would meet; None without one."""
+    meter = runtime.level.doubt
+    found = None if meter is None or meter.memory is None else meter.memory.contact(action)
+    if found is None:
+        return None
+    sensor = runtime.robot.infrared.sensors[found.sensor]
+    return ContactFacts(action, found.within_s, f"{sensor.label} ({sensor.name})", found.seen_s)
 
 
 def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:

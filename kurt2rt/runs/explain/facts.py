@@ -120,6 +120,19 @@ class LevelFacts:
 
 
 @dataclass(frozen=True, slots=True)
+class ContactFacts:
+    """Remembered obstacle that an action would meet."""
+
+    action: str
+    within_s: float
+    """Time until the outline would meet the obstacle."""
+    sensor: str
+    """Position and name of the sensor that saw the obstacle, such as `front left (s9)`."""
+    seen_s: float
+    """Age of that look, in s of driving."""
+
+
+@dataclass(frozen=True, slots=True)
 class DoubtFacts:
     """Doubt about the action of the nearest RLA, and the sensor that causes most of it."""
 
@@ -132,6 +145,8 @@ class DoubtFacts:
     """Its reading in words, such as 13 cm."""
     taught: str = ""
     """Reading that all such lessons but at most one reach or stay beyond, in words."""
+    contact: ContactFacts | None = None
+    """Remembered obstacle that the action would meet; None without one."""
 
 
 @dataclass(frozen=True, slots=True)

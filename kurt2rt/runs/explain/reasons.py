@@ -6,7 +6,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
 from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
+from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
 
 _STANDS = {
@@ -65,6 +65,8 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
         lines += [*_rla_drives(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.HELD:
         lines += [*_held(facts.basic), *_doubts_a_little(facts.doubt)]
+    elif facts.cause == DecisionCause.AVOIDS:
+        lines += _avoids(facts.basic, facts.doubt)
     elif facts.cause == DecisionCause.DOUBT:
         lines += _doubts(facts.basic, facts.doubt)
     elif facts.cause == DecisionCause.TEACHER:
@@ -154,6 +156,22 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
     ]
 
 
+def _avoids(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
+    leader, driver = level.leader, level.driver
+    if leader is None or driver is None or doubt is None or doubt.contact is None:
+        return ["The nearest RLA's action would meet an obstacle, so another RLA drives."]
+    return [
+        f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {_format_contact(doubt.contact)}.",
+        f"{format_rla(driver)} is the nearest whose action meets nothing, at {format_nearness(driver)}, so it drives.",
+    ]
+
+
+def _format_contact(contact: ContactFacts) -> str:
+    return (
+        f"{contact.action} would meet in {contact.within_s:.1f} s what {contact.sensor} saw {contact.seen_s:.1f} s ago"
+    )
+
+
 def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
     if doubt is None or doubt.score < _TOLD_DOUBT:
         return []
@@ -161,6 +179,8 @@ def _doubts_a_little(doubt: DoubtFacts | None) -> list[str]:
 
 
 def _why_doubt(doubt: DoubtFacts) -> str:
+    if doubt.contact is not None:
+        return _format_contact(doubt.contact)
     if not doubt.sensor:
         return "the situation is farther from the lesson than usual"
     return f"{doubt.sensor} sees {doubt.reads}, and lessons to drive on reach {doubt.taught}"

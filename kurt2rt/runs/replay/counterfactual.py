@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.decision import BY_RLA, DecisionCause
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.replay.counterfactual_policy import (
@@ -17,7 +17,7 @@ from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
-_DECIDES = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN, DecisionCause.DOUBT})
+_DECIDES = BY_RLA | {DecisionCause.UNKNOWN, DecisionCause.DOUBT}
 """Causes in which knowledge decides, also where the robot doubts it.
 
 In any other the robot stands for another reason, or a teacher drives.

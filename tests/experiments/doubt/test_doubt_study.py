@@ -8,7 +8,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.doubt.drive import DoubtSetup, with_doubt
+from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
 from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
 from kurt2rt.experiments.doubt.measures import (
     DriveLog,
@@ -81,24 +81,24 @@ def test_tables_have_doubt_and_its_control() -> None:
     first, second = score_table(told, 5.0).rows
     assert (first[0], first[2:]) == ("doubt", ("1 of 1", "4.00", "0.00"))
     assert second[0] == "distance / R"
-    rows = collision_table(told, [log(pulses())]).rows
+    rows = collision_table({"only told": told, "stands": [log(pulses())]}).rows
     assert [row[:3] for row in rows] == [("only told", "1", "200.0"), ("stands", "0", "0.0")]
 
 
 def test_task_without_doubt_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"fleeing\b.*\bdoubt"):
-        with_doubt(load_task("fleeing"), stands=True)
+        with_doubt(load_task("fleeing"), DoubtResponse.STANDS)
 
 
 @pytest.mark.deep  # a lesson and two drives in the simulator
-def test_robot_that_stands_at_a_doubt_collides_no_more_often(tmp_path: Path) -> None:
+def test_robot_that_stands_or_avoids_collides_no_more_often(tmp_path: Path) -> None:
     task = load_task("wall_following")
     knowledge = teach(tmp_path / "taught.knowledge", task, seed=3).knowledge
-    told, stands = (
-        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, stands)).run(lambda _: None)
-        for stands in (False, True)
+    told, avoids, stands = (
+        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response)).run(lambda _: None)
+        for response in DoubtResponse
     )
-    assert len(told.doubt) == len(stands.doubt) == 6000
+    assert len(told.doubt) == len(avoids.doubt) == len(stands.doubt) == 6000
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
-    assert len(stands.collisions) <= len(told.collisions)
+    assert max(len(stands.collisions), len(avoids.collisions)) <= len(told.collisions)

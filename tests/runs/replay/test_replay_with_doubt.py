@@ -3,9 +3,11 @@
 from pathlib import Path
 
 from hal.simulation import Pose
+from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import Resume, Teach, Watch
+from kurt2rt.core.teaching.commands import Resume, SetPhase, Teach, Watch
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.reasons import format_reasons
@@ -30,7 +32,7 @@ def drives_to_a_wall(scene: Scene, record: TickRecord) -> None:
 
 
 def test_run_with_doubts_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
-    task = load_task("wall_following", changes={"learning.doubt.asks": "true"})
+    task = load_task("wall_following", changes={"learning.doubt.asks": "true", "learning.doubt.threshold": "2.8"})
     run = read_run(record_story("walls", tmp_path, seconds=7, other=drives_to_a_wall, task=task))
     causes, actions, sensors = [], set[str | None](), set[str]()
     replay = Replay(run)
@@ -47,3 +49,42 @@ def test_run_with_doubts_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -
     assert causes.count(DecisionCause.DOUBT) >= 200
     assert actions == {None, "forward", "spin_right"}
     assert any(sensors)  # an obstacle ahead, not a far lesson alone
+
+
+def drives_to_a_wall_alone(scene: Scene, record: TickRecord) -> None:
+    """Teach forward far from walls and a turn with a wall on the right; then drive to a wall in phase 3."""
+    inbox, tick = scene.runtime.inbox, record.tick
+    if tick == 1:
+        scene.simulation.put(Pose(2.0, 2.0, 0.0))
+        inbox.put(Resume("go", NAME))
+    inbox.put(Watch(NAME, tick))
+    if tick in (20, 40):
+        inbox.put(Teach(f"t{tick}", NAME, "forward"))
+    if tick == 50:
+        scene.simulation.put(Pose(2.0, 0.30, 0.0))
+    if tick == 60:
+        inbox.put(Teach("turn", NAME, "spin_right"))
+    if tick == 70:
+        scene.simulation.put(Pose(2.0, 2.0, 0.0))
+        scene.runtime.reposition()
+        inbox.put(SetPhase("alone", NAME, Phase.REINFORCEMENT))
+
+
+def test_run_that_avoids_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
+    contact = "{memory_s: 2.0, within_s: 1.0, free_s: 1.0, farthest_m: 0.45, margin_m: 0.005}"
+    task = load_task("wall_following", changes={"learning.doubt.contact": contact, "learning.radius": "2000"})
+    run = read_run(record_story("walls", tmp_path, seconds=9, other=drives_to_a_wall_alone, task=task))
+    explained = set[str]()
+    replay = Replay(run)
+    for entry, record in replay:
+        assert compare(entry, record) == []
+        if entry.decision.cause is DecisionCause.AVOIDS:
+            assert entry.decision.action == "spin_right"
+            facts = collect_facts(replay.runtime, record, lambda _: "")
+            assert facts.doubt is not None
+            assert facts.doubt.contact is not None
+            assert facts.doubt.contact.action == "forward"
+            explained.add(facts.doubt.contact.sensor)
+            assert facts_of_plain(plain_of_facts(facts)) == facts
+            assert len(format_reasons(facts)) == 2
+    assert any("front" in sensor for sensor in explained)

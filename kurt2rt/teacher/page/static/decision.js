@@ -44,6 +44,8 @@ export function sentence(state) {
       return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
     case "held":
       return `RLA ${state.rla} keeps ${words(state.action)} for its shortest time; RLA ${state.nearest} is nearest now`;
+    case "avoids":
+      return `RLA ${state.rla} does ${words(state.action)}; RLA ${state.nearest} is nearest, but would meet an obstacle`;
     case "teacher":
       return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`

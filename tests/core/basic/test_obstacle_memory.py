@@ -1,0 +1,215 @@
+"""Memory of obstacles: what it keeps, forgets and foresees, and the level that avoids what it remembers."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from behaviors.motor_primitive import MotorPrimitive
+from hal.robot import SensorReadings, WheelSpeeds
+from hal.robot_settings import load_robot
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead, set_points
+from kurt2rt.core.basic.obstacle_memory import LOOK_TICKS, ContactSettings, ObstacleMemory
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from tests.core.helpers import sensed
+from tests.core.rla.helpers import created
+
+ROBOT = load_robot()
+SENSORS = ROBOT.infrared.names
+SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0)
+REPERTOIRE = {
+    "forward": MotorPrimitive(WheelSpeeds(0.3, 0.3)),
+    "spin": MotorPrimitive(WheelSpeeds(0.3, -0.3)),
+    "back": MotorPrimitive(WheelSpeeds(-0.15, -0.15)),
+}
+ACTIONS = set_points(REPERTOIRE)
+NOTHING = ROBOT.infrared.floor_counts
+PERIOD_S = ROBOT.can.cycle_s
+
+
+def readings(*, way_m: float = 0.0, **near_m: float) -> SensorReadings:
+    """Return readings with obstacles at these distances from the named sensors, after driving straight on."""
+    counts = [NOTHING] * len(SENSORS)
+    for name, distance_m in near_m.items():
+        counts[SENSORS.index(name)] = round(ROBOT.infrared.counts_at(distance_m))
+    ticks = round(way_m / ROBOT.geometry.metres_per_tick)
+    return sensed()._replace(infrared_counts=tuple(counts), encoder_left_ticks=ticks, encoder_right_ticks=ticks)
+
+
+def look(memory: ObstacleMemory, *, way_m: float = 0.0, **near_m: float) -> None:
+    """Let the robot drive the way, in m, until its next look, and see these obstacles there."""
+    for _ in range(LOOK_TICKS - 1):
+        memory.update(readings())
+    memory.update(readings(way_m=way_m, **near_m))
+
+
+def memory_of(settings: ContactSettings = SETTINGS) -> ObstacleMemory:
+    return ObstacleMemory(settings, ROBOT, ACTIONS)
+
+
+def test_obstacle_ahead_is_met_by_an_action_that_drives_there() -> None:
+    memory = memory_of()
+    assert not memory.meets("forward")
+    look(memory, s11=0.15)
+    assert not memory.meets("forward")  # 12 cm in 0.4 s
+    assert memory.meets("forward", avoiding=True)
+    look(memory, way_m=0.07, s11=0.10)
+    assert memory.meets("forward")
+    assert not memory.meets("back", avoiding=True)
+
+
+def test_obstacle_between_two_beams_is_remembered() -> None:
+    memory = memory_of()
+    look(memory, s9=0.12)
+    look(memory, way_m=0.05)  # nothing in view by now
+    contact = memory.contact("forward")
+    assert contact is not None
+    assert SENSORS[contact.sensor] == "s9"
+    assert contact.seen_s == pytest.approx(LOOK_TICKS * PERIOD_S)
+    assert contact.within_s == pytest.approx(0.3)
+    assert memory.meets("forward")
+
+
+def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
+    memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02}))
+    look(memory, s1=0.10)
+    assert not memory.meets("spin", avoiding=True)
+    look(memory, way_m=0.16)
+    assert memory.meets("spin", avoiding=True)
+    assert not memory.meets("forward", avoiding=True)
+
+
+def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
+    memory = memory_of(SETTINGS.model_copy(update={"memory_s": 0.2}))
+    look(memory, s11=0.10)
+    looks = []
+    for _ in range(4):
+        look(memory, way_m=0.001)
+        looks.append(memory.meets("forward", avoiding=True))
+    assert looks == [True, True, True, False]
+
+
+def test_standing_robot_forgets_nothing_until_it_is_told() -> None:
+    memory = memory_of()
+    look(memory, way_m=0.01, s11=0.10)
+    look(memory, way_m=0.01)
+    for _ in range(100):
+        look(memory)
+    assert memory.meets("forward", avoiding=True)
+    memory.clear()
+    assert not memory.meets("forward", avoiding=True)
+    assert memory.contact("forward") is None
+
+
+def test_far_readings_and_unknown_actions_meet_nothing() -> None:
+    memory = memory_of(SETTINGS.model_copy(update={"farthest_m": 0.12}))
+    look(memory, s11=0.14)
+    assert not memory.meets("forward", avoiding=True)
+    look(memory, s11=0.10)
+    assert memory.meets("forward", avoiding=True)
+    assert (memory.meets("dance"), memory.is_free("dance", avoiding=False)) == (False, False)
+    assert memory.contact("dance") is None
+
+
+def test_free_time_below_the_time_to_contact_is_refused() -> None:
+    with pytest.raises(ValidationError, match="free_s must be at least within_s"):
+        ContactSettings(memory_s=2.0, within_s=0.3, free_s=0.2, farthest_m=0.45, margin_m=0.0)
+
+
+class Avoider:
+    """A basic level over two readings that remembers obstacles, and one tick in a call."""
+
+    def __init__(self, *events: TeachingEvent, contact: ContactSettings = SETTINGS, asks: bool = False) -> None:
+        system = RlaSystem(2, 1000.0)
+        system.apply_all(events)
+        settings = DoubtSettings(
+            usual_distance=0.1,
+            rare_distance=0.5,
+            rare_counts=50.0,
+            threshold=2.0,
+            asks=asks,
+            alone=asks,
+            contact=contact,
+        )
+        self.memory = ObstacleMemory(contact, ROBOT, ACTIONS)
+        meter = DoubtMeter(system, settings, (1,), actions_ahead(REPERTOIRE), self.memory)
+        self.level = BasicLevel(system, REPERTOIRE, 10, ActiveBehaviour(("",)), doubt=meter)
+        self.level.avoids = self.level.skip_withdrawn = True
+
+    def at(self, seen: SensorReadings, side: float = 200.0) -> Decision:
+        return self.level.decide(Situation(np.array([side, 70.0]), history_frozen=False), seen, None)
+
+    def after_a_look(self, side: float = 200.0) -> Decision:
+        """Return the decision once the robot has seen an obstacle close ahead."""
+        return [self.at(readings(s11=0.10), side) for _ in range(LOOK_TICKS)][-1]
+
+
+LESSONS = (
+    created(1, (100.0, 70.0), "forward"),
+    created(2, (400.0, 70.0), "spin"),
+    created(3, (500.0, 70.0), "back"),
+)
+
+
+def test_avoiding_robot_drives_by_the_nearest_free_rla() -> None:
+    avoider = Avoider(*LESSONS)
+    before = [avoider.at(readings()) for _ in range(LOOK_TICKS)][-1]
+    assert (before.cause, before.action) == (DecisionCause.RLA, "forward")
+    decision = avoider.after_a_look()
+    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
+    assert decision.wheel_speeds == WheelSpeeds(0.3, -0.3)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 1
+    assert not decision.answers
+    assert decision.doubt == pytest.approx(2.0)
+    held = avoider.at(readings(s11=0.10))
+    assert (held.cause, held.action) == (DecisionCause.HELD, "spin")
+
+
+def test_robot_that_avoids_looks_farther_before_it_drives_on() -> None:
+    avoider = Avoider(*LESSONS)
+    assert avoider.after_a_look().cause is DecisionCause.AVOIDS
+    avoider.memory.clear()
+    # 15 cm ahead: met in 0.6 s, not in 0.4 s.
+    causes = [avoider.at(readings(s11=0.15)).cause for _ in range(12)]
+    assert causes == [DecisionCause.HELD] * 9 + [DecisionCause.AVOIDS] + [DecisionCause.HELD] * 2
+    avoider.memory.clear()
+    assert {avoider.at(readings()).action for _ in range(20)} == {"spin", "forward"}
+
+
+@pytest.mark.parametrize("lessons", [LESSONS[:1], (*LESSONS[:1], created(2, (400.0, 70.0)))])
+def test_robot_without_a_free_action_drives_by_the_nearest(lessons: tuple[TeachingEvent, ...]) -> None:
+    decision = Avoider(*lessons).after_a_look()
+    assert (decision.cause, decision.action) == (DecisionCause.RLA, "forward")
+    assert decision.doubt == pytest.approx(2.0)
+
+
+def test_lesson_about_this_very_situation_is_followed() -> None:
+    decision = Avoider(*LESSONS).after_a_look(side=110.0)
+    assert (decision.cause, decision.action, decision.doubt) == (DecisionCause.RLA, "forward", 0.0)
+
+
+def test_taught_robot_and_one_that_only_tells_do_not_avoid() -> None:
+    taught = Avoider(*LESSONS)
+    taught.level.avoids = False
+    only_tells = Avoider(*LESSONS, contact=SETTINGS.model_copy(update={"avoids": False}))
+    for avoider in (taught, only_tells):
+        decision = avoider.after_a_look()
+        assert (decision.cause, decision.action) == (DecisionCause.RLA, "forward")
+        assert decision.doubt == pytest.approx(2.0)
+
+
+def test_robot_that_asks_stands_instead() -> None:
+    decision = Avoider(*LESSONS, asks=True).after_a_look()
+    assert decision.cause is DecisionCause.DOUBT
+
+
+def test_restarted_level_remembers_no_obstacle() -> None:
+    avoider = Avoider(*LESSONS)
+    avoider.after_a_look()
+    avoider.level.restart()
+    assert not avoider.memory.meets("forward", avoiding=True)
