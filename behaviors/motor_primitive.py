@@ -13,11 +13,6 @@ class MotorPrimitive:
         self.wheel_speeds = wheel_speeds
 
     @property
-    def wheel_speeds(self) -> WheelSpeeds:
-        """Return the fixed set points in m/s."""
-        return self._wheel_speeds
-
-    @property
     def forward_m_s(self) -> float:
         """Return the speed of the robot's centre in m/s; negative when it backs."""
         return (self.wheel_speeds.left_m_s + self.wheel_speeds.right_m_s) / 2
