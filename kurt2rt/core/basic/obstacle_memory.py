@@ -39,7 +39,7 @@ class ContactSettings(Settings):
     """Distance from a sensor up to which a reading is an obstacle."""
     margin_m: Annotated[float, Field(ge=0, le=0.1)]
     """Distance from the outline at which an obstacle is met."""
-    avoids: bool = True
+    avoids: bool = False
     """Drive by the nearest RLA whose action meets no obstacle, except while the robot is taught; False only tells."""
 
     @model_validator(mode="after")

@@ -41,6 +41,8 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
     doubt = task.learning.doubt
     if task.course.kind not in _COURSES:
         raise _refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
+    if doubt is not None and doubt.contact is not None and doubt.contact.avoids:
+        raise _refused(task, "a robot that avoids obstacles that it remembers")
     if doubt is not None and doubt.asks and doubt.alone:
         raise _refused(task, "a robot that stands at a doubt without a teacher")
     if task.mid is not None and not all(setup.teacher_policy for setup in setups):

@@ -71,7 +71,7 @@ def drives_to_a_wall_alone(scene: Scene, record: TickRecord) -> None:
 
 
 def test_run_that_avoids_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
-    contact = "{memory_s: 2.0, within_s: 1.0, free_s: 1.0, farthest_m: 0.45, margin_m: 0.005}"
+    contact = "{memory_s: 2.0, within_s: 1.0, free_s: 1.0, farthest_m: 0.45, margin_m: 0.005, avoids: true}"
     task = load_task("wall_following", changes={"learning.doubt.contact": contact, "learning.radius": "2000"})
     run = read_run(record_story("walls", tmp_path, seconds=9, other=drives_to_a_wall_alone, task=task))
     explained = set[str]()
