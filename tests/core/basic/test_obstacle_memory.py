@@ -20,7 +20,7 @@ from tests.core.rla.helpers import created
 
 ROBOT = load_robot()
 SENSORS = ROBOT.infrared.names
-SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0)
+SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0, avoids=True)
 REPERTOIRE = {
     "forward": MotorPrimitive(WheelSpeeds(0.3, 0.3)),
     "spin": MotorPrimitive(WheelSpeeds(0.3, -0.3)),
