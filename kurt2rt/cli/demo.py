@@ -23,7 +23,7 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_settings import load_task, load_teacher_of, taught_by
+from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
@@ -70,7 +70,7 @@ def demo(options: _Options) -> None:
 
     settings = load_robot(options.robot_settings)
     task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
-    taught = taught_by(task, load_teacher_of(task, options.teacher))
+    taught = taught_by_named(task, options.teacher)
     stage = Kurt2SimulationFactory(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)

@@ -19,7 +19,7 @@ from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, task_option, teacher_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.programs import AUTO, PROGRAMS
-from kurt2rt.core.task_settings import load_task, load_teacher_of, taught_by
+from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
@@ -247,7 +247,6 @@ async def _by_script(
     instead = "run the robot on another file, or let kurt2rt run --auto do so"
     if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):
         return
-    task = load_task(arguments.task or service.task)
-    task = taught_by(task, load_teacher_of(task, arguments.teacher))
+    task = taught_by_named(load_task(arguments.task or service.task), arguments.teacher)
     robot = load_robot(service.robot)
     await teach_by_script(client, robot, task, print_line, seed=arguments.seed)

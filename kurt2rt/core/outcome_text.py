@@ -1,6 +1,6 @@
 """Texts of outcomes on each surface."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from string import Formatter
 
@@ -209,6 +209,11 @@ def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     return text + _late_press_text(outcome.fields) + _contradiction_text(outcome.fields)
 
 
+def neighbours_text(actions: Sequence[str], nearest: int) -> str:
+    """Return what the neighbours of a contradicting RLA say: their actions, and the id of the nearest of them."""
+    return f"all near it say {', '.join(actions)} (RLA {nearest} first)"
+
+
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
     return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
@@ -231,7 +236,7 @@ def _contradiction_text(fields: Mapping[str, Field]) -> str:
     actions, nearest = fields.get("against"), fields.get("nearest")
     if not isinstance(actions, tuple) or not isinstance(nearest, int):
         return ""
-    return f"; all near it say {', '.join(actions)} (RLA {nearest} first): undo it if your finger slipped"
+    return f"; {neighbours_text(actions, nearest)}: undo it if your finger slipped"
 
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:

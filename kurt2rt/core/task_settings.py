@@ -272,13 +272,13 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
     return task.model_copy(update={"learning": task.plain}) if plain else task
 
 
-def load_teacher_of(task: TaskSettings, name_or_path: str | None) -> TeacherProfile:
-    """Load the profile of a teacher by name or path; None: the default teacher of the task.
+def taught_by_named(task: TaskSettings, name_or_path: str | None) -> TaskSettings:
+    """Return a copy of the task that a teacher by name or path teaches; None: its default teacher.
 
     Raises:
         hal.settings.SettingsError: for a missing or invalid file.
     """
-    return load_teacher(name_or_path or task.teaching.default_teacher)
+    return taught_by(task, load_teacher(name_or_path or task.teaching.default_teacher))
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:

@@ -441,18 +441,21 @@ class Tick:
             return CommandResult(command.command_id, Outcome(RefusalCode.BLIND)), ()
         result, events = self._handler.handle(command, view.situation, tick)
         if new and result.accepted:
-            if isinstance(command, Resume) and self._sensor_watch is not None:
-                self._sensor_watch.readmit()
-            if isinstance(command, Resume):
-                # The person who says Go may have carried the robot away from what it touched.
-                self._handler.forget_obstacles()
             # A late copy of a resume does not end a new emergency stop.
-            if isinstance(command, Resume) and self._latched:
-                self._robot.release()
-                self._latched = False
+            if isinstance(command, Resume):
+                self._on_resume()
             elif isinstance(command, BeAt):
                 self._reset_transitions()
         return result, events
+
+    def _on_resume(self) -> None:
+        if self._sensor_watch is not None:
+            self._sensor_watch.readmit()
+        # The person who says Go may have carried the robot away from what it touched.
+        self._handler.forget_obstacles()
+        if self._latched:
+            self._robot.release()
+            self._latched = False
 
     def _reset_transitions(self) -> None:
         """Forget the predecessor: count no transition into the next RLA."""

@@ -3,14 +3,20 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.limits import LARGEST_NUMBER, LONGEST_TEXT, MOST_LESSONS, MOST_SITUATIONS
+from kurt2rt.channel.protocol.limits import (
+    LARGEST_NUMBER,
+    LONGEST_TEXT,
+    MOST_CONTRADICTIONS,
+    MOST_LESSONS,
+    MOST_SITUATIONS,
+)
 from kurt2rt.channel.protocol.schema import Flag, Int, ManyOf, Row, Text, WireError
 
 _LINES = ManyOf(
     Row((Text(128), Text(512), Text(128), Int(1, 5), Int(0, LARGEST_NUMBER), Text(64), Flag())),
     most=MOST_LESSONS,
 )
-_MOST_AGAINST, _MOST_ACTIONS = 16, 8
+_MOST_ACTIONS = 8
 _AGAINST = ManyOf(
     Row(
         (
@@ -22,7 +28,7 @@ _AGAINST = ManyOf(
             ManyOf(Text(LONGEST_TEXT), most=_MOST_ACTIONS),
         )
     ),
-    most=_MOST_AGAINST,
+    most=MOST_CONTRADICTIONS,
 )
 _SITUATIONS = ManyOf(Text(LONGEST_TEXT, least=1), most=MOST_SITUATIONS)
 

@@ -17,6 +17,8 @@ LONGEST_BEHAVIOUR_TICKS = 60_000
 LARGEST_NUMBER = 2**53
 """Largest tick, sequence number or RLA: the largest integer that every language holds exactly."""
 MOST_LESSONS = 20
+MOST_CONTRADICTIONS = 16
+"""Lessons whose neighbours the robot looks at for a list: its next tick waits for it."""
 MOST_GOAL_FEATURES = 16
 MOST_SITUATIONS = 250
 """Most names in an answer: 250 of the longest fit."""

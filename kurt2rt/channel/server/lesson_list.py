@@ -2,14 +2,12 @@
 
 from collections.abc import Callable, Iterator, Mapping
 
+from kurt2rt.channel.protocol.limits import MOST_CONTRADICTIONS
 from kurt2rt.core.outcome import Field
 from kurt2rt.core.rla.contradiction import Contradiction, find_contradiction
 from kurt2rt.core.rla.events import ActionReplaced, RlaCreated
 from kurt2rt.core.rla.lesson_history import LessonRecord, hold_of, hold_text, rla_id_of
 from kurt2rt.core.rla.rla_system import RlaSystem
-
-_MOST_LOOKED_AT = 16
-"""Newest lessons whose neighbours are looked at for a list: the robot's next tick waits for it."""
 
 
 class LessonList:
@@ -34,15 +32,16 @@ class LessonList:
         """
         rows: list[list[object]] = []
         against: list[list[object]] = []
-        left = _MOST_LOOKED_AT
+        left = MOST_CONTRADICTIONS
         for command_id, text, records in self._newest(count):
             origin = records[0].event.origin
             stamp = self._stamp_of(origin.command_id)
             undone = all(each.undone for each in records)
             rows.append([command_id, text, origin.teacher, int(origin.phase), origin.tick, stamp, undone])
-            found = (self.contradiction_of(each.event.origin.command_id) for each in records[:left])
+            looked_at = records[:left]
+            left -= len(looked_at)
+            found = (self.contradiction_of(each.event.origin.command_id) for each in looked_at)
             against += [_row(command_id, each) for each in found if each is not None]
-            left -= len(records[:left])
         return {"lessons": rows, "against": against} if against else {"lessons": rows}
 
     def fields_of(self, command_id: str) -> dict[str, Field]:

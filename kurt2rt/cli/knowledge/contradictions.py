@@ -5,6 +5,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
+from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.rla.contradiction import NEIGHBOURS, Contradiction, find_contradiction
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.files.task_of_file import task_of_file
@@ -42,11 +43,9 @@ def contradictions(
 
 
 def _line(found: Contradiction) -> str:
-    rla, nearest = found.rla, found.neighbours[0]
-    return (
-        f"{rla.title}: {rla.action}, by {rla.origin.teacher}, lesson {rla.origin.command_id}; "
-        f"all near it say {', '.join(found.actions)} (RLA {nearest.rla_id} first)"
-    )
+    rla = found.rla
+    near = neighbours_text(found.actions, found.neighbours[0].rla_id)
+    return f"{rla.title}: {rla.action}, by {rla.origin.teacher}, lesson {rla.origin.command_id}; {near}"
 
 
 def _as_data(found: Contradiction) -> dict[str, object]:

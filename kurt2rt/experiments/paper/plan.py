@@ -7,7 +7,7 @@ from pathlib import Path
 from hal.settings import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.phase_settings import PHASES
-from kurt2rt.core.task_settings import TaskSettings, load_task, load_teacher_of, taught_by
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.jobs import GrowthJob, TaughtJob, with_radius_only
@@ -102,7 +102,7 @@ def make_plan(
     chosen = _chosen(paper, extent, tasks)
     _require_tasks(chosen, factory)
     taught = [
-        (each, reading, _taught(extent.task(load_task(each.task, plain=reading == "plain")), paper))
+        (each, reading, taught_by_named(extent.task(load_task(each.task, plain=reading == "plain")), paper.teacher))
         for reading in readings
         for each in chosen
     ]
@@ -160,10 +160,6 @@ def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[
         asked = {_file_of(name): ExperimentSettings(task=name, title=Path(name).stem) for name in tasks}
         return [known.get(file, own) for file, own in asked.items()]
     return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
-
-
-def _taught(task: TaskSettings, paper: PaperSettings) -> TaskSettings:
-    return taught_by(task, load_teacher_of(task, paper.teacher))
 
 
 def _require_tasks(chosen: Sequence[ExperimentSettings], factory: SimulationFactory) -> None:

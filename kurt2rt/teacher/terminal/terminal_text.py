@@ -10,6 +10,7 @@ from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, question_text, standing_headline
+from kurt2rt.core.outcome_text import neighbours_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
 from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
@@ -196,8 +197,7 @@ def lesson_lines(lesson: LessonLine) -> list[str]:
     return [
         f"{lesson.command_id}  {lesson.text}{', undone' if lesson.undone else ''}",
         *(
-            f"  {each.command_id}  RLA {each.rla} says {each.action}; all near it say {', '.join(each.actions)} "
-            f"(RLA {each.nearest} first)"
+            f"  {each.command_id}  RLA {each.rla} says {each.action}; {neighbours_text(each.actions, each.nearest)}"
             for each in lesson.against
         ),
     ]
