@@ -475,10 +475,7 @@ class Tick:
             if because is not _TEACHER:
                 return idle_decision
             name, wheel_speeds = authority.step(readings)
-            press = authority.driving_press
-            if press is not None:
-                behaviour = handler.active_behaviour.behaviour
-                handler.demonstration.update(tick, press, readings, wheel_speeds, situation, behaviour)
+            handler.sample_manual_drive(tick, readings, wheel_speeds)
             return idle_decision._replace(wheel_speeds=wheel_speeds, action=name)
         decision = stopped(self._level.decide(situation, readings, cause), cause)
         if cause is _UNATTENDED and not (decision.match is not None and decision.match.known):

@@ -7,7 +7,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS, Drive, Stop, TeachShown, Undo
 from kurt2rt.core.teaching.demonstration import CAPACITY, Segment, nearest_action
-from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
+from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS, STEADY_TICKS
 from tests.core.test_tick import Corridor
 from tests.teacher.helpers import teach
 
@@ -48,7 +48,7 @@ def shown() -> Corridor:
 
 
 def test_drive_by_hand_is_published_as_segments_of_actions(shown: Corridor) -> None:
-    assert segments(shown) == (Segment("forward", 1, 60), Segment("back", 61, 60))
+    assert segments(shown) == (Segment("forward", 2, 60), Segment("back", 62, 60))
     assert taught(shown) == []
     assert shown.system.rlas == ()
 
@@ -61,13 +61,40 @@ def test_segments_are_not_published_while_the_press_lasts() -> None:
 
 def test_confirmed_segments_become_lessons(shown: Corridor) -> None:
     result = shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1))).results[0]
-    assert result.outcome == Outcome.of(ResultCode.DEMONSTRATION_TAUGHT, segments=2, situations=12, lesson="Ann-hold-7")
+    assert result.outcome == Outcome.of(ResultCode.DEMONSTRATION_TAUGHT, segments=2, situations=10, lesson="Ann-hold-7")
     for _ in range(12):
         shown.run(200)
     actions = [action for _, action in taught(shown)]
     assert set(actions) == {"forward", "back"}
     assert len(actions) < 12, "a situation with an agreeing RLA gives no lesson"
     assert all(each.startswith("Ann-hold-7/") for each, _ in taught(shown))
+
+
+def test_demonstration_is_about_what_the_hand_reacted_to() -> None:
+    corridor = Corridor()
+    corridor.run(100)
+    late = corridor.school.delay.hand_ticks("Ann", 1)
+    assert late > EVERY_TICKS
+    drive(corridor, 100, FORWARD, 100)
+    drive(corridor, late, FORWARD, 200)
+    drive(corridor, 100, BACK, 200)
+    release(corridor)
+    corridor.run(200, TeachShown("show-1", "Ann", 7, (0, 1)))
+    for _ in range(30):
+        corridor.run(200)
+    nearest = {counts: corridor.run(counts).decision.match for counts in (100, 200)}
+    assert {counts: match.rla.action for counts, match in nearest.items() if match} == {100: "forward", 200: "back"}
+    assert len(taught(corridor)) == 2, "no lesson names forward at 200 counts, where the hand was still late"
+
+
+def test_change_of_the_action_is_not_taught(shown: Corridor) -> None:
+    shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1)))
+    for _ in range(12):
+        shown.run(200)
+    ticks = [int(each.rpartition("/")[2]) for each, _ in taught(shown)]
+    change = 62
+    assert ticks
+    assert not any(change - STEADY_TICKS <= each < change + STEADY_TICKS for each in ticks)
 
 
 def test_only_the_confirmed_segments_are_taught(shown: Corridor) -> None:
@@ -127,7 +154,7 @@ def test_short_wobble_counts_as_the_action_before_it() -> None:
     for ticks, speeds in ((10, BACK), (100, FORWARD), (20, BACK), (100, FORWARD)):
         drive(corridor, ticks, speeds, 100)
     release(corridor)
-    assert segments(corridor) == (Segment("forward", 1, 230),)
+    assert segments(corridor) == (Segment("forward", 2, 230),)
 
 
 def test_long_drive_keeps_the_last_minute_and_its_last_segments() -> None:
@@ -137,7 +164,7 @@ def test_long_drive_keeps_the_last_minute_and_its_last_segments() -> None:
     release(corridor)
     published = segments(corridor)
     assert len(published) == MOST_SEGMENTS
-    assert published[-1].from_tick + published[-1].ticks == 60 * 150 + 1
+    assert published[-1].from_tick + published[-1].ticks == 60 * 150 + 2
     assert published[0].from_tick >= 60 * 150 - CAPACITY * EVERY_TICKS
 
 

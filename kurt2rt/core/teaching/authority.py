@@ -40,6 +40,8 @@ class ControlAuthority:
         self._press_ids: dict[str, int] = {}
         self._ended_press_ids: dict[str, int] = {}
         self._speeds: WheelSpeeds | None = None
+        self.drive_seen_tick = -1
+        """Tick of the state that the teacher saw when giving the newest speeds by hand; -1 before the first."""
         self._driven_until = -1
         self._behaviour: Behaviour | None = None
         self._behaviour_name = ""
@@ -129,6 +131,7 @@ class ControlAuthority:
         self._press_ids[command.teacher] = command.press_id
         self._behaviour = self.held_press = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
+        self.drive_seen_tick = command.seen_tick
         self._driven_until = self._lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeGuard
 
+from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Critic, Opinion
@@ -128,7 +129,7 @@ class CommandHandler:
         self._lessons = _lesson_builder(level, self.recent, self._rewind, insert_beyond_share, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
-        self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire)
+        self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
         self.stops = StopRecord()
         self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
         self._control = ControlCommands(level.repertoire, authority, self.stops, self.streams)
@@ -236,6 +237,13 @@ class CommandHandler:
     def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
         """Apply a message of a stream, in which only the newest counts; return a refusal, or None if applied."""
         return self.streams.handle(command, tick)
+
+    def sample_manual_drive(self, tick: int, readings: SensorReadings, speeds: WheelSpeeds) -> None:
+        """Sample speeds that the teacher drives by hand in this tick; an action that runs is no demonstration."""
+        press, authority = self.authority.driving_press, self.authority
+        if press is not None:
+            reacted = authority.drive_seen_tick - self.delay.hand_ticks(press[0], authority.speed)
+            self.demonstration.update(tick, press, readings, speeds, reacted)
 
     def teach_driven(self, tick: int) -> Sequence[TeachingEvent]:
         """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.

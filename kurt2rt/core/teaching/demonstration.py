@@ -14,14 +14,14 @@ from behaviors.repertoire import Repertoire
 from behaviors.turn_by_angle import TurnByAngle
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS
-from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
+from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS, STEADY_TICKS
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 
 CAPACITY = 600
@@ -50,6 +50,7 @@ class Segment(NamedTuple):
 class _Sample(NamedTuple):
     tick: int
     row: int
+    """Row of the situation that the hand reacted to."""
     action: str
     behaviour: str
 
@@ -57,21 +58,25 @@ class _Sample(NamedTuple):
 class Demonstration:
     """Record of the newest press of manual drive, in constant memory, and the lessons of its confirmed segments."""
 
-    def __init__(self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire) -> None:
+    def __init__(
+        self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire, recent: DecisionHistory
+    ) -> None:
         """Start without a demonstration.
 
         Args:
             lessons: builder of the lessons.
             system: RLAs that are taught.
             repertoire: actions that are compared with the driven speeds; used by nothing else meanwhile.
+            recent: situations of the last ticks.
         """
         self._lessons = lessons
         self._system = system
+        self._recent = recent
         self._repertoire = {name: each for name, each in repertoire.items() if isinstance(each, _SHOWABLE)}
         self._situations = np.full((CAPACITY, system.dimensions), np.nan)
         self._samples: deque[_Sample] = deque(maxlen=CAPACITY)
         self._count = 0
-        self._due = 0
+        self._began = self._due = 0
         self._last_tick = -1
         self._pending: deque[_Sample] = deque()
         self._lesson = ""
@@ -82,13 +87,7 @@ class Demonstration:
         self._segments: tuple[Segment, ...] | None = None
 
     def update(
-        self,
-        tick: int,
-        press: tuple[str, int],
-        readings: SensorReadings,
-        speeds: WheelSpeeds,
-        situation: Situation,
-        behaviour: str,
+        self, tick: int, press: tuple[str, int], readings: SensorReadings, speeds: WheelSpeeds, reacted: int
     ) -> None:
         """Sample a tick of manual drive.
 
@@ -97,22 +96,26 @@ class Demonstration:
             press: teacher and press id; a new one begins a new demonstration.
             readings: for the actions that depend on them.
             speeds: driven by the teacher.
-            situation: of the tick.
-            behaviour: active taught behaviour, which the lessons belong to.
+            reacted: tick of the situation that the teacher's hand reacted to.
         """
         if press != (self.teacher, self.press_id):
             self.teacher, self.press_id = press
             self._samples.clear()
             self._pending.clear()
-            self._count, self._due = 0, tick
+            self._count, self._began, self._due = 0, tick, tick
         self._last_tick = tick
         if tick < self._due:
+            return
+        # At first the hand reacts to the place where the robot stood.
+        meant = min(max(reacted, self._began), self._recent.newest)
+        if not self._recent.contains(meant) or not self._recent.has_situation(meant):
             return
         self._due = tick + EVERY_TICKS
         row = self._count % CAPACITY
         self._count += 1
-        self._situations[row] = situation.vector
-        self._samples.append(_Sample(tick, row, nearest_action(self._repertoire, readings, speeds), behaviour))
+        self._situations[row] = self._recent.situation(meant)
+        action = nearest_action(self._repertoire, readings, speeds)
+        self._samples.append(_Sample(tick, row, action, self._recent.behaviour(meant)))
         self._segments = None
 
     def segments(self, tick: int) -> tuple[Segment, ...]:
@@ -144,12 +147,9 @@ class Demonstration:
         indexes = sorted(set(chosen))
         if not indexes or not 0 <= indexes[0] <= indexes[-1] < len(segments):
             raise CommandRefusedError(RefusalCode.NO_SEGMENT, segments=len(segments))
-        spans = [segments[index] for index in indexes]
-        self._pending.extend(
-            each
-            for each in self._samples
-            if any(span.from_tick <= each.tick < span.from_tick + span.ticks for span in spans)
-        )
+        first, last = segments[0].from_tick, segments[-1].from_tick + segments[-1].ticks
+        spans = [_steady_span(segments[index], first, last) for index in indexes]
+        self._pending.extend(each for each in self._samples if any(each.tick in span for span in spans))
         self._lesson = self._system.unused_hold_id(hold_id(self.teacher, press_id))
         self._origin = origin
         self.press_id = None
@@ -180,6 +180,15 @@ class Demonstration:
             if event is not None:
                 return event
         return None
+
+
+def _steady_span(segment: Segment, first: int, last: int) -> range:
+    """Return the ticks of a segment without those near a change of the action, as in a hold.
+
+    `first`, `last`: ends of the whole demonstration in ticks, where the action does not change.
+    """
+    begin, end = segment.from_tick, segment.from_tick + segment.ticks
+    return range(begin + STEADY_TICKS * (begin > first), end - STEADY_TICKS * (end < last))
 
 
 def nearest_action(repertoire: Repertoire, readings: SensorReadings, speeds: WheelSpeeds) -> str:

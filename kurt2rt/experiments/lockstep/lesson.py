@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 
 from behaviors.metrics.task_metric import Metrics
+from behaviors.primitives import primitive_speeds
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Position, Simulation
@@ -22,7 +23,6 @@ from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.compatibility import route_of
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
-from kurt2rt.experiments.lockstep.primitives import primitives
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
@@ -275,7 +275,8 @@ class TrainingRun(Episode):
 
     def _send_lessons(self, record: TickRecord) -> None:
         """Send the teacher's and the dispatcher's commands, and resume a second after the guard latched."""
-        for command in self._teacher.on_tick(record, touching=self.simulation.touching):
+        segments = len(self.runtime.handler.demonstration.segments(record.tick))
+        for command in self._teacher.on_tick(record, touching=self.simulation.touching, segments=segments):
             self._send_lesson(command, record.tick)
             if isinstance(command, Resume) and record.guard_result.latched:  # the action shown ended in an alarm
                 self._count_alarm(record.tick)
@@ -360,9 +361,8 @@ def _teacher_of(
     # The first opinion of each value is used.
     named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if rewards else {}
     answering = build_teacher(task, settings, actions, seed=seed, session=session)
-    return ScriptedAppraiser(
-        answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives(task.repertoire)
-    )
+    primitives = tuple(primitive_speeds(task.repertoire))
+    return ScriptedAppraiser(answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives)
 
 
 def _reward_source(plan: LessonPlan, task: TaskSettings, period_s: float, seed: int) -> RewardSource | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
 
+from behaviors.primitives import primitive_speeds
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import Phase
@@ -14,7 +15,6 @@ from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.primitives import primitives
 from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.exams import Examiner
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome
@@ -187,9 +187,8 @@ class StepJob(PhasesJob):
             system = fold_journal(journal, radius=self.task.learning.radius)
         lessons: list[TeachingEvent] = []
         if self.of.corrupted:
-            lessons += corrupt(
-                system.rlas, primitives(self.task.repertoire), self.of.corrupted, self.seed, self.of.mistakes
-            )
+            primitives = tuple(primitive_speeds(self.task.repertoire))
+            lessons += corrupt(system.rlas, primitives, self.of.corrupted, self.seed, self.of.mistakes)
         if self.of.critic != "own":
             lessons += self._critics()
         self._add(knowledge, lessons)

@@ -30,6 +30,8 @@ class TeacherView(NamedTuple):
     """Tick of the state."""
     touching: bool = False
     """The robot touches something."""
+    segments: int = 0
+    """Number of segments of the newest drive by hand that can be taught."""
 
 
 def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
@@ -37,10 +39,13 @@ def radius_fraction(driving: int | None, nearest: int | None, distance: float, r
     return distance / radius if driving is not None and driving == nearest else math.inf
 
 
-def view_of_tick(record: TickRecord, *, touching: bool = False) -> TeacherView:
+def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 0) -> TeacherView:
     """Return the teacher's view of a tick.
 
-    `touching`: whether its side touches something, which no bumper tells but a person in the room sees.
+    Args:
+        record: of the tick.
+        touching: whether its side touches something, which no bumper tells but a person in the room sees.
+        segments: number of segments of the newest drive by hand that can be taught.
     """
     decision, match = record.decision, record.decision.match
     nearest = math.inf
@@ -56,6 +61,7 @@ def view_of_tick(record: TickRecord, *, touching: bool = False) -> TeacherView:
         radius_fraction=nearest,
         tick=record.tick,
         touching=touching or record.readings.bumpers != 0,
+        segments=segments,
     )
 
 

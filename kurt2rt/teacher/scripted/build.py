@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from behaviors.action_groups import action_groups
+from behaviors.primitives import primitive_speeds
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teacher_settings import (
@@ -38,10 +39,11 @@ def build_teacher(
     profile, period_s = task.teaching.profile, robot.can.cycle_s
     policy = task.policy.build(robot.infrared)
     person = profile.person
-    if person is None and {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}:
+    if person is None and (profile.shows.times or {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}):
         person = _without_limits(task.teaching.teacher, period_s)
     if person is not None:
-        sense = TaskSense(policy, tuple(actions), action_groups(task.repertoire))
+        groups, speeds = action_groups(task.repertoire), primitive_speeds(task.repertoire)
+        sense = TaskSense(policy, tuple(actions), groups, speeds)
         return ScriptedPerson(profile, person, sense, period_s=period_s, seed=seed, session=session)
     return ScriptedTeacher(
         policy,

@@ -222,6 +222,7 @@ def view_of_state(state: State) -> TeacherView:
         radius_fraction=radius_fraction(state.rla, state.nearest, state.distance, state.radius),
         tick=state.tick,
         touching=state.bumpers != 0,
+        segments=0 if state.shown is None else len(state.shown.actions),
     )
 
 

@@ -7,13 +7,16 @@ from typing import Literal
 
 from behaviors.action_groups import STAND
 from behaviors.policies.policy import ReferencePolicy
+from hal.robot import WheelSpeeds
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import Delay, PersonSettings, TeacherProfile
-from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, TeachShown, Undo
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
+from kurt2rt.teacher.scripted.demonstrator import Demonstrator
+from kurt2rt.teacher.scripted.hand import Hand
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
@@ -23,6 +26,8 @@ _Way = Literal["press", "hold", "rewind"]
 """Way to give a press."""
 _REACH_S = 10.0
 """Reach of a look back, as on the page."""
+_SHOW_PRESSES = 3
+"""Presses of a demonstration: the stick, the confirmation of the segments, and Go after the last one."""
 _REWIND_PRESSES = 2
 """Presses of a correction by rewind; a person who has not both left does not begin one."""
 
@@ -37,6 +42,8 @@ class TaskSense:
     """Names of the robot's actions, of which an error names another one."""
     groups: Mapping[str, str]
     """Group of each action that looks alike."""
+    speeds: Mapping[str, WheelSpeeds]
+    """Wheel speeds with which a person drives for an action; actions of other kinds are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +80,7 @@ class _Draws:
         self.question_delay = delays(person.question_delay, "question delays")
         self.mistake_delay = delays(person.mistake_delay, "mistake delays")
         self._look_back_delay = delays(person.look_back.takes, "looks back")
+        self.look_over = delays(person.look_back.takes, "looks over what was shown")
         self.attention = Attention(person.lapses, period_s, "lapses" + of)
         self.errors = random.Random("errors" + of)
         self.slips = random.Random("slips that are noticed" + of)
@@ -87,34 +95,6 @@ class _Draws:
     def moment_error_ticks(self) -> int:
         """Return the error of the moment that the person takes for the begin of a mistake."""
         return round(self._moments.gauss(0.0, self._moment_spread))
-
-
-class _Hand:
-    """Hand that holds the button of an action, and moves to that of the right action with a delay."""
-
-    def __init__(self, delay_ticks: int, press_id: int, action: str, *, begins: int, ends: int) -> None:
-        self.press_id = press_id
-        self.action = action
-        self.ends = ends
-        """Tick of the release."""
-        self._delay_ticks = delay_ticks
-        self._target = action
-        self._moves_from = begins
-        self._arrives: int | None = None
-
-    def stay(self, until: int) -> None:
-        """Hold the present action until a tick, right or wrong."""
-        self._moves_from = until
-
-    def follow(self, now: int, right: str) -> None:
-        """Begin to move to the button of the right action, if no move is under way."""
-        if self._arrives is None and right != self.action and now >= self._moves_from:
-            self._target, self._arrives = right, now + self._delay_ticks
-
-    def move(self, now: int) -> None:
-        """Arrive at the target if it is time."""
-        if self._arrives is not None and now >= self._arrives:
-            self.action, self._arrives = self._target, None
 
 
 class ScriptedPerson(BasicTeacher):
@@ -165,8 +145,15 @@ class ScriptedPerson(BasicTeacher):
         self._hand_ticks = round(person.hand_delay_s / period_s)
         self._hold_ticks = round(profile.hold_s / period_s)
         self._reach_ticks = round(_REACH_S / period_s)
-        self._hand: _Hand | None = None
+        self._hand: Hand | None = None
         self._look_back: LookBack | None = None
+        self._demonstrator: Demonstrator | None = None
+        self._shows_left = profile.shows.times
+        self._show_ticks = round(profile.shows.seconds / period_s)
+        self._shown_speeds = {
+            name: WheelSpeeds(profile.shows.speed * left, profile.shows.speed * right)
+            for name, (left, right) in sense.speeds.items()
+        }
         self._press_id = 0
         self._seen: TeacherView | None = None
         self._now = 0
@@ -197,9 +184,13 @@ class ScriptedPerson(BasicTeacher):
                 self._hold_on(self._hand, picture)
             elif self._look_back is not None:
                 self._go_on_looking_back(self._look_back, picture)
+            elif self._demonstrator is not None:
+                self._go_on_showing(self._demonstrator, picture)
+            elif self._shows_left and self._presses.allows(_SHOW_PRESSES):
+                self._begin_to_show(picture)
             elif self._draws.attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
-        if self._hand is None and self._look_back is None:
+        if self._hand is None and self._look_back is None and self._demonstrator is None:
             self._press_if_due()
         return self._sent.pop(self._now)
 
@@ -326,10 +317,35 @@ class ScriptedPerson(BasicTeacher):
             self._look_back = None
             self._ignore_until = self._now
 
+    def _begin_to_show(self, picture: TeacherView) -> None:
+        self._forget()
+        self._presses.count()
+        self._shows_left -= 1
+        self._press_id += 1
+        right, ends = self._right(picture), self._now + self._show_ticks
+        hand = Hand(self._hand_ticks, self._press_id, right, begins=self._now, ends=ends)
+        self._demonstrator = Demonstrator(hand, self._shown_speeds, self._draws.look_over)
+        self._go_on_showing(self._demonstrator, picture)
+
+    def _go_on_showing(self, demonstrator: Demonstrator, picture: TeacherView) -> None:
+        """Send the next message of a demonstration; after the last one, let the robot drive."""
+        command = demonstrator.update(self._now, picture, self._right(picture), self._next_id)
+        if command is not None:
+            if isinstance(command, TeachShown):
+                self._presses.count()
+            self._sent.put(self._now, command)
+        if not demonstrator.over:
+            return
+        self._demonstrator = None
+        self._ignore_until = self._now + self._effect_ticks
+        if not self._shows_left:
+            self._presses.count()
+            self._sent.put(self._now, Resume(self._next_id(), SCRIPTED, seen_tick=picture.tick))
+
     def _begin_hold(self, action: str, *, is_right: bool) -> None:
         self._press_id += 1
         ends = self._now + self._hold_ticks
-        hand = _Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
+        hand = Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
         if not is_right:  # a wrong button is a mistake to be noticed
             noticed = self._now + self._draws.mistake_delay.draw(self._now)
             hand.stay(noticed)
@@ -340,7 +356,7 @@ class ScriptedPerson(BasicTeacher):
         if self._seen is not None:
             self._hold_on(hand, self._seen)
 
-    def _hold_on(self, hand: _Hand, picture: TeacherView) -> None:
+    def _hold_on(self, hand: Hand, picture: TeacherView) -> None:
         """Send the held action once more, or release it."""
         if self._now < hand.ends:
             hand.move(self._now)

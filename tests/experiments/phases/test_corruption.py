@@ -4,6 +4,7 @@ from collections import Counter
 
 import pytest
 
+from behaviors.primitives import primitive_speeds
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import NAMES, load_critic
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
@@ -12,7 +13,6 @@ from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.primitives import primitives
 from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
 
@@ -66,7 +66,7 @@ def test_corrupt_differs_by_purpose() -> None:
 
     def wrong_at(name: str, seed: int) -> set[tuple[int, str]]:
         step = steps[name]
-        wrong = corrupt(rlas, primitives("basic"), step.corrupted, seed, step.mistakes)
+        wrong = corrupt(rlas, tuple(primitive_speeds("basic")), step.corrupted, seed, step.mistakes)
         return {(each.rla_id, each.action) for each in wrong}
 
     for seed in range(20):
@@ -82,9 +82,9 @@ def test_of_a_small_set_at_least_one_is_wrong(rlas: int, wrong: int) -> None:
 
 
 def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
-    assert "spin_left" in primitives("basic")
-    assert "quarter_turn_left" not in primitives("basic")
-    assert len(primitives("basic")) == 14
+    assert "spin_left" in primitive_speeds("basic")
+    assert "quarter_turn_left" not in primitive_speeds("basic")
+    assert len(primitive_speeds("basic")) == 14
 
 
 def test_critics_lessons_carry_its_agreement() -> None:
