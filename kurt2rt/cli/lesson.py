@@ -48,8 +48,9 @@ def lesson(options: LessonOptions) -> None:
 
         kurt2rt lesson --teacher ordinary --seeds 100-119
 
-    With --controls the same seeds are also taught by a press, by a hold, by a
-    rewind, by the superhuman teacher, and by one that answers only, to compare.
+    With --controls the same seeds are also taught in other ways, to compare: by a
+    press, a hold, a rewind, after drives by hand, with the lesson at another
+    speed, by the superhuman teacher, and by one that answers only.
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a

@@ -47,7 +47,8 @@ def test_lesson_controls_compare_teachers(kurt2rt: CommandLine, tmp_path: Path) 
     words = ("lesson", "--task", task, "--teacher", "slow", "--seeds", "1", "--jobs", "1", "--controls")
     done = kurt2rt(*words)
     assert done.exit_code == 0, done.err
-    controls = ["slow, press", "slow, hold", "superhuman, press", "answers_only, nothing"]
+    ways = ["press", "hold", "rewind, shows first", "rewind, lesson at 60% of the speed"]
+    controls = [*(f"slow, {way}" for way in ways), "superhuman, press", "answers_only, nothing"]
     for label in ("slow, rewind", *controls):
         assert label in done.out
     data = json.loads(kurt2rt(*words, "--json").out)

@@ -3,27 +3,41 @@
 from collections.abc import Mapping, Sequence
 
 from kurt2rt.core.task_settings import TaskSettings, taught_by
-from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile, load_teacher
+from kurt2rt.core.teacher_settings import QUICK_TEACHER, ShowSettings, TeacherProfile, load_teacher
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult
 from kurt2rt.experiments.lockstep.report import label_of, not_judged, quartiles
 from kurt2rt.platform.text_table import TextTable
 
 _MINUTE_S = 60.0
+_SLOW = 0.6
+"""Lesson speed of the control of a teacher whose lessons are at full speed."""
+
+
+_SHOWS = ShowSettings(times=4, seconds=8.0, speed=0.6)
+"""Demonstrations of a teacher who shows first."""
 
 
 def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
     """Return the task with its own teacher and its controls, by label.
 
-    The controls are the other ways to correct, the superhuman teacher, and the one that answers only. Raises
-    hal.settings.SettingsError.
+    The controls are the other ways to correct, the teacher's own way after demonstrations and with lessons at the other
+    speed, the superhuman teacher, and the one that answers only. Raises hal.settings.SettingsError.
     """
     own = task.teaching.profile
-    ways: Sequence[TeacherProfile] = (
-        *(own.model_copy(update={"corrects_by": way}) for way in ("press", "hold", "rewind")),
-        QUICK_TEACHER,
-        load_teacher("answers_only"),
-    )
-    return {f"{each.name}, {each.corrects_by}": taught_by(task, each) for each in (own, *ways)}
+    speed = own.lesson_speeds.get(task.name, task.teaching.lesson_speed)
+    other_speed = _SLOW if speed == 1.0 else 1.0
+    ways: dict[str, TeacherProfile] = {
+        own.corrects_by: own,
+        **{way: own.model_copy(update={"corrects_by": way}) for way in ("press", "hold", "rewind")},
+        f"{own.corrects_by}, shows first": own.model_copy(update={"shows": _SHOWS}),
+        f"{own.corrects_by}, lesson at {other_speed:.0%} of the speed": own.model_copy(
+            update={"lesson_speeds": {**own.lesson_speeds, task.name: other_speed}}
+        ),
+    }
+    profiles = {f"{own.name}, {way}": each for way, each in ways.items()}
+    for each in (QUICK_TEACHER, load_teacher("answers_only")):
+        profiles[f"{each.name}, {each.corrects_by}"] = each
+    return {label: taught_by(task, each) for label, each in profiles.items()}
 
 
 def render_teachers(results: Mapping[str, Sequence[CurriculumResult]]) -> TextTable:
