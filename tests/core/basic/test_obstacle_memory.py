@@ -9,7 +9,7 @@ from hal.robot import SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead, set_points
-from kurt2rt.core.basic.obstacle_memory import LOOK_TICKS, ContactSettings, ObstacleMemory
+from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
@@ -29,6 +29,7 @@ REPERTOIRE = {
 ACTIONS = set_points(REPERTOIRE)
 NOTHING = ROBOT.infrared.floor_counts
 PERIOD_S = ROBOT.can.cycle_s
+LOOK_TICKS = round(SETTINGS.look_s / PERIOD_S)
 
 
 def readings(*, way_m: float = 0.0, **near_m: float) -> SensorReadings:
