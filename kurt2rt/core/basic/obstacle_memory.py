@@ -99,9 +99,7 @@ class ObstacleMemory:
         self._half_length_m = geometry.outline_length_m / 2 + settings.margin_m
         self._half_width_m = geometry.outline_width_m / 2 + settings.margin_m
         self._within, self._free = round(settings.within_s / _STEP_S), round(settings.free_s / _STEP_S)
-        motions = {
-            name: _motion(speeds, self._free, geometry.effective_track_m) for name, speeds in actions.items()
-        }
+        motions = {name: _motion(speeds, self._free, geometry.effective_track_m) for name, speeds in actions.items()}
         self._sweeps = {
             (name, steps): self._sweep(motion, steps)
             for name, motion in motions.items()
@@ -152,7 +150,7 @@ class ObstacleMemory:
             met = self._met[action, steps] = sweep is not None and self._is_met(sweep)
         return met
 
-    def is_free(self, action: str, *, avoiding: bool) -> bool:
+    def is_free(self, action: str, *, avoiding: bool = False) -> bool:
         """Return whether an action has set points and meets no obstacle; `avoiding` as in `meets`."""
         return (action, self._free) in self._sweeps and not self.meets(action, avoiding=avoiding)
 

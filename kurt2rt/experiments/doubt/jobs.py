@@ -75,8 +75,11 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     )
 
 
-def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]]) -> Table:
-    """Return the collisions of drives by the robot's response to its doubt; all have as many drives."""
+def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down_after_s: float) -> Table:
+    """Return the collisions of drives by the robot's response to its doubt; all have as many drives.
+
+    `set_down_after_s`: time after which a robot that asks was set down at another start; 0: it was not.
+    """
     rows, drives = [], 0
     for name, logs in logs_by_response.items():
         drives = len(logs)
@@ -90,11 +93,14 @@ def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]]) -> Table
                 f"{100 * count / max(minutes, 1e-9):.1f}",
                 f"{100 * count / max(driven, 1e-9):.1f}",
                 f"{100 * driven / max(minutes, 1e-9):.0f} %",
+                f"{sum(log.travelled_m for log in logs) / max(minutes, 1e-9):.1f}",
             )
         )
     return Table(
         title=f"Collisions without a teacher, {drives} drives each",
-        columns=("doubt", "collisions", "in 100 min", "in 100 driven min", "time driven"),
+        columns=("doubt", "collisions", "in 100 min", "in 100 driven min", "time driven", "m in a minute"),
         rows=tuple(rows),
-        note="A question that is not answered for 10 s sets the robot down at another start.",
+        note=f"A question that is not answered for {set_down_after_s:g} s sets the robot down at another start."
+        if set_down_after_s
+        else "A robot that asks stands for as long as its question lasts.",
     )

@@ -33,6 +33,8 @@ class DriveLog:
     """True where the teacher's policy turns away and the robot does not."""
     collisions: tuple[int, ...]
     """Ticks in which collisions began."""
+    travelled_m: float = 0.0
+    """Distance on the robot's own wheels."""
 
 
 @dataclass(frozen=True, slots=True)

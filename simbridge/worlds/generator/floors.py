@@ -81,8 +81,8 @@ def _furnish(width_m: float, height_m: float, rng: SeededRandom) -> list[_Piece]
             piece, gaps_m = _leaning_board(name, width_m, height_m, rng), []
         else:
             piece = _piece(kind, name, _place(width_m, height_m, rng), rng)
-            gaps_m = [room.exterior.distance(piece.shape)]
-        gaps_m += [piece.shape.distance(other.shape) for other in pieces]
+            gaps_m = [float(shapely.distance(room.exterior, piece.shape))]
+        gaps_m += [float(shapely.distance(piece.shape, other.shape)) for other in pieces]
         if room.intersects(piece.shape) and all(0.0 < gap_m <= _CLOSE_M or gap_m >= _APART_M for gap_m in gaps_m):
             pieces.append(piece)
     return pieces
@@ -144,7 +144,9 @@ def _on_legs(name: str, places: tuple[Point, ...], radius_m: float) -> _Piece:
     """Return a piece with a round leg at each of these places."""
     legs = enumerate(_rounded(places), start=1)
     return _Piece(
-        (), tuple(RoundObstacleSettings(name=f"{name}-leg-{i}", x_m=x, y_m=y, radius_m=radius_m) for i, (x, y) in legs), ()
+        (),
+        tuple(RoundObstacleSettings(name=f"{name}-leg-{i}", x_m=x, y_m=y, radius_m=radius_m) for i, (x, y) in legs),
+        (),
     )
 
 

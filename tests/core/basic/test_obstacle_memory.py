@@ -124,7 +124,13 @@ def test_free_time_below_the_time_to_contact_is_refused() -> None:
 class Avoider:
     """A basic level over two readings that remembers obstacles, and one tick in a call."""
 
-    def __init__(self, *events: TeachingEvent, contact: ContactSettings = SETTINGS, asks: bool = False) -> None:
+    def __init__(
+        self,
+        *events: TeachingEvent,
+        contact: ContactSettings = SETTINGS,
+        asks: bool = False,
+        turns_after_s: float | None = None,
+    ) -> None:
         system = RlaSystem(2, 1000.0)
         system.apply_all(events)
         settings = DoubtSettings(
@@ -132,8 +138,9 @@ class Avoider:
             rare_distance=0.5,
             rare_counts=50.0,
             threshold=2.0,
-            asks=asks,
-            alone=asks,
+            asks=asks or turns_after_s is not None,
+            alone=asks or turns_after_s is not None,
+            turns_after_s=turns_after_s,
             contact=contact,
         )
         self.memory = ObstacleMemory(contact, ROBOT, ACTIONS)
@@ -214,3 +221,40 @@ def test_restarted_level_remembers_no_obstacle() -> None:
     avoider.after_a_look()
     avoider.level.restart()
     assert not avoider.memory.meets("forward", avoiding=True)
+
+
+def turner(*events: TeachingEvent, turns_after_s: float = 0.05) -> Avoider:
+    """Return a level that stands alone at a doubt, and then turns on the spot."""
+    return Avoider(*events, contact=SETTINGS.model_copy(update={"avoids": False}), turns_after_s=turns_after_s)
+
+
+def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
+    robot = turner(*LESSONS)
+    assert robot.after_a_look().cause is DecisionCause.DOUBT
+    standing = [robot.at(readings(s11=0.10)) for _ in range(4)]
+    assert {each.cause for each in standing} == {DecisionCause.DOUBT}
+    turning = robot.at(readings(s11=0.10))
+    assert (turning.cause, turning.action, turning.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
+    actions = [robot.at(readings(s11=0.15)).action for _ in range(30)]  # still met in 0.6 s
+    assert actions == ["spin"] * 30
+    robot.memory.clear()
+    assert [robot.at(readings()).action for _ in range(11)][-1] == "forward"
+    assert robot.after_a_look().cause is DecisionCause.DOUBT  # it stands again before it turns again
+
+
+def test_robot_without_a_taught_turn_stands_on() -> None:
+    robot = turner(LESSONS[0], LESSONS[2])
+    robot.after_a_look()
+    assert {robot.at(readings(s11=0.10)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+
+
+def test_robot_with_a_teacher_does_not_turn() -> None:
+    robot = turner(*LESSONS)
+    robot.level.skip_withdrawn = False
+    robot.after_a_look()
+    assert {robot.at(readings(s11=0.10)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+
+
+def test_turning_without_standing_alone_is_refused() -> None:
+    with pytest.raises(ValidationError, match="turns_after_s needs asks: true, alone: true and contact"):
+        DoubtSettings(usual_distance=0.1, rare_distance=0.5, rare_counts=50.0, threshold=2.0, turns_after_s=1.0)

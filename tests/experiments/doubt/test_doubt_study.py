@@ -81,7 +81,9 @@ def test_tables_have_doubt_and_its_control() -> None:
     first, second = score_table(told, 5.0).rows
     assert (first[0], first[2:]) == ("doubt", ("1 of 1", "4.00", "0.00"))
     assert second[0] == "distance / R"
-    rows = collision_table({"only told": told, "stands": [log(pulses())]}).rows
+    table = collision_table({"only told": told, "stands": [log(pulses())]}, 0.0)
+    rows = table.rows
+    assert table.note == "A robot that asks stands for as long as its question lasts."
     assert [row[:3] for row in rows] == [("only told", "1", "200.0"), ("stands", "0", "0.0")]
 
 
@@ -94,11 +96,11 @@ def test_task_without_doubt_is_refused() -> None:
 def test_robot_that_stands_or_avoids_collides_no_more_often(tmp_path: Path) -> None:
     task = load_task("wall_following")
     knowledge = teach(tmp_path / "taught.knowledge", task, seed=3).knowledge
-    told, avoids, stands = (
-        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response)).run(lambda _: None)
+    told, avoids, stands, turns = (
+        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response, 10.0)).run(lambda _: None)
         for response in DoubtResponse
     )
-    assert len(told.doubt) == len(avoids.doubt) == len(stands.doubt) == 6000
+    assert len(told.doubt) == len(avoids.doubt) == len(stands.doubt) == len(turns.doubt) == 6000
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
-    assert max(len(stands.collisions), len(avoids.collisions)) <= len(told.collisions)
+    assert all(len(each.collisions) <= len(told.collisions) for each in (stands, avoids, turns))

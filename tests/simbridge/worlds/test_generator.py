@@ -156,7 +156,9 @@ def test_is_drivable_rejects_narrow_gaps() -> None:
     assert not is_drivable(room.difference(shapely.box(0.3, 0.0, 0.4, 1.0)))
 
 
-@pytest.mark.parametrize("name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3", "floors-x"])
+@pytest.mark.parametrize(
+    "name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3", "floors-x"]
+)
 def test_load_world_unknown_name_lists_the_names(name: str) -> None:
     with pytest.raises(SettingsError, match=rf"^{name}: .* manhattan, .*rooms-N"):
         load_world(name)
