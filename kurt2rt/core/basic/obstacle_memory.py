@@ -154,6 +154,12 @@ class ObstacleMemory:
         """Return whether an action has set points and meets no obstacle; `avoiding` as in `meets`."""
         return (action, self._free) in self._sweeps and not self.meets(action, avoiding=avoiding)
 
+    def remembers_within(self, distance_m: float) -> bool:
+        """Return whether an obstacle is remembered inside the outline or this close to it."""
+        ahead_m, aside_m = np.abs(self._places_m)
+        inside = (ahead_m < self._half_length_m + distance_m) & (aside_m < self._half_width_m + distance_m)
+        return bool(inside.any())
+
     def contact(self, action: str) -> Contact | None:
         """Return the first obstacle that an action meets; None if it meets none in time."""
         sweep = self._sweeps.get((action, self._free))

@@ -24,6 +24,8 @@ from kurt2rt.runtime import Runtime
 _TURNS_AFTER_S = 0.5
 """Time for which a robot stands in doubt before it turns; it has no speed left by then."""
 _STUCK_S = 15.0
+_AT_OUTLINE_M = 0.05
+"""Distance from the outline at which a remembered obstacle is what the robot touches: noise, and 2 s by encoders."""
 _SETTLES_S = 1.0
 
 
@@ -110,6 +112,8 @@ class DoubtRun(Episode):
         meter = runtime.level.doubt
         assert meter is not None
         self._drives_on = meter.actions
+        self._memory = meter.memory
+        self._seen: list[bool] = []
         self._settles = round(_SETTLES_S / self.period_s)
         self._unanswered = round(setup.set_down_after_s / self.period_s)
         self._asked_ticks = 0
@@ -134,6 +138,7 @@ class DoubtRun(Episode):
         if self.simulation.collisions > self._counted:
             self._counted = self.simulation.collisions
             self._collisions.append(len(self._doubt) - 1)
+            self._seen.append(self._memory is not None and self._memory.remembers_within(_AT_OUTLINE_M))
         if record.guard_result.latched:
             self.simulation.rescue()
             self.send(Resume(self.next_id("go"), "experimenter"))
@@ -154,5 +159,6 @@ class DoubtRun(Episode):
             driving=np.array(self._driving, dtype=np.bool_),
             missed=np.array(self._missed, dtype=np.bool_),
             collisions=tuple(self._collisions),
+            seen=tuple(self._seen),
             travelled_m=self.distance_travelled_m,
         )

@@ -54,7 +54,7 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     """
     doubt, distance = [log.doubt for log in logs], [log.distance for log in logs]
     minutes = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
-    collisions = sum(len(log.collisions) for log in logs)
+    collisions, seen = sum(len(log.collisions) for log in logs), sum(sum(log.seen) for log in logs)
     found = judge_score(logs, doubt, threshold)
     control = judge_score(logs, distance, threshold_for(logs, distance, found.questions))
     rows = tuple(
@@ -62,6 +62,7 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
             name,
             f"{each.auc:.2f}",
             f"{each.caught} of {collisions}",
+            f"{each.caught_seen} of {seen}",
             f"{2 * each.questions / max(minutes, 1e-9):.2f}",
             f"{2 * each.false_questions / max(minutes, 1e-9):.2f}",
         )
@@ -69,9 +70,10 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     )
     return Table(
         title=f"Doubt that is only told, {len(logs)} drives, {minutes:.0f} minutes",
-        columns=("score", "AUC", "collisions caught", "questions in 2 min", "of them false"),
+        columns=("score", "AUC", "collisions caught", "with things seen", "questions in 2 min", "of them false"),
         rows=rows,
-        note="Wrong: the policy turns away and the robot does not, for 0.3 s; or a collision follows within 2 s.",
+        note="Wrong: the policy turns away and the robot does not, for 0.3 s; or a collision follows within 2 s. "
+        "Seen: a sensor saw it before, where the robot touches it; a thin thing may stand between all beams.",
     )
 
 
@@ -85,11 +87,12 @@ def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down
         drives = len(logs)
         minutes = sum(len(log.doubt) for log in logs) / TICKS_PER_MINUTE
         driven = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
-        count = sum(len(log.collisions) for log in logs)
+        count, seen = sum(len(log.collisions) for log in logs), sum(sum(log.seen) for log in logs)
         rows.append(
             (
                 name,
                 str(count),
+                str(seen),
                 f"{100 * count / max(minutes, 1e-9):.1f}",
                 f"{100 * count / max(driven, 1e-9):.1f}",
                 f"{100 * driven / max(minutes, 1e-9):.0f} %",
@@ -98,7 +101,15 @@ def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down
         )
     return Table(
         title=f"Collisions without a teacher, {drives} drives each",
-        columns=("doubt", "collisions", "in 100 min", "in 100 driven min", "time driven", "m in a minute"),
+        columns=(
+            "doubt",
+            "collisions",
+            "with things seen",
+            "in 100 min",
+            "in 100 driven min",
+            "time driven",
+            "m in a minute",
+        ),
         rows=tuple(rows),
         note=f"A question that is not answered for {set_down_after_s:g} s sets the robot down at another start."
         if set_down_after_s

@@ -75,6 +75,15 @@ def test_obstacle_between_two_beams_is_remembered() -> None:
     assert memory.meets("forward")
 
 
+def test_obstacle_is_remembered_near_the_outline_once_it_is_there() -> None:
+    memory = memory_of()
+    look(memory, s11=0.15)
+    assert not memory.remembers_within(0.05)
+    assert memory.remembers_within(0.16)
+    look(memory, way_m=0.12)
+    assert memory.remembers_within(0.05)
+
+
 def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
     memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02}))
     look(memory, s1=0.10)
