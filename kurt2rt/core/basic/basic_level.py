@@ -105,7 +105,7 @@ class BasicLevel:
         """Action whose minimum time was not over at the last decision; empty if any action could drive."""
         self._avoiding = False
         """Whether another RLA than the nearest drives because of an obstacle."""
-        self._turning = False
+        self.turning = False
         """Whether the robot turns on the spot, because it stood in doubt for long enough."""
         self._decisions = 0
         self._driver: Rla | None = None
@@ -205,11 +205,11 @@ class BasicLevel:
             return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers)
         score = doubts.meter.score(situation.vector, match, action, self._behaviour)
         if doubts.update(score, alone=self.skip_withdrawn) or (
-            self._turning and doubts.meter.meets_obstacle(match, action, avoiding=cause is not _HELD)
+            self.turning and doubts.meter.meets_obstacle(match, action, avoiding=cause is not _HELD)
         ):
             return self._doubt(situation, readings, doubts, match, score)
         if cause is not _HELD:
-            self._turning = False
+            self.turning = False
             doubts.drive_on()
         if self.avoids and doubts.avoids and doubts.meter.meets_obstacle(match, action, avoiding=self._avoiding):
             other = self._free_rla(situation)
@@ -223,12 +223,12 @@ class BasicLevel:
     ) -> Decision:
         """Stand in doubt; after a time, and alone, turn on the spot by the nearest RLA that does so freely."""
         if doubts.stand(alone=self.skip_withdrawn):
-            driving = self._held.name if self._turning else ""
+            driving = self._held.name if self.turning else ""
             other = self._free_turn(situation, driving)
             if other is not None:
-                self._turning = True
+                self.turning = True
                 return self._avoid(readings, other, match, score)
-        self._turning = False
+        self.turning = False
         self._held.stop()
         return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
 
@@ -287,7 +287,7 @@ class BasicLevel:
     def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:
         """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
-        self._avoiding = self._turning = False
+        self._avoiding = self.turning = False
         if self._doubts is not None:
             self._doubts.end()
         return Decision(STANDSTILL, cause, None, None, match)

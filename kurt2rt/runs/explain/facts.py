@@ -147,6 +147,8 @@ class DoubtFacts:
     """Reading that all such lessons but at most one reach or stay beyond, in words."""
     contact: ContactFacts | None = None
     """Remembered obstacle that the action would meet; None without one."""
+    turns: bool = False
+    """Whether the robot turns on the spot, because it stood alone in doubt for long enough."""
 
 
 @dataclass(frozen=True, slots=True)
