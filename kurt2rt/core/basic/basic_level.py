@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle, actions_on_the_spot
+from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle, actions_back, actions_on_the_spot
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -94,6 +94,7 @@ class BasicLevel:
         self.doubt = doubt
         self._doubts = None if doubt is None else DoubtWatch(doubt, period_s)
         self._on_the_spot = actions_on_the_spot(repertoire)
+        self._ways_off = (*actions_back(repertoire), *(name for name in repertoire if name in self._on_the_spot))
         self._memory = None if doubt is None else doubt.memory
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
@@ -106,7 +107,7 @@ class BasicLevel:
         self._avoiding = False
         """Whether another RLA than the nearest drives because of an obstacle."""
         self.turning = False
-        """Whether the robot turns on the spot, because it stood in doubt for long enough."""
+        """Whether the robot turns away, because it stood alone in doubt for long enough."""
         self._decisions = 0
         self._driver: Rla | None = None
         self._drivers_condition: NDArray[np.float64] | None = None
@@ -174,7 +175,8 @@ class BasicLevel:
                 self._driver, self._drivers_condition = rla, None
             return self._drive(situation, readings, _RLA, rla, match, answers=True)
         driver = self._driver
-        assert driver is not None
+        if driver is None:
+            return self._back_off(situation, readings, match)
         answers = driver.condition == rla.condition or self._inside(driver, situation)
         return self._drive(situation, readings, _HELD, driver, match, answers=answers)
 
@@ -205,7 +207,8 @@ class BasicLevel:
             return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers)
         score = doubts.meter.score(situation.vector, match, action, self._behaviour)
         if doubts.update(score, alone=self.skip_withdrawn) or (
-            self.turning and doubts.meter.meets_obstacle(match, action, avoiding=cause is not _HELD)
+            # It looks farther before it drives on: readings flicker while it stands, too.
+            (self.turning or doubts.stood) and doubts.meter.meets_obstacle(match, action, avoiding=cause is not _HELD)
         ):
             return self._doubt(situation, readings, doubts, match, score)
         if cause is not _HELD:
@@ -228,23 +231,41 @@ class BasicLevel:
             if other is not None:
                 self.turning = True
                 return self._avoid(readings, other, match, score)
+            action = self._free_way_off()
+            if action is not None:
+                self.turning = True
+                self._held.allow_switch()
+                self._held.select(action)
+                self._driver = self._drivers_condition = None
+                return Decision(self._held.step(readings), _AVOIDS, action, None, match, doubt=score)
         self.turning = False
         self._held.stop()
         return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
 
     def _free_turn(self, situation: Situation, driving: str) -> Rla | None:
-        """Return the nearest RLA that turns on the spot and meets nothing; None without one.
+        """Return the nearest RLA that turns on the spot and meets nothing, or else any that does; None without one.
 
         `driving`: action that turns the robot already, which is preferred, because it would turn to and fro.
         """
         memory = self._memory
         assert memory is not None
-        turns = [
-            rla
-            for rla in self._nearest_rlas(situation)
-            if rla.action in self._on_the_spot and memory.is_free(rla.action)
-        ]
-        return min(turns, key=lambda rla: rla.action != driving, default=None)
+        free = [rla for rla in self._nearest_rlas(situation) if memory.is_free(rla.action, avoiding=True)]
+        return min(free, key=lambda rla: (rla.action not in self._on_the_spot, rla.action != driving), default=None)
+
+    def _free_way_off(self) -> str | None:
+        """Return an action that backs or turns on the spot and meets nothing, taught or not; None without one."""
+        memory = self._memory
+        assert memory is not None
+        return next((name for name in self._ways_off if memory.is_free(name, avoiding=True)), None)
+
+    def _back_off(self, situation: Situation, readings: SensorReadings, match: Match) -> Decision:
+        """Go on with an action that no RLA says, unless it would meet something by now."""
+        doubts, action = self._doubts, self._held.name
+        assert doubts is not None
+        score = doubts.meter.score(situation.vector, match, action, self._behaviour)
+        if doubts.meter.meets_obstacle(match, action):
+            return self._doubt(situation, readings, doubts, match, score)
+        return Decision(self._held.step(readings), _AVOIDS, action, None, match, doubt=score)
 
     def _nearest_rlas(self, situation: Situation) -> list[Rla]:
         """Return the RLAs nearest to a situation, the nearest first."""

@@ -109,6 +109,15 @@ def actions_on_the_spot(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
     )
 
 
+def actions_back(repertoire: Mapping[str, Behaviour]) -> tuple[str, ...]:
+    """Return the names of the actions that drive straight back, in the order of the repertoire."""
+    return tuple(
+        name
+        for name, action in repertoire.items()
+        if isinstance(action, HasSetPoints) and action.wheel_speeds.left_m_s == action.wheel_speeds.right_m_s < 0.0
+    )
+
+
 def _turns_on_the_spot(speeds: WheelSpeeds) -> bool:
     return speeds.left_m_s == -speeds.right_m_s != 0.0
 
@@ -253,8 +262,8 @@ class DoubtWatch:
         """Whether the robot avoids the obstacles that it remembers, instead of only telling its doubt."""
         turns_after_s = settings.turns_after_s
         self._turns_after = None if turns_after_s is None else round(turns_after_s / period_s)
-        self._stood = 0
-        """Ticks of standing in this doubt."""
+        self.stood = 0
+        """Ticks of standing alone in this doubt, if the robot may turn afterwards."""
         self._doubts = False
 
     def update(self, score: float, *, alone: bool) -> bool:
@@ -272,14 +281,14 @@ class DoubtWatch:
         """
         if self._turns_after is None or not alone:
             return False
-        self._stood += 1
-        return self._stood > self._turns_after
+        self.stood += 1
+        return self.stood > self._turns_after
 
     def drive_on(self) -> None:
         """Begin the time of standing again, because an action drives that is not doubted."""
-        self._stood = 0
+        self.stood = 0
 
     def end(self) -> None:
         """End a doubt, because the robot stands for another reason."""
         self._doubts = False
-        self._stood = 0
+        self.stood = 0

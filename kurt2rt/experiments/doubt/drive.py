@@ -36,7 +36,7 @@ class DoubtResponse(StrEnum):
     AVOIDS = "avoids"
     """It drives by the nearest RLA whose action meets no remembered obstacle."""
     STANDS = "stands"
-    TURNS = "stands, then turns"
+    TURNS = "turns"
     """It stands for a moment, then turns on the spot until it is free to drive on."""
 
 

@@ -232,9 +232,10 @@ def test_restarted_level_remembers_no_obstacle() -> None:
     assert not avoider.memory.meets("forward", avoiding=True)
 
 
-def turner(*events: TeachingEvent, turns_after_s: float = 0.05) -> Avoider:
-    """Return a level that stands alone at a doubt, and then turns on the spot."""
-    return Avoider(*events, contact=SETTINGS.model_copy(update={"avoids": False}), turns_after_s=turns_after_s)
+def turner(*events: TeachingEvent, margin_m: float = 0.0) -> Avoider:
+    """Return a level that stands alone at a doubt, and turns away after 0.05 s."""
+    contact = SETTINGS.model_copy(update={"avoids": False, "margin_m": margin_m})
+    return Avoider(*events, contact=contact, turns_after_s=0.05)
 
 
 def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
@@ -251,10 +252,25 @@ def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
     assert robot.after_a_look().cause is DecisionCause.DOUBT  # it stands again before it turns again
 
 
-def test_robot_without_a_taught_turn_stands_on() -> None:
-    robot = turner(LESSONS[0], LESSONS[2])
+def test_robot_without_a_taught_turn_backs_off() -> None:
+    robot = turner(LESSONS[0])
     robot.after_a_look()
-    assert {robot.at(readings(s11=0.10)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+    decisions = [robot.at(readings(s11=0.10)) for _ in range(60)][5:]
+    assert {(each.cause, each.action, each.rla_id) for each in decisions} == {(DecisionCause.AVOIDS, "back", None)}
+
+
+def test_robot_without_a_free_way_off_stands_on() -> None:
+    robot = turner(LESSONS[0], margin_m=0.05)
+    # Close on all sides: s1 at the front and s2 at the rear end of its left side.
+    close = {"s11": 0.10, "s14": 0.10, "s1": 0.10, "s2": 0.10, "s5": 0.10, "s6": 0.10}
+    for _ in range(2):
+        look_all(robot, close)
+    assert {robot.at(readings(**close)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+
+
+def look_all(robot: Avoider, near_m: dict[str, float]) -> None:
+    for _ in range(LOOK_TICKS):
+        robot.at(readings(**near_m))
 
 
 def test_robot_with_a_teacher_does_not_turn() -> None:
