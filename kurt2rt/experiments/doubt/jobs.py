@@ -11,6 +11,7 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.doubt.drive import DoubtSetup, drive
 from kurt2rt.experiments.doubt.measures import DriveLog, judge_score, threshold_for
+from kurt2rt.experiments.study.intervals import rate_of
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.table import Table
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -77,6 +78,12 @@ def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
     )
 
 
+def _in_100_minutes(logs: Sequence[DriveLog]) -> str:
+    """Return the collisions in 100 minutes with their 95 % interval, over the drives."""
+    rate = rate_of([len(log.collisions) for log in logs], [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in logs])
+    return f"{rate.value:.1f} ({rate.low:.1f} to {rate.high:.1f})"
+
+
 def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down_after_s: float) -> Table:
     """Return the collisions of drives by the robot's response to its doubt; all have as many drives.
 
@@ -93,7 +100,7 @@ def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down
                 name,
                 str(count),
                 str(seen),
-                f"{100 * count / max(minutes, 1e-9):.1f}",
+                _in_100_minutes(logs),
                 f"{100 * count / max(driven, 1e-9):.1f}",
                 f"{100 * driven / max(minutes, 1e-9):.0f} %",
                 f"{sum(log.travelled_m for log in logs) / max(minutes, 1e-9):.1f}",
@@ -105,7 +112,7 @@ def collision_table(logs_by_response: Mapping[str, Sequence[DriveLog]], set_down
             "doubt",
             "collisions",
             "with things seen",
-            "in 100 min",
+            "in 100 min (95 % interval)",
             "in 100 driven min",
             "time driven",
             "m in a minute",
