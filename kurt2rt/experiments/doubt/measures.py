@@ -35,7 +35,7 @@ class DriveLog:
     collisions: tuple[int, ...]
     """Ticks in which collisions began."""
     seen: tuple[bool, ...] = ()
-    """For each collision whether a sensor had seen what was touched, in the time that the robot remembers.
+    """True for each collision with a thing that a sensor had seen, in the time that the robot remembers.
 
     Empty without a memory of obstacles.
     """

@@ -148,7 +148,7 @@ class DoubtFacts:
     contact: ContactFacts | None = None
     """Remembered obstacle that the action would meet; None without one."""
     turns: bool = False
-    """Whether the robot turns on the spot, because it stood alone in doubt for long enough."""
+    """True if the robot turns away, because it stood alone in doubt for long enough."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -75,7 +75,7 @@ def test_obstacle_between_two_beams_is_remembered() -> None:
     assert memory.meets("forward")
 
 
-def test_obstacle_is_remembered_near_the_outline_once_it_is_there() -> None:
+def test_obstacle_near_the_outline_is_remembered_there() -> None:
     memory = memory_of()
     look(memory, s11=0.15)
     assert not memory.remembers_within(0.05)
