@@ -164,6 +164,7 @@ class _Assembly:
             self.active_behaviour,
             self.reinforcement.choice,
             self._doubt(repertoire),
+            self._period_s,
         )
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None

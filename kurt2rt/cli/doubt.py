@@ -33,6 +33,18 @@ class _Options:
         typer.Option(help="World to drive in; may be given again. Default: those of the exam."),
     ] = None
     seconds: Annotated[float, typer.Option(metavar="SECONDS", min=1.0, help="Seconds of each drive.")] = 200.0
+    response: Annotated[
+        list[DoubtResponse] | None,
+        typer.Option(help="Response of the robots to doubt; may be given again. Default: each of them."),
+    ] = None
+    set_down: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.0,
+            help="Seconds after which a robot that stands is set down at another start; 0: it stands on.",
+        ),
+    ] = 10.0
     jobs: Jobs = ALL_PROCESSORS
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -42,14 +54,16 @@ class _Options:
 def doubt(options: _Options) -> None:
     """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
 
-    Each robot drives without a teacher in each world three times: with doubt
-    that is only told, avoiding the obstacles that it remembers, and with doubt
-    that stops it.
+    Each robot drives without a teacher in each world once for each response:
+    doubt that is only told, avoiding the obstacles that it remembers, doubt
+    that stops it, and doubt that stops it and lets it turn. In a world with
+    SEED in its name each robot drives in another one.
 
     For example:
 
         kurt2rt lesson --task wall_following --seeds 915-919
-        kurt2rt doubt results/lesson --seeds 915-919 --world rooms-8100
+        kurt2rt doubt results/lesson --seeds 915-919 --world floors-SEED
+        kurt2rt doubt results/lesson --seeds 915-919 --world floors-SEED --response stands --set-down 0
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from simbridge.simulation import Kurt2SimulationFactory
@@ -58,30 +72,32 @@ def doubt(options: _Options) -> None:
     task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
     factory = Kurt2SimulationFactory(settings)
     worlds = options.world or list(task.exam.worlds)
-    factory.require_worlds(*worlds)
+    seeds = parse_seeds(options.seeds)
+    factory.require_worlds(*(world.replace("SEED", str(seed)) for world in worlds for seed in seeds))
+    responses = tuple(options.response or DoubtResponse)
     work = [
         DoubtJob(
             factory,
             settings,
             task,
             options.taught / f"{task.name}-{seed}.knowledge",
-            DoubtSetup(world, seed, options.seconds, response),
+            DoubtSetup(world.replace("SEED", str(seed)), seed, options.seconds, response, options.set_down),
         )
-        for response in DoubtResponse
-        for seed in parse_seeds(options.seeds)
+        for response in responses
+        for seed in seeds
         for world in worlds
     ]
     columns = (TextColumn("drives"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("drives", total=len(work))
         logs = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
-    each = len(work) // len(DoubtResponse)
-    by_response = {response.value: logs[n * each : (n + 1) * each] for n, response in enumerate(DoubtResponse)}
+    each = len(work) // len(responses)
+    by_response = {response.value: logs[n * each : (n + 1) * each] for n, response in enumerate(responses)}
     assert task.learning.doubt is not None
-    tables = [
-        score_table(by_response[DoubtResponse.TELLS], task.learning.doubt.threshold),
-        collision_table(by_response),
-    ]
+    tables = [collision_table(by_response, options.set_down)]
+    told = by_response.get(DoubtResponse.TELLS.value)
+    if told is not None:
+        tables.insert(0, score_table(told, task.learning.doubt.threshold))
     if options.as_json:
         print_json({"tables": tables_of(tables)})
         return

@@ -35,7 +35,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import empty_system
 
-_GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
+_GENERATED = re.compile(r"(rooms|streets|floors)-\d{1,9}", re.ASCII)
 """A teacher chooses among names: a path would read any file of the robot's machine."""
 _ZIP = b"PK"
 

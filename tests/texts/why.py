@@ -80,6 +80,11 @@ def reasons() -> Iterator[tuple[str, str]]:
         "rla, of one condition": facts(replace(CROWD, driver=TWIN)),
         "rla, pushes": replace(facts(KNOWN), granted=STOOD, reasons=("rear bumper",)),
         "rla, doubts a little": replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8)),
+        "avoids, turns on the spot": replace(AVOIDED, doubt=replace(CONTACT, turns=True)),
+        "avoids, turns without a contact": replace(AVOIDED, doubt=replace(OBSTACLE, turns=True)),
+        "avoids, gets away": replace(
+            AVOIDED, basic=replace(AVOIDED.basic, driver=None), action="back", doubt=replace(CONTACT, turns=True)
+        ),
         "rla, meets an obstacle": replace(facts(KNOWN), doubt=CONTACT),
         "avoids, of an unknown obstacle": AVOIDED,
         "rla, usual doubt": replace(facts(KNOWN), doubt=DoubtFacts(0.9, 2.8)),

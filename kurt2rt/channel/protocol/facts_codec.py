@@ -95,6 +95,7 @@ _DOUBT = MapOf(
     reads=NAME,
     taught=NAME,
     contact=MayLack(OrNone(_CONTACT)),
+    turns=MayLack(Flag()),
 )
 
 _FACTS = MapOf(

@@ -10,18 +10,15 @@ from pydantic import Field, model_validator
 
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
 from hal.settings import Settings
 from kurt2rt.core.numerics import round_portable
-
-LOOK_TICKS = 5
-"""Ticks between two looks: each look meets new measurements, because a sensor measures every 29 to 48 ms."""
 
 _STEP_S = 0.1
 """Time between two poses of the outline that are compared with the obstacles: 3 cm at 0.3 m/s."""
 
-_FASTEST_M_S = 0.6
-"""The guard's highest speed, for the distance within which obstacles can be met."""
+_NOWHERE_M = 1e6
+"""Place of a reading without an obstacle: no outline gets there."""
 
 Values = NDArray[np.float64]
 
@@ -39,6 +36,8 @@ class ContactSettings(Settings):
     """Distance from a sensor up to which a reading is an obstacle."""
     margin_m: Annotated[float, Field(ge=0, le=0.1)]
     """Distance from the outline at which an obstacle is met."""
+    look_s: Annotated[float, Field(ge=0.05, le=0.2)] = 0.05
+    """Time between two looks. The default is that of recordings of before 2026-11-26, which do not name it."""
     avoids: bool = False
     """Drive by the nearest RLA whose action meets no obstacle, except while the robot is taught; False only tells."""
 
@@ -69,6 +68,16 @@ class _Motion(NamedTuple):
     y_m: Values
 
 
+class _Sweep(NamedTuple):
+    """Poses of an action for some steps, and the box around the outline at all of them."""
+
+    motion: _Motion
+    middle_m: Values
+    """Middle of the box, ahead and aside, shape (2, 1)."""
+    half_m: Values
+    """Half length and half width of the box, shape (2, 1)."""
+
+
 class ObstacleMemory:
     """Obstacles seen in the last seconds, by dead reckoning, and the actions that would meet them.
 
@@ -89,45 +98,41 @@ class ObstacleMemory:
         self._odometry = WheelOdometry(geometry)
         self._half_length_m = geometry.outline_length_m / 2 + settings.margin_m
         self._half_width_m = geometry.outline_width_m / 2 + settings.margin_m
-        reach_m = math.hypot(self._half_length_m, self._half_width_m) + settings.free_s * _FASTEST_M_S
-        self._reach_m2 = reach_m * reach_m
-        self._motions = {
-            name: _motion(speeds, round(settings.free_s / _STEP_S), geometry.effective_track_m)
-            for name, speeds in actions.items()
-        }
-        distances_m = map(law.distance_m, range(HIGHEST_COUNTS + 1))
-        # Not a number beyond the farthest distance: it compares as false, so it is never met.
-        self._distance_m = np.array([each if each <= settings.farthest_m else math.nan for each in distances_m])
-        headings = [math.radians(sensor.heading_deg) for sensor in law.sensors]
-        self._sensor_x_m = np.array([sensor.x_m for sensor in law.sensors])
-        self._sensor_y_m = np.array([sensor.y_m for sensor in law.sensors])
-        self._sensor_cos = np.array([round_portable(math.cos(heading)) for heading in headings])
-        self._sensor_sin = np.array([round_portable(math.sin(heading)) for heading in headings])
-        self._look_s = LOOK_TICKS * robot.can.cycle_s
-        self._looks = max(1, round(settings.memory_s / self._look_s))
-        self._x_m = np.full((self._looks, len(headings)), math.nan)
-        self._y_m = np.full((self._looks, len(headings)), math.nan)
         self._within, self._free = round(settings.within_s / _STEP_S), round(settings.free_s / _STEP_S)
+        motions = {name: _motion(speeds, self._free, geometry.effective_track_m) for name, speeds in actions.items()}
+        self._sweeps = {
+            (name, steps): self._sweep(motion, steps)
+            for name, motion in motions.items()
+            for steps in (self._within, self._free)
+        }
+        self._seen_m = np.concatenate([_seen_m(law, sensor, settings.farthest_m) for sensor in law.sensors], axis=1)
+        """Place of what each sensor sees at each count, ahead and aside, shape (2, sensors * counts)."""
+        self._sensors = len(law.sensors)
+        self._first = np.arange(self._sensors) * (HIGHEST_COUNTS + 1)
+        self._look_s = settings.look_s
+        self._look_ticks = max(1, round(settings.look_s / robot.can.cycle_s))
+        self._looks = max(1, round(settings.memory_s / self._look_s))
+        # Relative to the robot, and moved with it: each look needs the places so.
+        self._places_m = np.full((2, self._looks * self._sensors), _NOWHERE_M)
+        self._products_m = np.zeros((2, *self._places_m.shape))
+        self._rotation = np.zeros((2, 2, 1))
+        self._shift_m = np.zeros((2, 1))
         self._met: dict[tuple[str, int], bool] = {}
         """Result for each action and number of steps that was asked since the last look."""
         self.clear()
 
     def clear(self) -> None:
         """Forget all obstacles, because the robot was set down elsewhere."""
-        self._x_m.fill(math.nan)
-        self._y_m.fill(math.nan)
-        self._pose = PlanePose()
+        self._places_m.fill(_NOWHERE_M)
         self._newest = self._ticks = self._left_ticks = self._right_ticks = 0
-        self._near = np.zeros(0, dtype=np.intp)
-        self._ahead_m = self._aside_m = np.zeros(0)
         self._met.clear()
 
     def update(self, readings: SensorReadings) -> None:
-        """Count the way of one tick, and look at the sensors in every fifth tick; call it once a tick."""
+        """Count the way of one tick, and look at the sensors every `look_s`; call it once a tick."""
         self._left_ticks += readings.encoder_left_ticks
         self._right_ticks += readings.encoder_right_ticks
         self._ticks += 1
-        if self._ticks == LOOK_TICKS:
+        if self._ticks == self._look_ticks:
             self._ticks = 0
             if self._left_ticks or self._right_ticks:
                 self._move()
@@ -141,63 +146,101 @@ class ObstacleMemory:
         steps = self._free if avoiding else self._within
         met = self._met.get((action, steps))
         if met is None:
-            motion = self._motions.get(action)
-            met = self._met[action, steps] = motion is not None and bool(self._met_by(motion, steps).any())
+            sweep = self._sweeps.get((action, steps))
+            met = self._met[action, steps] = sweep is not None and self._is_met(sweep)
         return met
 
-    def is_free(self, action: str, *, avoiding: bool) -> bool:
+    def is_free(self, action: str, *, avoiding: bool = False) -> bool:
         """Return whether an action has set points and meets no obstacle; `avoiding` as in `meets`."""
-        return action in self._motions and not self.meets(action, avoiding=avoiding)
+        return (action, self._free) in self._sweeps and not self.meets(action, avoiding=avoiding)
+
+    def remembers_within(self, distance_m: float) -> bool:
+        """Return whether an obstacle is remembered inside the outline or this close to it."""
+        ahead_m, aside_m = np.abs(self._places_m)
+        inside = (ahead_m < self._half_length_m + distance_m) & (aside_m < self._half_width_m + distance_m)
+        return bool(inside.any())
 
     def contact(self, action: str) -> Contact | None:
         """Return the first obstacle that an action meets; None if it meets none in time."""
-        motion = self._motions.get(action)
-        if motion is None:
+        sweep = self._sweeps.get((action, self._free))
+        if sweep is None:
             return None
-        steps, obstacles = np.nonzero(self._met_by(motion, self._free))
+        near = self._in_box(sweep)
+        steps, obstacles = np.nonzero(self._met_by(sweep.motion, near))
         if not len(steps):
             return None
-        look, sensor = divmod(int(self._near[obstacles[0]]), len(self._sensor_x_m))
+        look, sensor = divmod(int(near[obstacles[0]]), self._sensors)
         age = (self._newest - look) % self._looks
         return Contact((int(steps[0]) + 1) * _STEP_S, sensor, age * self._look_s)
 
     def _move(self) -> None:
-        """Update the pose by the encoders, and make room for the next look."""
+        """Move the remembered places by the encoders, and make room for the next look."""
         motion = self._odometry.motion(self._left_ticks, self._right_ticks)
         self._left_ticks = self._right_ticks = 0
-        middle_rad = self._pose.heading_rad + motion.turn_rad / 2
-        self._pose = PlanePose(
-            self._pose.x_m + motion.forward_m * round_portable(math.cos(middle_rad)),
-            self._pose.y_m + motion.forward_m * round_portable(math.sin(middle_rad)),
-            math.remainder(self._pose.heading_rad + motion.turn_rad, math.tau),
-        )
+        middle_rad = motion.turn_rad / 2
+        shift_m, rotation, places_m, products_m = self._shift_m, self._rotation, self._places_m, self._products_m
+        shift_m[0, 0] = motion.forward_m * round_portable(math.cos(middle_rad))
+        shift_m[1, 0] = motion.forward_m * round_portable(math.sin(middle_rad))
+        cos, sin = round_portable(math.cos(motion.turn_rad)), round_portable(math.sin(motion.turn_rad))
+        rotation[0, 0, 0] = rotation[1, 1, 0] = cos
+        rotation[0, 1, 0], rotation[1, 0, 0] = sin, -sin
+        np.subtract(places_m, shift_m, out=places_m)
+        # Products and sums one by one: a matrix product rounds otherwise on another processor.
+        np.multiply(rotation, places_m, out=products_m)
+        np.add(products_m[:, 0], products_m[:, 1], out=places_m)
         self._newest = (self._newest + 1) % self._looks
 
     def _look(self, counts: tuple[int, ...]) -> None:
-        """Store what the sensors see, and select the obstacles within reach and outside the outline."""
-        x_m, y_m, heading_rad = self._pose
-        cos, sin = round_portable(math.cos(heading_rad)), round_portable(math.sin(heading_rad))
-        distance_m = self._distance_m[list(counts)]
-        ahead = self._sensor_x_m + self._sensor_cos * distance_m
-        aside = self._sensor_y_m + self._sensor_sin * distance_m
-        self._x_m[self._newest] = x_m + (cos * ahead - sin * aside)
-        self._y_m[self._newest] = y_m + (sin * ahead + cos * aside)
-        x, y = self._x_m.ravel() - x_m, self._y_m.ravel() - y_m
-        near = np.flatnonzero(x * x + y * y < self._reach_m2)
-        x, y = x[near], y[near]
-        ahead, aside = cos * x + sin * y, cos * y - sin * x
-        # An obstacle inside the outline is a wrong reading, or it is touched already: no action would be free of it.
-        outside = (np.abs(ahead) >= self._half_length_m) | (np.abs(aside) >= self._half_width_m)
-        self._near, self._ahead_m, self._aside_m = near[outside], ahead[outside], aside[outside]
+        """Store what the sensors see."""
+        begin = self._newest * self._sensors
+        self._places_m[:, begin : begin + self._sensors] = self._seen_m.take(self._first + counts, axis=1)
         self._met.clear()
 
-    def _met_by(self, motion: _Motion, steps: int) -> NDArray[np.bool_]:
-        """Return whether the outline meets each near obstacle at each step; shape (steps, obstacles)."""
-        cos, sin = motion.cos[:steps], motion.sin[:steps]
-        x, y = self._ahead_m - motion.x_m[:steps], self._aside_m - motion.y_m[:steps]
-        ahead, aside = cos * x + sin * y, cos * y - sin * x
-        met: NDArray[np.bool_] = (np.abs(ahead) < self._half_length_m) & (np.abs(aside) < self._half_width_m)
+    def _is_met(self, sweep: _Sweep) -> bool:
+        near = self._in_box(sweep)
+        return bool(len(near)) and bool(self._met_by(sweep.motion, near).any())
+
+    def _in_box(self, sweep: _Sweep) -> NDArray[np.intp]:
+        """Return the indexes of the remembered places in the box around a sweep."""
+        inside = np.abs(self._places_m - sweep.middle_m) < sweep.half_m
+        return np.flatnonzero(inside[0] & inside[1])
+
+    def _met_by(self, motion: _Motion, near: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Return whether the outline meets each of these places (n,) at each step; shape (steps, n).
+
+        An obstacle inside the outline is a wrong reading, or it is touched already: no action would be free of it.
+        """
+        ahead_m, aside_m = self._places_m[:, near]
+        x, y = ahead_m - motion.x_m, aside_m - motion.y_m
+        ahead, aside = motion.cos * x + motion.sin * y, motion.cos * y - motion.sin * x
+        met: NDArray[np.bool_] = self._in_outline(ahead, aside) & ~self._in_outline(ahead_m, aside_m)
         return met
+
+    def _in_outline(self, ahead_m: Values, aside_m: Values) -> NDArray[np.bool_]:
+        inside: NDArray[np.bool_] = (np.abs(ahead_m) < self._half_length_m) & (np.abs(aside_m) < self._half_width_m)
+        return inside
+
+    def _sweep(self, motion: _Motion, steps: int) -> _Sweep:
+        """Return the first `steps` poses of a motion with the box around the outline at all of them."""
+        poses = _Motion(*(each[:steps] for each in motion))
+        reach_x_m = np.abs(poses.cos) * self._half_length_m + np.abs(poses.sin) * self._half_width_m
+        reach_y_m = np.abs(poses.sin) * self._half_length_m + np.abs(poses.cos) * self._half_width_m
+        highest = np.array([(poses.x_m + reach_x_m).max(), (poses.y_m + reach_y_m).max()])[:, np.newaxis]
+        lowest = np.array([(poses.x_m - reach_x_m).min(), (poses.y_m - reach_y_m).min()])[:, np.newaxis]
+        # A hair wider, so that rounding leaves nothing out.
+        return _Sweep(poses, (highest + lowest) / 2, (highest - lowest) / 2 + 1e-6)
+
+
+def _seen_m(law: InfraredSettings, sensor: SensorSettings, farthest_m: float) -> Values:
+    """Return the place of what a sensor sees at each count, ahead and aside in m, shape (2, counts).
+
+    `farthest_m`: distance beyond which a reading is no obstacle.
+    """
+    heading_rad = math.radians(sensor.heading_deg)
+    distance_m = np.array([law.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1)])
+    ahead_m = sensor.x_m + round_portable(math.cos(heading_rad)) * distance_m
+    aside_m = sensor.y_m + round_portable(math.sin(heading_rad)) * distance_m
+    return np.where(distance_m <= farthest_m, [ahead_m, aside_m], _NOWHERE_M)
 
 
 def _motion(speeds: WheelSpeeds, steps: int, track_m: float) -> _Motion:

@@ -18,7 +18,7 @@ class DecisionCause(StrEnum):
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
     AVOIDS = "avoids"
-    """The nearest RLA's action would meet a remembered obstacle; the nearest RLA whose action does not drives."""
+    """The nearest RLA's action would meet a remembered obstacle, or is doubted; the nearest free RLA drives."""
     TEACHER = "teacher"
     """A teacher drives by hand, or a reference policy drives."""
     UNKNOWN = "unknown"

@@ -21,9 +21,11 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.runtime import Runtime
 
-_UNANSWERED_S = 10.0
-"""Time after which a robot that asks, and gets no answer, is set down at another start."""
+_TURNS_AFTER_S = 0.5
+"""Time for which a robot stands in doubt before it turns; it has no speed left by then."""
 _STUCK_S = 15.0
+_AT_OUTLINE_M = 0.05
+"""Distance from the outline at which a remembered obstacle is what the robot touches: noise, and 2 s by encoders."""
 _SETTLES_S = 1.0
 
 
@@ -34,6 +36,8 @@ class DoubtResponse(StrEnum):
     AVOIDS = "avoids"
     """It drives by the nearest RLA whose action meets no remembered obstacle."""
     STANDS = "stands"
+    TURNS = "turns"
+    """It stands for a moment, then turns on the spot until it is free to drive on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,8 @@ class DoubtSetup:
     seed: int
     duration_s: float
     response: DoubtResponse
+    set_down_after_s: float
+    """Time after which a robot that asks, and gets no answer, is set down at another start; 0: it stands on."""
 
 
 def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
@@ -54,10 +60,12 @@ def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
     doubt = task.learning.doubt
     if doubt is None:
         raise SettingsError("sets no doubt", where=f"task {task.name}: learning.doubt", do="give its scales there")
-    stands, contact = response is DoubtResponse.STANDS, doubt.contact
+    turns, contact = response is DoubtResponse.TURNS, doubt.contact
+    stands = turns or response is DoubtResponse.STANDS
     if contact is not None:
         contact = contact.model_copy(update={"avoids": response is DoubtResponse.AVOIDS})
-    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "contact": contact})
+    after_s = _TURNS_AFTER_S if turns else None
+    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "contact": contact, "turns_after_s": after_s})
     return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
 
 
@@ -104,8 +112,10 @@ class DoubtRun(Episode):
         meter = runtime.level.doubt
         assert meter is not None
         self._drives_on = meter.actions
+        self._memory = meter.memory
+        self._seen: list[bool] = []
         self._settles = round(_SETTLES_S / self.period_s)
-        self._unanswered = round(_UNANSWERED_S / self.period_s)
+        self._unanswered = round(setup.set_down_after_s / self.period_s)
         self._asked_ticks = 0
         self._settled_at = 0
         self._doubt: list[float] = []
@@ -128,11 +138,13 @@ class DoubtRun(Episode):
         if self.simulation.collisions > self._counted:
             self._counted = self.simulation.collisions
             self._collisions.append(len(self._doubt) - 1)
+            self._seen.append(self._memory is not None and self._memory.remembers_within(_AT_OUTLINE_M))
         if record.guard_result.latched:
             self.simulation.rescue()
             self.send(Resume(self.next_id("go"), "experimenter"))
         self._asked_ticks = self._asked_ticks + 1 if decision.asking else 0
-        if self._asked_ticks >= self._unanswered or self.is_stuck(waiting=decision.asking):
+        unanswered = 0 < self._unanswered <= self._asked_ticks
+        if unanswered or self.is_stuck(waiting=decision.asking):
             self.reposition()
             self.runtime.reposition()
             self._asked_ticks = 0
@@ -147,4 +159,6 @@ class DoubtRun(Episode):
             driving=np.array(self._driving, dtype=np.bool_),
             missed=np.array(self._missed, dtype=np.bool_),
             collisions=tuple(self._collisions),
+            seen=tuple(self._seen),
+            travelled_m=self.distance_travelled_m,
         )

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,13 @@ class DriveLog:
     """True where the teacher's policy turns away and the robot does not."""
     collisions: tuple[int, ...]
     """Ticks in which collisions began."""
+    seen: tuple[bool, ...] = ()
+    """True for each collision with a thing that a sensor had seen, in the time that the robot remembers.
+
+    Empty without a memory of obstacles.
+    """
+    travelled_m: float = 0.0
+    """Distance on the robot's own wheels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +51,8 @@ class ScoreResult:
     """Probability that a wrong tick scores higher than a right one; NaN without wrong ticks."""
     caught: int
     """Collisions that the score told before."""
+    caught_seen: int
+    """Those among them with an obstacle that a sensor had seen."""
     questions: int
     false_questions: int
     """Questions that neither a wrong action nor a collision followed within 2 s."""
@@ -95,15 +105,17 @@ def judge_score(logs: Sequence[DriveLog], scores: Sequence[Scores], threshold: f
         np.concatenate([each[log.driving] for log, each in zip(logs, scores, strict=True)]),
         np.concatenate([each[log.driving] for log, each in zip(logs, wrong, strict=True)]),
     )
-    caught = questions = false_questions = 0
+    caught = caught_seen = questions = false_questions = 0
     for log, score, bad in zip(logs, scores, wrong, strict=True):
         warned = (score >= threshold) & log.driving
-        for tick in log.collisions:
-            caught += bool(warned[max(0, tick - BEFORE_TICKS) : max(0, tick - _TOO_LATE_TICKS)].any())
+        for tick, seen in zip_longest(log.collisions, log.seen, fillvalue=False):
+            told = bool(warned[max(0, tick - BEFORE_TICKS) : max(0, tick - _TOO_LATE_TICKS)].any())
+            caught += told
+            caught_seen += told and seen
         asked = question_ticks(score, log.driving, threshold)
         questions += len(asked)
         false_questions += sum(not bad[tick : tick + BEFORE_TICKS].any() for tick in asked)
-    return ScoreResult(auc, caught, questions, false_questions)
+    return ScoreResult(auc, caught, caught_seen, questions, false_questions)
 
 
 def threshold_for(logs: Sequence[DriveLog], scores: Sequence[Scores], questions: int) -> float:

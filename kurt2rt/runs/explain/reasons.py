@@ -66,7 +66,7 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     elif facts.cause == DecisionCause.HELD:
         lines += [*_held(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.AVOIDS:
-        lines += _avoids(facts.basic, facts.doubt)
+        lines += _avoids(facts.basic, facts.doubt, facts.action)
     elif facts.cause == DecisionCause.DOUBT:
         lines += _doubts(facts.basic, facts.doubt)
     elif facts.cause == DecisionCause.TEACHER:
@@ -156,13 +156,20 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
     ]
 
 
-def _avoids(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
+def _avoids(level: LevelFacts, doubt: DoubtFacts | None, action: str | None) -> list[str]:
     leader, driver = level.leader, level.driver
-    if leader is None or driver is None or doubt is None or doubt.contact is None:
+    if leader is None or doubt is None or not (doubt.turns or (doubt.contact and driver)):
         return ["The nearest RLA's action would meet an obstacle, so another RLA drives."]
+    because = _format_contact(doubt.contact) if doubt.contact else f"the robot doubts it: {_why_doubt(doubt)}"
+    if driver is None:
+        return [
+            f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
+            f"No RLA's action is free, so the robot gets away by an action that was not taught for it: {action}.",
+        ]
+    that = "that turns on the spot and meets nothing" if doubt.turns else "whose action meets nothing"
     return [
-        f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {_format_contact(doubt.contact)}.",
-        f"{format_rla(driver)} is the nearest whose action meets nothing, at {format_nearness(driver)}, so it drives.",
+        f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
+        f"{format_rla(driver)} is the nearest {that}, at {format_nearness(driver)}, so it drives.",
     ]
 
 

@@ -9,7 +9,7 @@ from hal.robot import SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead, set_points
-from kurt2rt.core.basic.obstacle_memory import LOOK_TICKS, ContactSettings, ObstacleMemory
+from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
@@ -29,6 +29,7 @@ REPERTOIRE = {
 ACTIONS = set_points(REPERTOIRE)
 NOTHING = ROBOT.infrared.floor_counts
 PERIOD_S = ROBOT.can.cycle_s
+LOOK_TICKS = round(SETTINGS.look_s / PERIOD_S)
 
 
 def readings(*, way_m: float = 0.0, **near_m: float) -> SensorReadings:
@@ -72,6 +73,15 @@ def test_obstacle_between_two_beams_is_remembered() -> None:
     assert contact.seen_s == pytest.approx(LOOK_TICKS * PERIOD_S)
     assert contact.within_s == pytest.approx(0.3)
     assert memory.meets("forward")
+
+
+def test_obstacle_near_the_outline_is_remembered_there() -> None:
+    memory = memory_of()
+    look(memory, s11=0.15)
+    assert not memory.remembers_within(0.05)
+    assert memory.remembers_within(0.16)
+    look(memory, way_m=0.12)
+    assert memory.remembers_within(0.05)
 
 
 def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
@@ -123,7 +133,13 @@ def test_free_time_below_the_time_to_contact_is_refused() -> None:
 class Avoider:
     """A basic level over two readings that remembers obstacles, and one tick in a call."""
 
-    def __init__(self, *events: TeachingEvent, contact: ContactSettings = SETTINGS, asks: bool = False) -> None:
+    def __init__(
+        self,
+        *events: TeachingEvent,
+        contact: ContactSettings = SETTINGS,
+        asks: bool = False,
+        turns_after_s: float | None = None,
+    ) -> None:
         system = RlaSystem(2, 1000.0)
         system.apply_all(events)
         settings = DoubtSettings(
@@ -131,8 +147,9 @@ class Avoider:
             rare_distance=0.5,
             rare_counts=50.0,
             threshold=2.0,
-            asks=asks,
-            alone=asks,
+            asks=asks or turns_after_s is not None,
+            alone=asks or turns_after_s is not None,
+            turns_after_s=turns_after_s,
             contact=contact,
         )
         self.memory = ObstacleMemory(contact, ROBOT, ACTIONS)
@@ -213,3 +230,56 @@ def test_restarted_level_remembers_no_obstacle() -> None:
     avoider.after_a_look()
     avoider.level.restart()
     assert not avoider.memory.meets("forward", avoiding=True)
+
+
+def turner(*events: TeachingEvent, margin_m: float = 0.0) -> Avoider:
+    """Return a level that stands alone at a doubt, and turns away after 0.05 s."""
+    contact = SETTINGS.model_copy(update={"avoids": False, "margin_m": margin_m})
+    return Avoider(*events, contact=contact, turns_after_s=0.05)
+
+
+def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
+    robot = turner(*LESSONS)
+    assert robot.after_a_look().cause is DecisionCause.DOUBT
+    standing = [robot.at(readings(s11=0.10)) for _ in range(4)]
+    assert {each.cause for each in standing} == {DecisionCause.DOUBT}
+    turning = robot.at(readings(s11=0.10))
+    assert (turning.cause, turning.action, turning.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
+    actions = [robot.at(readings(s11=0.15)).action for _ in range(30)]  # still met in 0.6 s
+    assert actions == ["spin"] * 30
+    robot.memory.clear()
+    assert [robot.at(readings()).action for _ in range(11)][-1] == "forward"
+    assert robot.after_a_look().cause is DecisionCause.DOUBT  # it stands again before it turns again
+
+
+def test_robot_without_a_taught_turn_backs_off() -> None:
+    robot = turner(LESSONS[0])
+    robot.after_a_look()
+    decisions = [robot.at(readings(s11=0.10)) for _ in range(60)][5:]
+    assert {(each.cause, each.action, each.rla_id) for each in decisions} == {(DecisionCause.AVOIDS, "back", None)}
+
+
+def test_robot_without_a_free_way_off_stands_on() -> None:
+    robot = turner(LESSONS[0], margin_m=0.05)
+    # Close on all sides: s1 at the front and s2 at the rear end of its left side.
+    close = {"s11": 0.10, "s14": 0.10, "s1": 0.10, "s2": 0.10, "s5": 0.10, "s6": 0.10}
+    for _ in range(2):
+        look_all(robot, close)
+    assert {robot.at(readings(**close)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+
+
+def look_all(robot: Avoider, near_m: dict[str, float]) -> None:
+    for _ in range(LOOK_TICKS):
+        robot.at(readings(**near_m))
+
+
+def test_robot_with_a_teacher_does_not_turn() -> None:
+    robot = turner(*LESSONS)
+    robot.level.skip_withdrawn = False
+    robot.after_a_look()
+    assert {robot.at(readings(s11=0.10)).cause for _ in range(100)} == {DecisionCause.DOUBT}
+
+
+def test_turning_without_standing_alone_is_refused() -> None:
+    with pytest.raises(ValidationError, match="turns_after_s needs asks: true, alone: true and contact"):
+        DoubtSettings(usual_distance=0.1, rare_distance=0.5, rare_counts=50.0, threshold=2.0, turns_after_s=1.0)

@@ -24,12 +24,18 @@ from tests.experiments.helpers import ROBOT, STAGE, teach
 TICKS = 3000
 
 
-def log(doubt: Scores, *, missed: tuple[slice, ...] = (), collisions: tuple[int, ...] = ()) -> DriveLog:
+def log(
+    doubt: Scores,
+    *,
+    missed: tuple[slice, ...] = (),
+    collisions: tuple[int, ...] = (),
+    seen: tuple[bool, ...] = (),
+) -> DriveLog:
     """Return a drive of 30 s with this doubt, half as great a distance, and wrong actions at `missed`."""
     flags = np.zeros(TICKS, dtype=np.bool_)
     for each in missed:
         flags[each] = True
-    return DriveLog("a", doubt, doubt / 2, np.ones(TICKS, dtype=np.bool_), flags, collisions)
+    return DriveLog("a", doubt, doubt / 2, np.ones(TICKS, dtype=np.bool_), flags, collisions, seen)
 
 
 def pulses(*ticks: int) -> Scores:
@@ -62,7 +68,8 @@ def test_crossings_three_seconds_apart_are_two_questions() -> None:
 
 def test_judge_score_counts_collisions_and_false_questions() -> None:
     scores = pulses(1000, 2500)
-    result = judge_score([log(scores, collisions=(1100, 2100, 2505))], [scores], 5.0)
+    result = judge_score([log(scores, collisions=(1100, 2100, 2505), seen=(True, True, False))], [scores], 5.0)
+    assert result.caught_seen == 1
     assert (result.caught, result.questions, result.false_questions) == (1, 2, 0)
     alarm = judge_score([log(scores)], [scores], 5.0)
     assert (alarm.caught, alarm.questions, alarm.false_questions) == (0, 2, 2)
@@ -77,12 +84,15 @@ def test_threshold_for_a_budget_keeps_to_it() -> None:
 
 
 def test_tables_have_doubt_and_its_control() -> None:
-    told = [log(pulses(1000), collisions=(1100,))]
+    told = [log(pulses(1000), collisions=(1100,), seen=(True,))]
     first, second = score_table(told, 5.0).rows
-    assert (first[0], first[2:]) == ("doubt", ("1 of 1", "4.00", "0.00"))
+    assert (first[0], first[2:]) == ("doubt", ("1 of 1", "1 of 1", "4.00", "0.00"))
     assert second[0] == "distance / R"
-    rows = collision_table({"only told": told, "stands": [log(pulses())]}).rows
-    assert [row[:3] for row in rows] == [("only told", "1", "200.0"), ("stands", "0", "0.0")]
+    table = collision_table({"only told": told, "stands": [log(pulses())]}, 0.0)
+    rows = table.rows
+    assert table.note == "A robot that asks stands for as long as its question lasts."
+    assert [row[:3] for row in rows] == [("only told", "1", "1"), ("stands", "0", "0")]
+    assert [row[3].split()[0] for row in rows] == ["200.0", "0.0"]
 
 
 def test_task_without_doubt_is_refused() -> None:
@@ -94,11 +104,11 @@ def test_task_without_doubt_is_refused() -> None:
 def test_robot_that_stands_or_avoids_collides_no_more_often(tmp_path: Path) -> None:
     task = load_task("wall_following")
     knowledge = teach(tmp_path / "taught.knowledge", task, seed=3).knowledge
-    told, avoids, stands = (
-        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response)).run(lambda _: None)
+    told, avoids, stands, turns = (
+        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response, 10.0)).run(lambda _: None)
         for response in DoubtResponse
     )
-    assert len(told.doubt) == len(avoids.doubt) == len(stands.doubt) == 6000
+    assert len(told.doubt) == len(avoids.doubt) == len(stands.doubt) == len(turns.doubt) == 6000
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
-    assert max(len(stands.collisions), len(avoids.collisions)) <= len(told.collisions)
+    assert all(len(each.collisions) <= len(told.collisions) for each in (stands, avoids, turns))

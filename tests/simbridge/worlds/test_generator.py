@@ -1,6 +1,7 @@
 """Generated worlds: drivable, and equal for equal seeds."""
 
 import hashlib
+import itertools
 import math
 
 import pytest
@@ -97,13 +98,47 @@ def has_a_square(world: WorldSettings) -> bool:
     return len(world.names) < len(columns) * len(rows)
 
 
+@pytest.mark.parametrize("some", seeds(range(0, 100, 6), range(1100)))
+def test_floors_have_thin_things_and_room_to_turn(some: range) -> None:
+    for seed in some:
+        world = generated(f"floors-{seed}")
+        centres = world.free_space.buffer(-TURNING_M + 0.002)
+        assert isinstance(centres, shapely.Polygon), world.name
+        assert len(world.start_poses) >= 6
+        for start, pose in enumerate(world.start_poses):
+            assert centres.contains(shapely.Point(pose.x_m, pose.y_m)), f"{world.name} start_poses.{start}"
+        assert len({*world.names}) == len(world.names) >= 2
+        assert all(board.thickness_m == 0.02 for board in world.walls)
+        assert all(leg.radius_m <= 0.05 for leg in world.round_obstacles)
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 6), range(1100)))
+def test_floors_leave_no_gap_in_which_a_robot_gets_stuck(some: range) -> None:
+    for seed in some:
+        world = generated(f"floors-{seed}")
+        room = shapely.Polygon(world.outline).exterior
+        pieces = pieces_of(world)
+        gaps_m = [one.distance(other) for one, other in itertools.combinations(pieces, 2)]
+        gaps_m += [piece.distance(room) for piece in pieces]
+        assert all(gap_m <= 0.2 or gap_m >= 0.7 for gap_m in gaps_m), world.name
+
+
+def pieces_of(world: WorldSettings) -> list[shapely.Geometry]:
+    """Return the area of each piece of furniture; of one on legs the area between them, too."""
+    parts: dict[str, list[shapely.Geometry]] = {}
+    for name, shape in zip(world.names, world.shapes, strict=True):
+        parts.setdefault(name.partition("-leg-")[0], []).append(shape)
+    return [shapely.convex_hull(shapely.union_all(each)) for each in parts.values()]
+
+
 def test_generated_worlds_are_equal_on_every_machine() -> None:
     # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
     assert [digest("rooms-17"), digest("streets-3")] == ["38d54f9daa54236a", "6635d1be71c0b592"]
+    assert digest("floors-17") == "aafca8973228c551"
 
 
 def test_generated_worlds_differ_between_seeds() -> None:
-    assert len({digest(f"rooms-{i}") for i in range(10)} | {digest(f"streets-{i}") for i in range(10)}) == 20
+    assert len({digest(f"{kind}-{i}") for kind in ("rooms", "streets", "floors") for i in range(10)}) == 30
 
 
 def test_seeded_random_reaches_its_bounds() -> None:
@@ -121,7 +156,9 @@ def test_is_drivable_rejects_narrow_gaps() -> None:
     assert not is_drivable(room.difference(shapely.box(0.3, 0.0, 0.4, 1.0)))
 
 
-@pytest.mark.parametrize("name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3"])
+@pytest.mark.parametrize(
+    "name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3", "floors-x"]
+)
 def test_load_world_unknown_name_lists_the_names(name: str) -> None:
     with pytest.raises(SettingsError, match=rf"^{name}: .* manhattan, .*rooms-N"):
         load_world(name)

@@ -6,7 +6,7 @@ import { measured } from "./progress.js";
 import { setText } from "./decision.js";
 
 const $ = (id) => document.getElementById(id);
-const GENERATED = ["rooms", "streets"]; // kinds of worlds that exist for any whole number
+const GENERATED = ["rooms", "streets", "floors"]; // kinds of worlds that exist for any whole number
 const FASTEST = 10;
 const HIGHEST_NUMBER = 999999999;
 
