@@ -5,11 +5,23 @@ whose sensors all freeze.
 """
 
 from collections.abc import Container
-from enum import StrEnum
+from enum import IntEnum, StrEnum
 from typing import NamedTuple
 
+from hal.odometry import WheelMotion, WheelOdometry
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
+from hal.sensor_beam import Beam, beam_of
 from hal.sensor_ring import Neighbours, neighbours_of
+
+
+class SensorRules(IntEnum):
+    """Version of the rules by which sensors are noticed; a recording is replayed by its own."""
+
+    NOISE = 1
+    """Up to 2026-11-26: the noisy signs need 4.5 s and neighbours that changed by 100 counts."""
+    MOTION = 2
+    """The motion of the wheels tells a phantom, and a pressed sensor is not dark."""
 
 
 class SensorFault(StrEnum):
@@ -65,24 +77,37 @@ QUIET_COUNTS, QUIET_RATIO = 12, 0.16
 DIFFERS_COUNTS = 60
 """Difference to both neighbours that contradicts them."""
 SEES_NOTHING_TICKS = 450
-"""Ticks of driving in such a contradiction; the longest time of healthy drives was 0.3 s. A neighbour that is stuck
-high is noticed before, after 400 ticks of driving."""
+"""Ticks of driving in such a contradiction by SensorRules.NOISE."""
+DARK_TICKS = 90
+"""Ticks of driving in such a contradiction by SensorRules.MOTION; 30 had four false alarms in 25 minutes, 45 one."""
+DARK_DIFFERS_COUNTS = 40
+"""Difference to both neighbours that contradicts a dark sensor: they see something within 0.44 m."""
+AGREES_COUNTS = 30
+"""Difference to a dark sensor from which on the sensors next to its neighbours bear the neighbours out."""
 PHANTOM_TICKS = 450
 """Ticks of driving in the opposite contradiction, which a thin post explains for long."""
 SWING_COUNTS = 100
 """Counts by which both neighbours must have changed meanwhile: a neighbour that is stuck is no witness."""
+PASSES_M = 0.4
+"""Way of the wheels past an obstacle that two sensors on each side do not see: it is narrower than the gap between
+them. On a circle round a post the way is 0."""
+KEEPS = 0.985
+"""Part of that way that is kept from look to look, half after 2.3 s: slip and an unsure distance do not add up."""
 
 
 class SensorWatch:
     """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
 
-    def __init__(self, robot: RobotSettings) -> None:
+    def __init__(self, robot: RobotSettings, rules: SensorRules = SensorRules.MOTION) -> None:
         infrared = robot.infrared
+        self._rules = rules
+        self._odometry = WheelOdometry(robot.geometry)
+        self._left_ticks = self._right_ticks = 0
         stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s)
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
         self._states = [
-            _SensorState(place, near, lowest, highest, stuck_ticks)
+            _SensorState(near, beam_of(infrared, place), _Limits(lowest, highest, stuck_ticks, rules))
             for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
         self._ticks = self._driven = 0
@@ -92,18 +117,24 @@ class SensorWatch:
         self.places: tuple[int, ...] = ()
         """Their places in the sensor table."""
 
-    def update(self, counts: tuple[int, ...], *, driving: bool) -> tuple[BrokenSensor, ...]:
-        """Process the readings of one tick, in counts, and return the sensors that are newly noticed as broken.
+    def update(self, readings: SensorReadings, *, driving: bool) -> tuple[BrokenSensor, ...]:
+        """Process the readings of one tick and return the sensors that are newly noticed as broken.
 
         Call it in each tick with fresh readings. `driving`: whether the wheels were told to turn in the tick before.
         """
         self._ticks += 1
-        self._driven += driving
+        # Wheels that turn while a bumper is pressed may not move the robot.
+        if not readings.bumpers or self._rules is SensorRules.NOISE:
+            self._driven += driving
+            self._left_ticks += readings.encoder_left_ticks
+            self._right_ticks += readings.encoder_right_ticks
         if self._ticks % LOOK_TICKS:
             return ()
-        driven, broken, signs = self._driven, self._broken, None
+        counts, driven, broken, signs = readings.infrared_counts, self._driven, self._broken, None
+        motion = self._odometry.motion(self._left_ticks, self._right_ticks)
+        self._left_ticks = self._right_ticks = 0
         for state in self._states:
-            state.update(counts, driven)
+            state.update(counts, driven, motion)
             if state.suspect and state.place not in broken and (fault := state.fault(driven)) is not None:
                 signs = (*(signs or ()), (state.place, fault))
         return () if signs is None else self._judge(signs, counts)
@@ -139,13 +170,24 @@ class SensorWatch:
             state.set_witnesses(self._broken)
 
 
+class _Limits(NamedTuple):
+    """Limits of all sensors of a robot."""
+
+    lowest: float
+    highest: float
+    stuck_ticks: int
+    rules: SensorRules
+
+
 class _SensorState:
     """Signs of one sensor, in ticks of driving."""
 
     __slots__ = (
+        "_across_m",
         "_after",
         "_after_high",
         "_after_low",
+        "_beam",
         "_before",
         "_before_high",
         "_before_low",
@@ -157,42 +199,54 @@ class _SensorState:
         "_lowest",
         "_quiet_high",
         "_quiet_low",
+        "_rules",
+        "_second_after",
+        "_second_before",
         "_stuck_ticks",
+        "_toward_m",
+        "agreed_ticks",
         "changed",
         "high_ticks",
         "low_ticks",
         "out_ticks",
+        "passes",
         "place",
         "still_from",
         "suspect",
     )
 
-    def __init__(self, place: int, near: Neighbours, lowest: float, highest: float, stuck_ticks: int) -> None:
-        self.place = place
+    def __init__(self, near: Neighbours, beam: Beam, limits: _Limits) -> None:
+        self.place = beam.place
+        self._beam = beam
         self._before, self._after = near.before, near.after
-        self._lowest, self._highest = lowest, highest
-        self._stuck_ticks = stuck_ticks
+        self._second_before, self._second_after = near.second_before, near.second_after
+        self._lowest, self._highest, self._stuck_ticks, self._rules = limits
         self._has_witnesses = True
         self.restart(0)
 
     def set_witnesses(self, broken: Container[int]) -> None:
         """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
         self._has_witnesses = self._before not in broken and self._after not in broken
-        self.low_ticks = self.high_ticks = 0
+        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
 
     def restart(self, driven: int) -> None:
         """Forget all signs; `driven`: ticks that the robot has driven."""
         self._low = self._high = self._quiet_low = self._quiet_high = -1000
         self._before_low = self._before_high = self._after_low = self._after_high = 0
         self._driven = self.still_from = driven
-        self.low_ticks = self.high_ticks = self.out_ticks = 0
+        self.low_ticks = self.high_ticks = self.agreed_ticks = self.out_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
+        """Whether the wheels have moved the robot past what it sees."""
         self.changed = False
         """Whether the reading has left the band of noise since this was set to False."""
         self.suspect = False
         """Whether `fault` may find a sign; it spares a call in most ticks."""
 
-    def update(self, counts: tuple[int, ...], driven: int) -> None:
-        """Look at all readings, in counts; `driven`: ticks that the robot has driven."""
+    def update(self, counts: tuple[int, ...], driven: int, motion: WheelMotion) -> None:
+        """Look at all readings, in counts; `driven`: ticks that the robot has driven; `motion`: since the last look."""
         value = counts[self.place]
         drove, self._driven = driven - self._driven, driven
         self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + LOOK_TICKS, RANGE_TICKS)
@@ -210,7 +264,7 @@ class _SensorState:
         if self._quiet_high - self._quiet_low > QUIET_COUNTS + QUIET_RATIO * self._quiet_high:
             self._begin_quiet(value, counts)
         elif drove and self._has_witnesses:
-            self._compare(counts[self._before], counts[self._after], drove)
+            self._compare(counts, drove, motion)
         self.suspect = bool(
             self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= self._stuck_ticks
         )
@@ -221,8 +275,14 @@ class _SensorState:
             return SensorFault.OUT_OF_RANGE
         if driven - self.still_from >= self._stuck_ticks:
             return SensorFault.STUCK
+        if self._rules is not SensorRules.NOISE:
+            if self.agreed_ticks >= DARK_TICKS or (self.low_ticks >= DARK_TICKS and self._neighbours_change):
+                return SensorFault.SEES_NOTHING
+            if self.passes:
+                return SensorFault.SEES_A_PHANTOM
         swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
-        if swing >= SWING_COUNTS and self.low_ticks >= SEES_NOTHING_TICKS:
+        seems_dark = self._rules is SensorRules.NOISE and self.low_ticks >= SEES_NOTHING_TICKS
+        if swing >= SWING_COUNTS and seems_dark:
             return SensorFault.SEES_NOTHING
         if swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS:
             return SensorFault.SEES_A_PHANTOM
@@ -233,11 +293,23 @@ class _SensorState:
         self._quiet_low = self._quiet_high = value
         self._before_low = self._before_high = counts[self._before]
         self._after_low = self._after_high = counts[self._after]
-        self.low_ticks = self.high_ticks = 0
+        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
         self.changed = True
 
-    def _compare(self, before: int, after: int, drove: int) -> None:
+    @property
+    def _neighbours_change(self) -> bool:
+        """Return whether both neighbours have changed by more than noise while this sensor has not."""
+        before, after = self._before_high - self._before_low, self._after_high - self._after_low
+        return (
+            before > QUIET_COUNTS + QUIET_RATIO * self._before_high
+            and after > QUIET_COUNTS + QUIET_RATIO * self._after_high
+        )
+
+    def _compare(self, counts: tuple[int, ...], drove: int, motion: WheelMotion) -> None:
         """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
+        before, after = counts[self._before], counts[self._after]
         if before < self._before_low:
             self._before_low = before
         elif before > self._before_high:
@@ -246,7 +318,30 @@ class _SensorState:
             self._after_low = after
         elif after > self._after_high:
             self._after_high = after
-        if before - self._quiet_high > DIFFERS_COUNTS and after - self._quiet_high > DIFFERS_COUNTS:
-            self.low_ticks += drove
+        if before > self._quiet_high and after > self._quiet_high:
+            self._compare_dark(counts, drove)
         elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
             self.high_ticks += drove
+            if self._rules is not SensorRules.NOISE:
+                self._follow_obstacle(counts, motion)
+
+    def _compare_dark(self, counts: tuple[int, ...], drove: int) -> None:
+        """Count a contradiction of both neighbours, which see something nearer."""
+        high = self._quiet_high
+        nearest = min(counts[self._before], counts[self._after])
+        if self._rules is SensorRules.NOISE:
+            if nearest - high > DIFFERS_COUNTS:
+                self.low_ticks += drove
+        elif high < self._beam.dark_counts and nearest - high > DARK_DIFFERS_COUNTS:
+            self.low_ticks += drove
+            if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
+                self.agreed_ticks += drove
+
+    def _follow_obstacle(self, counts: tuple[int, ...], motion: WheelMotion) -> None:
+        """Add the way past the obstacle, unless a sensor next to a neighbour sees it, too."""
+        if self._quiet_low - max(counts[self._second_before], counts[self._second_after]) <= DIFFERS_COUNTS:
+            return
+        across_m, toward_m = self._beam.motion_m((self._quiet_low + self._quiet_high) / 2, motion)
+        self._across_m = KEEPS * self._across_m + across_m
+        self._toward_m = KEEPS * self._toward_m + toward_m
+        self.passes = self.passes or max(abs(self._across_m), abs(self._toward_m)) > PASSES_M

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings, load_robot
 from hal.sensor_watch import (
     LOOK_TICKS,
@@ -13,6 +14,7 @@ from hal.sensor_watch import (
     STUCK_TIMES,
     BrokenSensor,
     SensorFault,
+    SensorRules,
     SensorWatch,
 )
 
@@ -28,8 +30,11 @@ Fault = Callable[[int], int]
 class Drive:
     """Readings of 18 noisy sensors, of which some see a wall that comes and goes, and a watch."""
 
-    def __init__(self, robot: RobotSettings = ROBOT) -> None:
-        self.watch = SensorWatch(robot)
+    def __init__(self, robot: RobotSettings = ROBOT, rules: SensorRules = SensorRules.MOTION) -> None:
+        self.watch = SensorWatch(robot, rules)
+        self.left_ticks = self.right_ticks = 0
+        """Encoder ticks in each tick of driving; 0, as on a circle round what a sensor sees."""
+        self.bumpers = 0
         self.faults: dict[str, Fault] = {}
         self.near: tuple[str, ...] = ()
         """Sensors that see a wall for 2 s in every 4 s."""
@@ -45,7 +50,9 @@ class Drive:
             self._ticks += 1
             if self._ticks % 4 == 1:
                 self._measure()
-            found += self.watch.update(tuple(self._counts), driving=driving)
+            left, right = (self.left_ticks, self.right_ticks) if driving else (0, 0)
+            readings = SensorReadings(0.0, tuple(self._counts), 0.0, left, right, 0.0, self.bumpers, 0.0)
+            found += self.watch.update(readings, driving=driving)
         return found
 
     def _measure(self) -> None:
