@@ -310,6 +310,28 @@ class _SensorState:
     def _compare(self, counts: tuple[int, ...], drove: int, motion: WheelMotion) -> None:
         """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
         before, after = counts[self._before], counts[self._after]
+        moves = self._rules is not SensorRules.NOISE
+        contradicts = self.low_ticks or self.high_ticks
+        if contradicts or not moves:
+            self._widen(before, after)
+        else:  # a neighbour that jumped before the contradiction and is stuck since is no witness
+            self._before_low = self._before_high = before
+            self._after_low = self._after_high = after
+        nearest, high = min(before, after), self._quiet_high
+        if nearest > high:
+            if nearest - high > (DARK_DIFFERS_COUNTS if moves else DIFFERS_COUNTS):
+                if moves:
+                    if high >= self._beam.dark_counts:
+                        return
+                    if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
+                        self.agreed_ticks += drove
+                self.low_ticks += drove
+        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
+            if moves:
+                self._follow_obstacle(counts, motion)
+            self.high_ticks += drove
+
+    def _widen(self, before: int, after: int) -> None:
         if before < self._before_low:
             self._before_low = before
         elif before > self._before_high:
@@ -318,24 +340,6 @@ class _SensorState:
             self._after_low = after
         elif after > self._after_high:
             self._after_high = after
-        if before > self._quiet_high and after > self._quiet_high:
-            self._compare_dark(counts, drove)
-        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
-            self.high_ticks += drove
-            if self._rules is not SensorRules.NOISE:
-                self._follow_obstacle(counts, motion)
-
-    def _compare_dark(self, counts: tuple[int, ...], drove: int) -> None:
-        """Count a contradiction of both neighbours, which see something nearer."""
-        high = self._quiet_high
-        nearest = min(counts[self._before], counts[self._after])
-        if self._rules is SensorRules.NOISE:
-            if nearest - high > DIFFERS_COUNTS:
-                self.low_ticks += drove
-        elif high < self._beam.dark_counts and nearest - high > DARK_DIFFERS_COUNTS:
-            self.low_ticks += drove
-            if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
-                self.agreed_ticks += drove
 
     def _follow_obstacle(self, counts: tuple[int, ...], motion: WheelMotion) -> None:
         """Add the way past the obstacle, unless a sensor next to a neighbour sees it, too."""

@@ -93,8 +93,12 @@ def _update_signs(robot: Robot, i: int, motion: tuple[float, float], law: WatchL
         signs[_LOW_TICKS] = signs[_HIGH_TICKS] = signs[_AGREED_TICKS] = 0
         robot.ways_m[i] = 0.0
     elif drove:
-        _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
-        _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
+        if signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0:
+            _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
+            _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
+        else:
+            signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
+            signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
         high, low = signs[_QUIET_HIGH], signs[_QUIET_LOW]
         second_before, second_after = robot.counts[robot.second_before[i]], robot.counts[robot.second_after[i]]
         if before > high and after > high:

@@ -142,7 +142,7 @@ class HealthyJob(_Job):
     outcome = HealthyOutcome
     driver: Driver
     seconds: float
-    """Time of driving in s."""
+    """Time of the drive in s."""
 
     @property
     def name(self) -> str:
@@ -162,7 +162,8 @@ class HealthyJob(_Job):
     async def measure(self, events: Sequence[TeachingEvent], tell: Progress) -> HealthyOutcome:
         """Drive and return the outcome; `tell` gets the simulated seconds. Raises SettingsError."""
         setup = DriveSetup(self.world, self.seed, self.driver, self.seconds)
-        run = await drive(self.factory, self.robot, self.task, events, setup)
+        end_tick = round(self.seconds / self.robot.can.cycle_s)
+        run = await drive(self.factory, self.robot, self.task, events, setup, end_tick)
         tell(self.seconds)
         return HealthyOutcome(
             made_of=self.made_of,

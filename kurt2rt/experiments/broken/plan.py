@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.broken.drive import Driver
@@ -144,7 +145,10 @@ def read_study(plan: BrokenPlan, results: Results) -> BrokenStudy:
 
 
 def chosen_sensors(names: Sequence[str], wanted: Sequence[str] | None) -> tuple[int, ...]:
-    """Return the places of the wanted sensors in the table of `names`; all of them for None. Raises ValueError."""
+    """Return the places of the wanted sensors in the table of `names`; all of them for None. Raises SettingsError."""
+    unknown = [name for name in wanted or () if name not in names]
+    if unknown:
+        raise SettingsError(f"no sensor of the robot (allowed {', '.join(names)})", where=f"sensor {unknown[0]}")
     return tuple(range(len(names))) if not wanted else tuple(names.index(name) for name in dict.fromkeys(wanted))
 
 
