@@ -8,7 +8,8 @@ from behaviors.repertoire import Repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.sensor_ring import SubstituteReadings
-from hal.sensor_watch import SensorRules, SensorWatch
+from hal.sensor_signs import SensorRules
+from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead, set_points
 from kurt2rt.core.basic.obstacle_memory import ObstacleMemory

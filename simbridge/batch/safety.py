@@ -7,7 +7,7 @@ within its band (tests/simbridge/batch/test_laws.py).
 
 import math
 
-from hal.sensor_watch import (
+from hal.sensor_signs import (
     AGREES_COUNTS,
     DARK_DIFFERS_COUNTS,
     DARK_TICKS,
@@ -28,7 +28,7 @@ from simbridge.batch.parts import SIGNS, GuardLaw, Integers, Robot, WatchLaw
 _LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
 _DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS, _AGREED_TICKS = range(8, SIGNS)
 UNSEEN = -1000
-"""First value of the bands of `hal.sensor_watch`."""
+"""First value of the bands of `hal.sensor_signs`."""
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
 _LONGEST_SLEW_CYCLES = 2

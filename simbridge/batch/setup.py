@@ -21,7 +21,7 @@ from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import BumperEnd, RobotSettings
 from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
-from hal.sensor_watch import HIGHEST, LOWEST, STUCK_TIMES
+from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
 from simbridge.batch.parts import (
     BodyLaw,
     Floats,

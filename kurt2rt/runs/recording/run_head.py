@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
-from hal.sensor_watch import SensorRules
+from hal.sensor_signs import SensorRules
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 RUN_VERSION = 4
