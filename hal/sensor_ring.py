@@ -14,6 +14,10 @@ class Neighbours(NamedTuple):
     """Next sensor clockwise round the robot."""
     after: int
     """Next sensor counter-clockwise."""
+    second_before: int
+    """Sensor next to `before`, clockwise."""
+    second_after: int
+    """Sensor next to `after`, counter-clockwise."""
     substitutes: tuple[int, ...]
     """Sensors whose readings replace this sensor's: those next to it that look the same way, or else both."""
 
@@ -26,9 +30,9 @@ def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
     ring = sorted(range(len(sensors)), key=lambda place: _ring_key(sensors[place]))
     found: dict[int, Neighbours] = {}
     for at, place in enumerate(ring):
-        before, after = ring[at - 1], ring[(at + 1) % len(ring)]
+        before, after, second_before, second_after = (ring[(at + step) % len(ring)] for step in (-1, 1, -2, 2))
         alike = tuple(each for each in (before, after) if sensors[each].heading_deg == sensors[place].heading_deg)
-        found[place] = Neighbours(before, after, alike or (before, after))
+        found[place] = Neighbours(before, after, second_before, second_after, alike or (before, after))
     return tuple(found[place] for place in range(len(sensors)))
 
 

@@ -4,25 +4,24 @@ A deterministic function of readings and driven ticks with a fixed amount of sta
 whose sensors all freeze.
 """
 
-from collections.abc import Container
-from enum import StrEnum
 from typing import NamedTuple
 
+from hal.odometry import WheelOdometry
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from hal.sensor_ring import Neighbours, neighbours_of
-
-
-class SensorFault(StrEnum):
-    """Code for the sign by which a broken sensor was noticed."""
-
-    STUCK = "stuck"
-    """It repeats its reading while the others flicker."""
-    OUT_OF_RANGE = "out of range"
-    """It reads less or more than a working sensor does."""
-    SEES_NOTHING = "sees nothing"
-    """It stays low while both neighbours see something near."""
-    SEES_A_PHANTOM = "sees a phantom"
-    """It stays high while both neighbours see nothing near, and does not follow their changes."""
+from hal.sensor_beam import beam_of
+from hal.sensor_ring import neighbours_of
+from hal.sensor_signs import (
+    FLICKERS_TICKS,
+    HIGHEST,
+    LOOK_TICKS,
+    LOWEST,
+    STUCK_TIMES,
+    SensorFault,
+    SensorLimits,
+    SensorRules,
+    SensorSigns,
+)
 
 
 class BrokenSensor(NamedTuple):
@@ -43,46 +42,19 @@ class BrokenSensor(NamedTuple):
         return f"{self.label} ({self.name})"
 
 
-LOOK_TICKS = 5
-"""Ticks between two looks at all sensors: each look meets new measurements, because a sensor measures every 29 to 48 ms
-(docs/the-robot.md#noise-and-timing). All at once take 3.5 µs a tick on average; a quarter of them in each tick took
-4.9 µs, because their code and data had left the caches."""
-STUCK_TIMES = 4
-"""Times `frozen_infrared_s`, of driving within STUCK_BAND, until a sensor is stuck: 4 s are 80 measurements.
-
-A working sensor takes 68 % of its measurements there with nothing in view; healthy drives had at most 1.4 s.
-"""
-STUCK_BAND = 2
-"""Width in counts: a converter's last bit flickers also with a constant voltage."""
-FLICKERS_TICKS = 100
-"""Ticks of driving within STUCK_BAND up to which another sensor counts as flickering."""
-RANGE_TICKS = 50
-"""Ticks out of range before a sensor is broken."""
-LOWEST, HIGHEST = 0.6, 1.2
-"""Range of a working sensor, in floor and plateau counts; gain and noise take 7 and 12 % of it."""
-QUIET_COUNTS, QUIET_RATIO = 12, 0.16
-"""Width of the band that noise alone explains, in counts and as a ratio of the reading: 8 standard deviations."""
-DIFFERS_COUNTS = 60
-"""Difference to both neighbours that contradicts them."""
-SEES_NOTHING_TICKS = 450
-"""Ticks of driving in such a contradiction; the longest time of healthy drives was 0.3 s. A neighbour that is stuck
-high is noticed before, after 400 ticks of driving."""
-PHANTOM_TICKS = 450
-"""Ticks of driving in the opposite contradiction, which a thin post explains for long."""
-SWING_COUNTS = 100
-"""Counts by which both neighbours must have changed meanwhile: a neighbour that is stuck is no witness."""
-
-
 class SensorWatch:
     """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
 
-    def __init__(self, robot: RobotSettings) -> None:
+    def __init__(self, robot: RobotSettings, rules: SensorRules = SensorRules.MOTION) -> None:
         infrared = robot.infrared
+        self._rules = rules
+        self._odometry = WheelOdometry(robot.geometry)
+        self._left_ticks = self._right_ticks = 0
         stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s)
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
         self._states = [
-            _SensorState(place, near, lowest, highest, stuck_ticks)
+            SensorSigns(near, beam_of(infrared, place), SensorLimits(lowest, highest, stuck_ticks, rules))
             for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
         self._ticks = self._driven = 0
@@ -92,18 +64,24 @@ class SensorWatch:
         self.places: tuple[int, ...] = ()
         """Their places in the sensor table."""
 
-    def update(self, counts: tuple[int, ...], *, driving: bool) -> tuple[BrokenSensor, ...]:
-        """Process the readings of one tick, in counts, and return the sensors that are newly noticed as broken.
+    def update(self, readings: SensorReadings, *, driving: bool) -> tuple[BrokenSensor, ...]:
+        """Process the readings of one tick and return the sensors that are newly noticed as broken.
 
         Call it in each tick with fresh readings. `driving`: whether the wheels were told to turn in the tick before.
         """
         self._ticks += 1
-        self._driven += driving
+        # Wheels that turn while a bumper is pressed may not move the robot.
+        if not readings.bumpers or self._rules is SensorRules.NOISE:
+            self._driven += driving
+            self._left_ticks += readings.encoder_left_ticks
+            self._right_ticks += readings.encoder_right_ticks
         if self._ticks % LOOK_TICKS:
             return ()
-        driven, broken, signs = self._driven, self._broken, None
+        counts, driven, broken, signs = readings.infrared_counts, self._driven, self._broken, None
+        motion = self._odometry.motion(self._left_ticks, self._right_ticks)
+        self._left_ticks = self._right_ticks = 0
         for state in self._states:
-            state.update(counts, driven)
+            state.update(counts, driven, motion)
             if state.suspect and state.place not in broken and (fault := state.fault(driven)) is not None:
                 signs = (*(signs or ()), (state.place, fault))
         return () if signs is None else self._judge(signs, counts)
@@ -137,116 +115,3 @@ class SensorWatch:
         self.places = tuple(self._broken)
         for state in self._states:
             state.set_witnesses(self._broken)
-
-
-class _SensorState:
-    """Signs of one sensor, in ticks of driving."""
-
-    __slots__ = (
-        "_after",
-        "_after_high",
-        "_after_low",
-        "_before",
-        "_before_high",
-        "_before_low",
-        "_driven",
-        "_has_witnesses",
-        "_high",
-        "_highest",
-        "_low",
-        "_lowest",
-        "_quiet_high",
-        "_quiet_low",
-        "_stuck_ticks",
-        "changed",
-        "high_ticks",
-        "low_ticks",
-        "out_ticks",
-        "place",
-        "still_from",
-        "suspect",
-    )
-
-    def __init__(self, place: int, near: Neighbours, lowest: float, highest: float, stuck_ticks: int) -> None:
-        self.place = place
-        self._before, self._after = near.before, near.after
-        self._lowest, self._highest = lowest, highest
-        self._stuck_ticks = stuck_ticks
-        self._has_witnesses = True
-        self.restart(0)
-
-    def set_witnesses(self, broken: Container[int]) -> None:
-        """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
-        self._has_witnesses = self._before not in broken and self._after not in broken
-        self.low_ticks = self.high_ticks = 0
-
-    def restart(self, driven: int) -> None:
-        """Forget all signs; `driven`: ticks that the robot has driven."""
-        self._low = self._high = self._quiet_low = self._quiet_high = -1000
-        self._before_low = self._before_high = self._after_low = self._after_high = 0
-        self._driven = self.still_from = driven
-        self.low_ticks = self.high_ticks = self.out_ticks = 0
-        self.changed = False
-        """Whether the reading has left the band of noise since this was set to False."""
-        self.suspect = False
-        """Whether `fault` may find a sign; it spares a call in most ticks."""
-
-    def update(self, counts: tuple[int, ...], driven: int) -> None:
-        """Look at all readings, in counts; `driven`: ticks that the robot has driven."""
-        value = counts[self.place]
-        drove, self._driven = driven - self._driven, driven
-        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + LOOK_TICKS, RANGE_TICKS)
-        if value < self._low:
-            self._low = value
-        elif value > self._high:
-            self._high = value
-        if self._high - self._low > STUCK_BAND:
-            self._low = self._high = value
-            self.still_from = driven
-        if value < self._quiet_low:
-            self._quiet_low = value
-        elif value > self._quiet_high:
-            self._quiet_high = value
-        if self._quiet_high - self._quiet_low > QUIET_COUNTS + QUIET_RATIO * self._quiet_high:
-            self._begin_quiet(value, counts)
-        elif drove and self._has_witnesses:
-            self._compare(counts[self._before], counts[self._after], drove)
-        self.suspect = bool(
-            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= self._stuck_ticks
-        )
-
-    def fault(self, driven: int) -> SensorFault | None:
-        """Return the sign that the sensor is broken; None without one. `driven`: ticks that the robot has driven."""
-        if self.out_ticks >= RANGE_TICKS:
-            return SensorFault.OUT_OF_RANGE
-        if driven - self.still_from >= self._stuck_ticks:
-            return SensorFault.STUCK
-        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
-        if swing >= SWING_COUNTS and self.low_ticks >= SEES_NOTHING_TICKS:
-            return SensorFault.SEES_NOTHING
-        if swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS:
-            return SensorFault.SEES_A_PHANTOM
-        return None
-
-    def _begin_quiet(self, value: int, counts: tuple[int, ...]) -> None:
-        """Start the band of noise at this reading: it has changed by more than noise."""
-        self._quiet_low = self._quiet_high = value
-        self._before_low = self._before_high = counts[self._before]
-        self._after_low = self._after_high = counts[self._after]
-        self.low_ticks = self.high_ticks = 0
-        self.changed = True
-
-    def _compare(self, before: int, after: int, drove: int) -> None:
-        """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
-        if before < self._before_low:
-            self._before_low = before
-        elif before > self._before_high:
-            self._before_high = before
-        if after < self._after_low:
-            self._after_low = after
-        elif after > self._after_high:
-            self._after_high = after
-        if before - self._quiet_high > DIFFERS_COUNTS and after - self._quiet_high > DIFFERS_COUNTS:
-            self.low_ticks += drove
-        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
-            self.high_ticks += drove

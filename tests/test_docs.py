@@ -51,6 +51,7 @@ Shorten = Callable[[Sequence[str]], list[str]]
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "doubt": lambda words: [*words[:2], "--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
+    "broken": lambda _: ["broken", "--help"],  # a short run is tests/experiments/broken
     "transfer": lambda _: ["transfer", "--help"],  # a short run is tests/cli/test_transfer.py
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: shortened_lesson(words),

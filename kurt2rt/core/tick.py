@@ -251,7 +251,7 @@ class Tick:
         if readings.infrared_age_s <= self._options.stale_infrared_s:
             # On the clock of the way, because an obstacle that explains a sign is passed more slowly.
             drove = self._turned and self._handler.lesson_speed.counts
-            found = watch.update(readings.infrared_counts, driving=drove)
+            found = watch.update(readings, driving=drove)
             if found:
                 names = ", ".join(sensor.title for sensor in found)
                 self._handler.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))

@@ -27,7 +27,7 @@ _SOURCES = (
     *sorted(_ROOT.glob("behaviors/policies/*.py")),
     _ROOT / "behaviors" / "keep_distance.py",
     _ROOT / "simbridge" / "robot" / "wheels.py",
-    *(_ROOT / "hal" / name for name in ("batch.py", "infrared_law.py", "sensor_watch.py")),
+    *(_ROOT / "hal" / name for name in ("batch.py", "infrared_law.py", "sensor_signs.py")),
 )
 """Files with functions that are compiled, and with the constants in them."""
 

@@ -19,7 +19,7 @@ STRETCH = 500
 """Most ticks in one call of the loop."""
 NEAR_FACES, NEAR_POSTS = 64, 16
 """Most faces and posts near a robot."""
-SIGNS = 13
+SIGNS = 14
 """Numbers of the state of one sensor in its watch."""
 MOST_RAYS = 3
 MOST_VALUES = 64
@@ -119,6 +119,14 @@ class Robot:
     before: Annotated[Integers, ("sensors",)]
     after: Annotated[Integers, ("sensors",)]
     """Neighbours of each sensor."""
+    second_before: Annotated[Integers, ("sensors",)]
+    second_after: Annotated[Integers, ("sensors",)]
+    """Sensors next to the neighbours."""
+    ways_m: Annotated[Floats, ("sensors", 2)]
+    """Way past the obstacle of each sensor, across its beam and along it."""
+    watch_left_ticks: int
+    """Encoder ticks since the last look."""
+    watch_right_ticks: int
     driven: int
     """Ticks that the robot has driven."""
     board_still_s: Annotated[Floats, ("boards",)]
@@ -237,6 +245,15 @@ class WatchLaw(NamedTuple):
     highest: float
     stuck_ticks: int
     frozen_s: float
+    dark_counts: float
+    """Lowest reading that may be of a sensor pressed against a wall."""
+    beams: Floats
+    """Sine, cosine and place along and across the beam of each sensor, (sensors, 4), places in m."""
+    numerator_counts_m: float
+    offset_m: float
+    bias_counts: float
+    metres_per_tick: float
+    track_m: float
 
 
 class GuardLaw(NamedTuple):

@@ -7,14 +7,18 @@ within its band (tests/simbridge/batch/test_laws.py).
 
 import math
 
-from hal.sensor_watch import (
+from hal.sensor_signs import (
+    AGREES_COUNTS,
+    DARK_DIFFERS_COUNTS,
+    DARK_TICKS,
     DIFFERS_COUNTS,
+    KEEPS,
     LOOK_TICKS,
+    PASSES_M,
     PHANTOM_TICKS,
     QUIET_COUNTS,
     QUIET_RATIO,
     RANGE_TICKS,
-    SEES_NOTHING_TICKS,
     STUCK_BAND,
     SWING_COUNTS,
 )
@@ -22,9 +26,9 @@ from simbridge.batch.compiled import compiled
 from simbridge.batch.parts import SIGNS, GuardLaw, Integers, Robot, WatchLaw
 
 _LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
-_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS = range(8, SIGNS)
+_DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS, _AGREED_TICKS = range(8, SIGNS)
 UNSEEN = -1000
-"""First value of the bands of `hal.sensor_watch`."""
+"""First value of the bands of `hal.sensor_signs`."""
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
 _LONGEST_SLEW_CYCLES = 2
@@ -47,19 +51,29 @@ def is_frozen(robot: Robot, now_s: float, law: WatchLaw) -> bool:
 @compiled
 def looks_broken(robot: Robot, law: WatchLaw) -> bool:
     """Return whether a sensor of a robot shows a sign of a fault (hal.sensor_watch); call it in each tick."""
-    robot.driven += robot.turned
+    if robot.bumpers == 0:
+        robot.driven += robot.turned
+        robot.watch_left_ticks += robot.left_ticks
+        robot.watch_right_ticks += robot.right_ticks
     if robot.tick % LOOK_TICKS:
         return False
+    left_m = robot.watch_left_ticks * law.metres_per_tick
+    right_m = robot.watch_right_ticks * law.metres_per_tick
+    motion = (left_m + right_m) / 2, (right_m - left_m) / law.track_m
+    robot.watch_left_ticks = robot.watch_right_ticks = 0
     found = False
     for i in range(robot.counts.shape[0]):
-        if _update_signs(robot, i, law):
+        if _update_signs(robot, i, motion, law):
             found = found or _shows_fault(robot, i, law)
     return found
 
 
 @compiled
-def _update_signs(robot: Robot, i: int, law: WatchLaw) -> bool:
-    """Update the signs of sensor `i`; return whether it may be broken."""
+def _update_signs(robot: Robot, i: int, motion: tuple[float, float], law: WatchLaw) -> bool:
+    """Update the signs of sensor `i`; return whether it may be broken.
+
+    `motion`: way ahead in m and turn in rad since the last look.
+    """
     signs = robot.signs[i]
     value, driven = robot.counts[i], robot.driven
     drove = driven - signs[_DRIVEN]
@@ -76,17 +90,40 @@ def _update_signs(robot: Robot, i: int, law: WatchLaw) -> bool:
         signs[_QUIET_LOW] = signs[_QUIET_HIGH] = value
         signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
         signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
-        signs[_LOW_TICKS] = signs[_HIGH_TICKS] = 0
+        signs[_LOW_TICKS] = signs[_HIGH_TICKS] = signs[_AGREED_TICKS] = 0
+        robot.ways_m[i] = 0.0
     elif drove:
-        _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
-        _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
+        if signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0:
+            _widen(signs, _BEFORE_LOW, _BEFORE_HIGH, before)
+            _widen(signs, _AFTER_LOW, _AFTER_HIGH, after)
+        else:
+            signs[_BEFORE_LOW] = signs[_BEFORE_HIGH] = before
+            signs[_AFTER_LOW] = signs[_AFTER_HIGH] = after
         high, low = signs[_QUIET_HIGH], signs[_QUIET_LOW]
-        if before - high > DIFFERS_COUNTS and after - high > DIFFERS_COUNTS:
-            signs[_LOW_TICKS] += drove
+        second_before, second_after = robot.counts[robot.second_before[i]], robot.counts[robot.second_after[i]]
+        if before > high and after > high:
+            if high < law.dark_counts and min(before, after) - high > DARK_DIFFERS_COUNTS:
+                signs[_LOW_TICKS] += drove
+                if min(second_before, second_after) - high > AGREES_COUNTS:
+                    signs[_AGREED_TICKS] += drove
         elif low - before > DIFFERS_COUNTS and low - after > DIFFERS_COUNTS:
             signs[_HIGH_TICKS] += drove
+            if low - max(second_before, second_after) > DIFFERS_COUNTS:
+                _follow_obstacle(robot, i, motion, law)
     still = driven - signs[STILL_FROM] >= law.stuck_ticks
     return bool(signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[_OUT_TICKS] > 0 or still)
+
+
+@compiled
+def _follow_obstacle(robot: Robot, i: int, motion: tuple[float, float], law: WatchLaw) -> None:
+    """Add the way past the obstacle of sensor `i`, by a motion in m and rad (hal.sensor_beam)."""
+    signs, beam, (forward_m, turn_rad) = robot.signs[i], law.beams[i], motion
+    counts = (signs[_QUIET_LOW] + signs[_QUIET_HIGH]) / 2
+    distance_m = law.numerator_counts_m / (counts + law.bias_counts) - law.offset_m
+    across_m = forward_m * beam[0] - turn_rad * (beam[2] + distance_m)
+    toward_m = turn_rad * beam[3] - forward_m * beam[1]
+    robot.ways_m[i, 0] = KEEPS * robot.ways_m[i, 0] + across_m
+    robot.ways_m[i, 1] = KEEPS * robot.ways_m[i, 1] + toward_m
 
 
 @compiled
@@ -103,9 +140,16 @@ def _shows_fault(robot: Robot, i: int, law: WatchLaw) -> bool:
     signs = robot.signs[i]
     if signs[_OUT_TICKS] >= RANGE_TICKS or robot.driven - signs[STILL_FROM] >= law.stuck_ticks:
         return True
-    swing = min(signs[_BEFORE_HIGH] - signs[_BEFORE_LOW], signs[_AFTER_HIGH] - signs[_AFTER_LOW])
-    contradicts = signs[_LOW_TICKS] >= SEES_NOTHING_TICKS or signs[_HIGH_TICKS] >= PHANTOM_TICKS
-    return bool(swing >= SWING_COUNTS and contradicts)
+    if max(abs(robot.ways_m[i, 0]), abs(robot.ways_m[i, 1])) > PASSES_M:
+        return True
+    before, after = signs[_BEFORE_HIGH] - signs[_BEFORE_LOW], signs[_AFTER_HIGH] - signs[_AFTER_LOW]
+    change = (
+        before > QUIET_COUNTS + QUIET_RATIO * signs[_BEFORE_HIGH]
+        and after > QUIET_COUNTS + QUIET_RATIO * signs[_AFTER_HIGH]
+    )
+    if signs[_AGREED_TICKS] >= DARK_TICKS or (change and signs[_LOW_TICKS] >= DARK_TICKS):
+        return True
+    return bool(min(before, after) >= SWING_COUNTS and signs[_HIGH_TICKS] >= PHANTOM_TICKS)
 
 
 @compiled

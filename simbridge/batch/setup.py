@@ -19,8 +19,9 @@ from behaviors.policies.distances import (
 from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import BumperEnd, RobotSettings
+from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
-from hal.sensor_watch import HIGHEST, LOWEST, STUCK_TIMES
+from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
 from simbridge.batch.parts import (
     BodyLaw,
     Floats,
@@ -111,11 +112,19 @@ def build_body_law(robot: RobotSettings, body: Body) -> BodyLaw:
 
 def build_watch_law(robot: RobotSettings) -> WatchLaw:
     """Return the limits of the watches of sensors."""
+    beams = [beam_of(robot.infrared, place) for place in range(len(robot.infrared.sensors))]
     return WatchLaw(
         lowest=robot.infrared.floor_counts * LOWEST,
         highest=robot.infrared.plateau_counts * HIGHEST,
         stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s),
         frozen_s=robot.guard.frozen_infrared_s,
+        dark_counts=beams[0].dark_counts,
+        beams=np.array([(each.sine, each.cosine, each.along_m, each.aside_m) for each in beams]),
+        numerator_counts_m=robot.infrared.numerator_counts_m,
+        offset_m=robot.infrared.offset_m,
+        bias_counts=robot.infrared.bias_counts,
+        metres_per_tick=robot.geometry.metres_per_tick,
+        track_m=robot.geometry.effective_track_m,
     )
 
 
@@ -176,6 +185,8 @@ def build_robots(
     near = neighbours_of(sensors)
     robots["board"] = [boards.index(sensor.channel[:3]) for sensor in sensors]
     robots["before"], robots["after"] = [each.before for each in near], [each.after for each in near]
+    robots["second_before"] = [each.second_before for each in near]
+    robots["second_after"] = [each.second_after for each in near]
     robots["signs"][:, :, :4] = UNSEEN
     robots["looked_at_s"], robots["driven_at_s"] = math.inf, -math.inf
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import Appraise, Drive, HandOver, HoldAction, Reward, RunBehaviour, SetLessonSpeed
@@ -114,7 +114,7 @@ class DrivenTicks:
     def __init__(self) -> None:
         self.drove: list[bool] = []
 
-    def update(self, _counts: tuple[int, ...], *, driving: bool) -> tuple[()]:
+    def update(self, _readings: SensorReadings, *, driving: bool) -> tuple[()]:
         self.drove.append(driving)
         return ()
 

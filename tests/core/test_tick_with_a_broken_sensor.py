@@ -2,18 +2,20 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
 from hal.robot_settings import load_robot
 from hal.sensor_ring import SubstituteReadings
-from hal.sensor_watch import SensorFault
+from hal.sensor_signs import SensorFault, SensorRules
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.broken.fault import FaultKind, FaultySensor
 from kurt2rt.experiments.surprise.drive import StuckSensor
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import DecisionFacts
@@ -128,3 +130,23 @@ def replace_head(run: Run, *, checks_sensors: bool) -> Run:
     """Return the run as an older or newer program would have recorded it."""
     run.head = replace(run.head, checks_sensors=checks_sensors)
     return run
+
+
+def test_noisy_phantom_stops_the_robot_and_replays(tmp_path: Path) -> None:
+    infrared = load_robot().infrared
+    run = read_run(
+        record_story(
+            "walls",
+            tmp_path,
+            seconds=5,
+            other=spins_with_a_teacher,
+            faulty=lambda robot: FaultySensor(robot, infrared, SENSOR, FaultKind.PHANTOM, STUCK_FROM_S),
+        )
+    )
+    stopped = next(record for record in _equal_ticks(run) if record.broken_sensors)
+    (sensor,) = stopped.broken_sensors
+    assert (sensor.place, sensor.fault) == (SENSOR, SensorFault.SEES_A_PHANTOM)
+    assert stopped.standing.stop == ActiveStop(StopReason.SENSOR_BROKEN, TITLE)
+    run.head = replace(run.head, sensor_rules=SensorRules.NOISE)
+    entry, record = next(tick for tick in Replay(run) if list(compare(*tick)))
+    assert (entry.tick, record.broken_sensors) == (stopped.tick, ())

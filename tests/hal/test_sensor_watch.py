@@ -5,20 +5,16 @@ from collections.abc import Callable
 
 import pytest
 
+from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings, load_robot
-from hal.sensor_watch import (
-    LOOK_TICKS,
-    RANGE_TICKS,
-    SEES_NOTHING_TICKS,
-    STUCK_TIMES,
-    BrokenSensor,
-    SensorFault,
-    SensorWatch,
-)
+from hal.sensor_signs import LOOK_TICKS, RANGE_TICKS, SEES_NOTHING_TICKS, STUCK_TIMES, SensorFault, SensorRules
+from hal.sensor_watch import BrokenSensor, SensorWatch
 
 ROBOT = load_robot()
 INFRARED = ROBOT.infrared
 STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.can.cycle_s)
+FORWARD_TICKS = round(0.3 * ROBOT.can.cycle_s / ROBOT.geometry.metres_per_tick)
+"""Encoder ticks of a tick at 0.3 m/s."""
 PLACES = {name: place for place, name in enumerate(INFRARED.names)}
 
 Fault = Callable[[int], int]
@@ -28,8 +24,11 @@ Fault = Callable[[int], int]
 class Drive:
     """Readings of 18 noisy sensors, of which some see a wall that comes and goes, and a watch."""
 
-    def __init__(self, robot: RobotSettings = ROBOT) -> None:
-        self.watch = SensorWatch(robot)
+    def __init__(self, robot: RobotSettings = ROBOT, rules: SensorRules = SensorRules.MOTION) -> None:
+        self.watch = SensorWatch(robot, rules)
+        self.left_ticks = self.right_ticks = 0
+        """Encoder ticks in each tick of driving; 0, as on a circle round what a sensor sees."""
+        self.bumpers = 0
         self.faults: dict[str, Fault] = {}
         self.near: tuple[str, ...] = ()
         """Sensors that see a wall for 2 s in every 4 s."""
@@ -45,7 +44,9 @@ class Drive:
             self._ticks += 1
             if self._ticks % 4 == 1:
                 self._measure()
-            found += self.watch.update(tuple(self._counts), driving=driving)
+            left, right = (self.left_ticks, self.right_ticks) if driving else (0, 0)
+            readings = SensorReadings(0.0, tuple(self._counts), 0.0, left, right, 0.0, self.bumpers, 0.0)
+            found += self.watch.update(readings, driving=driving)
         return found
 
     def _measure(self) -> None:
@@ -132,6 +133,56 @@ def test_watch_takes_a_thin_post_for_no_phantom(drive: Drive) -> None:
     flicker = random.Random(1)
     drive.faults["s3"] = lambda _: round(flicker.gauss(300, 6))  # no neighbour ever sees anything
     assert drive.run(6000) == ()
+
+
+def test_watch_finds_a_phantom_that_moves_with_the_robot(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.left_ticks = drive.right_ticks = FORWARD_TICKS
+    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 11))  # no neighbour ever sees anything
+    assert [(each.name, each.fault) for each in drive.run(400)] == [("s3", SensorFault.SEES_A_PHANTOM)]
+
+
+def test_watch_takes_a_circled_post_for_no_phantom(drive: Drive) -> None:
+    """On a circle to the left round a post 0.196 m from s3 the post stays where it is."""
+    flicker = random.Random(1)
+    middle_m = INFRARED.sensors[PLACES["s3"]].y_m + INFRARED.distance_m(300)
+    outer = 1 + ROBOT.geometry.effective_track_m / 2 / middle_m
+    drive.left_ticks, drive.right_ticks = round(FORWARD_TICKS * (2 - outer)), round(FORWARD_TICKS * outer)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(300, 6))
+    assert drive.run(6000) == ()
+
+
+@pytest.mark.parametrize(("rules", "found"), [(SensorRules.NOISE, ["s3"]), (SensorRules.MOTION, [])])
+def test_watch_takes_a_pressed_sensor_for_no_dark_one(rules: SensorRules, found: list[str]) -> None:
+    """A sensor that touches a wall reads less than its neighbours, because the law folds back."""
+    drive, flicker = Drive(rules=rules), random.Random(1)
+    for name in ("s1", "s4", "s2", "s15"):
+        drive.faults[name] = lambda tick: round(flicker.gauss(300 if tick % 400 < 200 else 420, 6))
+    drive.faults["s3"] = lambda _: round(flicker.gauss(INFRARED.counts_at(0.0), 3))
+    assert [each.name for each in drive.run(3000)] == found
+
+
+def test_watch_counts_no_time_while_a_bumper_is_pressed(drive: Drive) -> None:
+    drive.faults["s9"] = lambda _: 212
+    drive.bumpers = 1
+    assert drive.run(3 * STUCK_TICKS) == ()
+
+
+def test_watch_finds_a_noisy_dark_sensor_within_two_seconds(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.near = ("s15", "s1", "s3", "s4", "s2")
+    drive.run(200)
+    drive.faults["s4"] = lambda _: round(flicker.gauss(70, 1.5))
+    assert [(each.name, each.fault) for each in drive.run(400)] == [("s4", SensorFault.SEES_NOTHING)]
+
+
+def test_watch_blames_no_neighbour_of_a_noisy_phantom(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.near = ("s15", "s1", "s2")
+    drive.run(300)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 11))
+    drive.faults["s4"] = lambda _: round(flicker.gauss(70, 1.5))
+    assert [each for each in drive.run(300) if each.name == "s4"] == []
 
 
 def test_watch_blames_no_neighbour_of_a_stuck_sensor(drive: Drive) -> None:

@@ -15,8 +15,8 @@ class SensorStopAct(Enum):
 class SensorStopTimer:
     """Times at which a robot that stopped for a broken sensor is carried away, and sent on.
 
-    All sensors of a lesson work. One that is pressed against a wall looks broken, and a resume trusts it again only if
-    its reading has changed (hal.sensor_watch). So the robot is carried away after a second, and sent on after another.
+    All sensors of a lesson work. A resume trusts a sensor again only if its reading has changed (hal.sensor_watch). So
+    after a false alarm the robot is carried away after a second, and sent on after another.
     """
 
     def __init__(self, ticks_per_second: int) -> None:

@@ -4,16 +4,23 @@ import json
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from hal.sensor_signs import SensorRules
 from kurt2rt.runs.recording.recording_error import RecordingError
 
-RUN_VERSION = 3
+RUN_VERSION = 4
 """Version of head, entries and attachments; raise it if an older program would misread them.
 
 2: a robot that touches something asks.
 3: a robot with a broken sensor stops.
+4: the motion of the wheels tells a sensor that sees a phantom.
 """
 
-_BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False, "checks_sensors": False}
+_BEFORE: dict[str, Any] = {
+    "tolerates_stalls": False,
+    "asks_when_held": False,
+    "checks_sensors": False,
+    "sensor_rules": SensorRules.NOISE,
+}
 """Values of later fields that hold for older recordings."""
 
 RUN_METADATA = "run"
@@ -57,6 +64,8 @@ class RunHead:
     """True if the robot asked when a bumper blocked its action."""
     checks_sensors: bool = True
     """True if the robot noticed single broken sensors."""
+    sensor_rules: int = SensorRules.MOTION
+    """Rules by which it noticed them (hal.sensor_watch.SensorRules)."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from hal.sensor_signs import SensorRules
 from hal.settings import SettingsError
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
@@ -80,6 +81,7 @@ class Replay:
                         tolerates_stalls=head.tolerates_stalls,
                         asks_at_bumper=head.asks_when_held,
                         checks_sensors=head.checks_sensors,
+                        sensor_rules=SensorRules(head.sensor_rules),
                     ),
                 )
         except (SettingsError, KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from hal.robot_settings import RobotSettings
-from hal.sensor_watch import SensorFault
+from hal.sensor_signs import SensorFault
 from kurt2rt.channel.protocol.health import DiskSpace, MachineHealth, TickLateness, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.snapshot import Snapshot

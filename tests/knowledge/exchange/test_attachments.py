@@ -7,6 +7,7 @@ import pytest
 
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, load_robot
+from hal.sensor_signs import SensorRules
 from hal.settings import SettingsError, find_config, kept_name, settings_override
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.expectation import Expectation
@@ -114,6 +115,8 @@ def test_decode_head_newer_version_is_refused() -> None:
     assert decode_head(metadata) == head
     old = {key: value for key, value in metadata.items() if key != "tolerates_stalls"}
     assert decode_head(old) == head  # of a program that did not know it
+    without_rules = {key: value for key, value in metadata.items() if key != "sensor_rules"}
+    assert decode_head(without_rules).sensor_rules == SensorRules.NOISE
     with pytest.raises(RecordingError, match="newer kurt2rt"):
         decode_head({**metadata, "version": "99"})
     with pytest.raises(RecordingError, match="boot"):

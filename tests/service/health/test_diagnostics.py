@@ -9,7 +9,8 @@ from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.robot_settings import load_robot
-from hal.sensor_watch import BrokenSensor, SensorFault
+from hal.sensor_signs import SensorFault
+from hal.sensor_watch import BrokenSensor
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.diagnostics import LATELY_S, Counted, Diagnostics

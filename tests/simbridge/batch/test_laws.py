@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from hal.batch import PolicyMind, TabledPolicy
 from hal.bus import open_bus
 from hal.guard import Guard
-from hal.robot import WheelSpeeds
+from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
 from hal.simulation import Pose
 from hal.wheel_watch import WheelWatch
@@ -126,7 +126,10 @@ def test_watch_finds_a_sign_when_the_sensor_watch_does(seed: int, quiet: int) ->
                 counts[i] = min(560, max(60, counts[i] + noise + chance.choice((0, 0, 0, 0, 60, -60))))
         record["counts"][:] = counts
         record["turned"], record["tick"] = 1, tick
-        looks, found = looks_broken(record, law), watch.update(tuple(counts), driving=True)
+        left, right = chance.randint(-200, 200), chance.randint(-200, 200)
+        record["left_ticks"], record["right_ticks"] = left, right
+        readings = SensorReadings(0.0, tuple(counts), 0.0, left, right, 0.0, 0, 0.0)
+        looks, found = looks_broken(record, law), watch.update(readings, driving=True)
         assert looks or not found
         if looks:
             return

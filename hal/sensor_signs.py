@@ -1,0 +1,252 @@
+"""Signs that one infra-red sensor is broken: dead, stuck, unplugged, dark or seeing a phantom."""
+
+from collections.abc import Container
+from enum import IntEnum, StrEnum
+from typing import NamedTuple
+
+from hal.odometry import WheelMotion
+from hal.sensor_beam import Beam
+from hal.sensor_ring import Neighbours
+
+
+class SensorRules(IntEnum):
+    """Version of the rules by which sensors are noticed; a recording is replayed by its own."""
+
+    NOISE = 1
+    """Rules up to 2026-11-26: the noisy signs need 4.5 s and neighbours that changed by 100 counts."""
+    MOTION = 2
+    """The motion of the wheels tells a phantom, and a pressed sensor is not dark."""
+
+
+class SensorFault(StrEnum):
+    """Code for the sign by which a broken sensor was noticed."""
+
+    STUCK = "stuck"
+    """It repeats its reading while the others flicker."""
+    OUT_OF_RANGE = "out of range"
+    """It reads less or more than a working sensor does."""
+    SEES_NOTHING = "sees nothing"
+    """It stays low while both neighbours see something near."""
+    SEES_A_PHANTOM = "sees a phantom"
+    """It stays high while both neighbours see nothing near, and does not follow their changes."""
+
+
+LOOK_TICKS = 5
+"""Ticks between two looks at all sensors: each look meets new measurements, because a sensor measures every 29 to 48 ms
+(docs/the-robot.md#noise-and-timing). All at once take 3.5 µs a tick on average; a quarter of them in each tick took
+4.9 µs, because their code and data had left the caches."""
+STUCK_TIMES = 4
+"""Times `frozen_infrared_s`, of driving within STUCK_BAND, until a sensor is stuck: 4 s are 80 measurements.
+
+A working sensor takes 68 % of its measurements there with nothing in view; healthy drives had at most 1.4 s.
+"""
+STUCK_BAND = 2
+"""Width in counts: a converter's last bit flickers also with a constant voltage."""
+FLICKERS_TICKS = 100
+"""Ticks of driving within STUCK_BAND up to which another sensor counts as flickering."""
+RANGE_TICKS = 50
+"""Ticks out of range before a sensor is broken."""
+LOWEST, HIGHEST = 0.6, 1.2
+"""Range of a working sensor, in floor and plateau counts; gain and noise take 7 and 12 % of it."""
+QUIET_COUNTS, QUIET_RATIO = 12, 0.16
+"""Width of the band that noise alone explains, in counts and as a ratio of the reading: 8 standard deviations."""
+DIFFERS_COUNTS = 60
+"""Difference to both neighbours that contradicts them."""
+SEES_NOTHING_TICKS = 450
+"""Ticks of driving in such a contradiction by SensorRules.NOISE."""
+DARK_TICKS = 90
+"""Ticks of driving in such a contradiction by SensorRules.MOTION; 30 had four false alarms in 25 minutes, 45 one."""
+DARK_DIFFERS_COUNTS = 40
+"""Difference to both neighbours that contradicts a dark sensor: they see something within 0.44 m."""
+AGREES_COUNTS = 30
+"""Difference to a dark sensor from which on the sensors next to its neighbours bear the neighbours out."""
+PHANTOM_TICKS = 450
+"""Ticks of driving in the opposite contradiction, which a thin post explains for long."""
+SWING_COUNTS = 100
+"""Counts by which both neighbours must have changed meanwhile: a neighbour that is stuck is no witness."""
+PASSES_M = 0.4
+"""Way of the wheels past an obstacle that two sensors on each side do not see: it is narrower than the gap between
+them. On a circle round a post the way is 0."""
+KEEPS = 0.985
+"""Part of that way that is kept from look to look, half after 2.3 s: slip and an unsure distance do not add up."""
+
+
+class SensorLimits(NamedTuple):
+    """Limits of all sensors of a robot."""
+
+    lowest: float
+    highest: float
+    stuck_ticks: int
+    rules: SensorRules
+
+
+class SensorSigns:
+    """Signs of one sensor, in ticks of driving."""
+
+    __slots__ = (
+        "_across_m",
+        "_after",
+        "_after_high",
+        "_after_low",
+        "_beam",
+        "_before",
+        "_before_high",
+        "_before_low",
+        "_driven",
+        "_has_witnesses",
+        "_high",
+        "_highest",
+        "_low",
+        "_lowest",
+        "_quiet_high",
+        "_quiet_low",
+        "_rules",
+        "_second_after",
+        "_second_before",
+        "_stuck_ticks",
+        "_toward_m",
+        "agreed_ticks",
+        "changed",
+        "high_ticks",
+        "low_ticks",
+        "out_ticks",
+        "passes",
+        "place",
+        "still_from",
+        "suspect",
+    )
+
+    def __init__(self, near: Neighbours, beam: Beam, limits: SensorLimits) -> None:
+        self.place = beam.place
+        self._beam = beam
+        self._before, self._after = near.before, near.after
+        self._second_before, self._second_after = near.second_before, near.second_after
+        self._lowest, self._highest, self._stuck_ticks, self._rules = limits
+        self._has_witnesses = True
+        self.restart(0)
+
+    def set_witnesses(self, broken: Container[int]) -> None:
+        """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
+        self._has_witnesses = self._before not in broken and self._after not in broken
+        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
+
+    def restart(self, driven: int) -> None:
+        """Forget all signs; `driven`: ticks that the robot has driven."""
+        self._low = self._high = self._quiet_low = self._quiet_high = -1000
+        self._before_low = self._before_high = self._after_low = self._after_high = 0
+        self._driven = self.still_from = driven
+        self.low_ticks = self.high_ticks = self.agreed_ticks = self.out_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
+        """Whether the wheels have moved the robot past what it sees."""
+        self.changed = False
+        """Whether the reading has left the band of noise since this was set to False."""
+        self.suspect = False
+        """Whether `fault` may find a sign; it spares a call in most ticks."""
+
+    def update(self, counts: tuple[int, ...], driven: int, motion: WheelMotion) -> None:
+        """Look at all readings, in counts; `driven`: ticks that the robot has driven; `motion`: since the last look."""
+        value = counts[self.place]
+        drove, self._driven = driven - self._driven, driven
+        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + LOOK_TICKS, RANGE_TICKS)
+        if value < self._low:
+            self._low = value
+        elif value > self._high:
+            self._high = value
+        if self._high - self._low > STUCK_BAND:
+            self._low = self._high = value
+            self.still_from = driven
+        if value < self._quiet_low:
+            self._quiet_low = value
+        elif value > self._quiet_high:
+            self._quiet_high = value
+        if self._quiet_high - self._quiet_low > QUIET_COUNTS + QUIET_RATIO * self._quiet_high:
+            self._begin_quiet(value, counts)
+        elif drove and self._has_witnesses:
+            self._compare(counts, drove, motion)
+        self.suspect = bool(
+            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= self._stuck_ticks
+        )
+
+    def fault(self, driven: int) -> SensorFault | None:
+        """Return the sign that the sensor is broken; None without one. `driven`: ticks that the robot has driven."""
+        if self.out_ticks >= RANGE_TICKS:
+            return SensorFault.OUT_OF_RANGE
+        if driven - self.still_from >= self._stuck_ticks:
+            return SensorFault.STUCK
+        if self._rules is not SensorRules.NOISE:
+            if self.agreed_ticks >= DARK_TICKS or (self.low_ticks >= DARK_TICKS and self._neighbours_change):
+                return SensorFault.SEES_NOTHING
+            if self.passes:
+                return SensorFault.SEES_A_PHANTOM
+        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
+        seems_dark = self._rules is SensorRules.NOISE and self.low_ticks >= SEES_NOTHING_TICKS
+        if swing >= SWING_COUNTS and seems_dark:
+            return SensorFault.SEES_NOTHING
+        if swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS:
+            return SensorFault.SEES_A_PHANTOM
+        return None
+
+    def _begin_quiet(self, value: int, counts: tuple[int, ...]) -> None:
+        """Start the band of noise at this reading: it has changed by more than noise."""
+        self._quiet_low = self._quiet_high = value
+        self._before_low = self._before_high = counts[self._before]
+        self._after_low = self._after_high = counts[self._after]
+        self.low_ticks = self.high_ticks = self.agreed_ticks = 0
+        self._across_m = self._toward_m = 0.0
+        self.passes = False
+        self.changed = True
+
+    @property
+    def _neighbours_change(self) -> bool:
+        """Return whether both neighbours have changed by more than noise while this sensor has not."""
+        before, after = self._before_high - self._before_low, self._after_high - self._after_low
+        return (
+            before > QUIET_COUNTS + QUIET_RATIO * self._before_high
+            and after > QUIET_COUNTS + QUIET_RATIO * self._after_high
+        )
+
+    def _compare(self, counts: tuple[int, ...], drove: int, motion: WheelMotion) -> None:
+        """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
+        before, after = counts[self._before], counts[self._after]
+        moves = self._rules is not SensorRules.NOISE
+        contradicts = self.low_ticks or self.high_ticks
+        if contradicts or not moves:
+            self._widen(before, after)
+        else:  # a neighbour that jumped before the contradiction and is stuck since is no witness
+            self._before_low = self._before_high = before
+            self._after_low = self._after_high = after
+        nearest, high = min(before, after), self._quiet_high
+        if nearest > high:
+            if nearest - high > (DARK_DIFFERS_COUNTS if moves else DIFFERS_COUNTS):
+                if moves:
+                    if high >= self._beam.dark_counts:
+                        return
+                    if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
+                        self.agreed_ticks += drove
+                self.low_ticks += drove
+        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
+            if moves:
+                self._follow_obstacle(counts, motion)
+            self.high_ticks += drove
+
+    def _widen(self, before: int, after: int) -> None:
+        if before < self._before_low:
+            self._before_low = before
+        elif before > self._before_high:
+            self._before_high = before
+        if after < self._after_low:
+            self._after_low = after
+        elif after > self._after_high:
+            self._after_high = after
+
+    def _follow_obstacle(self, counts: tuple[int, ...], motion: WheelMotion) -> None:
+        """Add the way past the obstacle, unless a sensor next to a neighbour sees it, too."""
+        if self._quiet_low - max(counts[self._second_before], counts[self._second_after]) <= DIFFERS_COUNTS:
+            return
+        across_m, toward_m = self._beam.motion_m((self._quiet_low + self._quiet_high) / 2, motion)
+        self._across_m = KEEPS * self._across_m + across_m
+        self._toward_m = KEEPS * self._toward_m + toward_m
+        self.passes = self.passes or max(abs(self._across_m), abs(self._toward_m)) > PASSES_M

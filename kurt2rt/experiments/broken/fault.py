@@ -1,0 +1,81 @@
+"""Faults of one infra-red sensor, laid over the readings of a robot."""
+
+import random
+from enum import StrEnum
+
+from hal.robot import HIGHEST_COUNTS, Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
+from hal.robot_settings import InfraredSettings
+
+
+class FaultKind(StrEnum):
+    """Way in which a sensor is broken."""
+
+    LOW = "low"
+    """It repeats the floor of its law, as with nothing in view."""
+    HIGH = "high"
+    """It repeats the plateau of its law, as with an obstacle at 10 cm."""
+    FROZEN = "frozen"
+    """It repeats its last reading."""
+    UNPLUGGED = "unplugged"
+    """Its channel of the converter is open and reads 0 to 3 counts."""
+    DARK = "dark"
+    """It sees nothing, with the noise of a working sensor."""
+    PHANTOM = "phantom"
+    """It sees an obstacle at 10 cm that is not there, with the noise of a working sensor."""
+
+
+_OPEN_INPUT_COUNTS = 3
+
+
+class FaultySensor(RobotProxy):
+    """Proxy of a robot one of whose infra-red sensors breaks."""
+
+    def __init__(self, robot: Robot, infrared: InfraredSettings, place: int, kind: FaultKind, from_s: float) -> None:
+        """Break the sensor at `place` of the sensor table from `from_s` of the runtime's clock on, in s."""
+        super().__init__(robot)
+        self._infrared = infrared
+        self._place = place
+        self._kind = kind
+        self._from_s = from_s
+        self._chance = random.Random(f"{kind} sensor {place}")
+        self._measured: int | None = None
+        self._reading = 0
+        self.true_counts = 0
+        """Reading of the working sensor in the last tick, in counts."""
+        self.counts = 0
+        """Reading of the broken sensor in the last tick, in counts."""
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """Return the readings of the robot at `now_s`, in s, with that of the broken sensor."""
+        readings = self._robot.sense(now_s)
+        counts, place = readings.infrared_counts, self._place
+        self.true_counts = self.counts = counts[place]
+        if now_s < self._from_s:
+            return readings
+        if self.true_counts != self._measured:  # a new measurement
+            self._reading = self._read(self.true_counts)
+            self._measured = self.true_counts
+        self.counts = self._reading
+        return readings._replace(infrared_counts=(*counts[:place], self._reading, *counts[place + 1 :]))
+
+    def _read(self, true_counts: int) -> int:
+        """Return a new measurement of the broken sensor, in counts."""
+        infrared = self._infrared
+        match self._kind:
+            case FaultKind.LOW:
+                return infrared.floor_counts
+            case FaultKind.HIGH:
+                return infrared.plateau_counts
+            case FaultKind.FROZEN:
+                return true_counts if self._measured is None else self._reading
+            case FaultKind.UNPLUGGED:
+                return self._chance.randint(0, _OPEN_INPUT_COUNTS)
+            case FaultKind.DARK:
+                return self._noisy(infrared.floor_counts)
+            case FaultKind.PHANTOM:
+                return self._noisy(infrared.plateau_counts)
+
+    def _noisy(self, counts: int) -> int:
+        sigma = max(self._infrared.noise_share * counts, self._infrared.noise_least_counts)
+        return min(max(round(self._chance.gauss(counts, sigma)), 0), HIGHEST_COUNTS)
