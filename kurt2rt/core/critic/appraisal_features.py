@@ -10,6 +10,7 @@ from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.turn_memory import TurnMemory
 from kurt2rt.core.numerics import round_portable
 
 
@@ -47,6 +48,9 @@ class AppraisalPerception:
         self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
         self._no_wall_ticks = round(want.no_wall_s / period_s)
         self._stale_infrared_s = robot.guard.stale_infrared_s
+        circling = want.circling
+        self._turn_memory = None if circling is None else TurnMemory(circling.reversal_rad)
+        self._round_rad = math.inf if circling is None else circling.round_rad
         steps = max(1, round(want.no_progress_s / period_s))
         self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
         self._here_x_m = self._here_y_m = self._heading_rad = 0.0
@@ -55,6 +59,7 @@ class AppraisalPerception:
     def restart(self) -> None:
         """Reset after power-on or missing sensor data."""
         self._speed_m_s = self._turn_rad_s = 0.0
+        self.forget_turns()
         self._since_bump = self._bump_held_ticks
         self._since_surprise = self._surprise_held_ticks
         self._without_wall = 0
@@ -64,6 +69,12 @@ class AppraisalPerception:
     def notify_surprise(self) -> None:
         """Record that the previous tick was surprising; the time since then is a feature."""
         self._since_surprise = -1
+
+    def forget_turns(self) -> None:
+        """Begin the turn since the last reversal at 0, because the robot was carried elsewhere."""
+        self._turned_rad = 0.0
+        if self._turn_memory is not None:
+            self._turn_memory.restart()
 
     def perceive(self, readings: SensorReadings, *, driving: bool) -> AppraisalFeatures:
         """Return the features of this tick; `driving`: whether an action drove the wheels until now.
@@ -95,6 +106,7 @@ class AppraisalPerception:
             no_progress=1.0 if self._no_progress(driving=driving) else 0.0,
             no_wall=1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
             surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
+            circling=1.0 if abs(self._turned_rad) >= self._round_rad else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
@@ -110,6 +122,8 @@ class AppraisalPerception:
         self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
         self._heading_rad += turn_rad
+        if self._turn_memory is not None:
+            self._turned_rad = self._turn_memory.update(turn_rad)
         self._here_x_m += way_m * round_portable(math.cos(self._heading_rad))
         self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 

@@ -20,9 +20,9 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-*_ALWAYS, SURPRISED = AppraisalFeatures._fields
+*_ALWAYS, SURPRISED, CIRCLING = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
-"""Names of the appraisal features in order; SURPRISED is optional."""
+"""Names of the appraisal features in order; SURPRISED and CIRCLING are optional."""
 
 
 class AppraisalSettings(Settings):
@@ -52,6 +52,15 @@ class SideSensors(Settings):
         return frozenset(name for names in self.model_dump().values() for name in names)
 
 
+class CirclingSettings(Settings):
+    """Settings of the feature circling."""
+
+    round_rad: Annotated[float, Field(gt=0, le=100)]
+    """Turn to one side from which on the robot is circling."""
+    reversal_rad: Annotated[float, Field(gt=0, le=10)]
+    """Turn to the other side that ends it; smaller ones are subtracted."""
+
+
 class AppraisalPerceptionSettings(Settings):
     """Settings of the appraisal features: sensors, distances and times."""
 
@@ -68,6 +77,8 @@ class AppraisalPerceptionSettings(Settings):
     """Displacement in no_progress_s below which a driving robot makes no progress."""
     surprise_held_s: Seconds | None = None
     """Duration of the feature surprised after a surprise; None: the feature does not exist."""
+    circling: CirclingSettings | None = None
+    """None: the feature circling does not exist."""
 
 
 class AppraisalWeights(Settings):
@@ -87,10 +98,11 @@ class AppraisalWeights(Settings):
     no_progress: Weight = 0.0
     no_wall: Weight = 0.0
     surprised: Weight = 0.0
+    circling: Weight = 0.0
 
     @model_validator(mode="after")
     def _something_counts(self) -> Self:
-        if not any(getattr(self, name) for name in (*NAMES, SURPRISED)):
+        if not any(getattr(self, name) for name in AppraisalFeatures._fields):
             raise ValueError("every circumstance weighs 0; give one more")
         return self
 
@@ -178,9 +190,11 @@ class CriticSettings(Settings):
         return appraisals
 
     @model_validator(mode="after")
-    def _surprise_is_weighed_where_it_is_seen(self) -> Self:
+    def _optional_features_are_weighed_only_if_they_exist(self) -> Self:
         if self.learning.weights.surprised and self.perception.surprise_held_s is None:
             raise ValueError("learning.weights.surprised weighs nothing; say perception.surprise_held_s, too")
+        if self.learning.weights.circling and self.perception.circling is None:
+            raise ValueError("learning.weights.circling weighs nothing; say perception.circling, too")
         return self
 
     @property
@@ -191,7 +205,8 @@ class CriticSettings(Settings):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of its features, in order."""
-        return NAMES if self.perception.surprise_held_s is None else (*NAMES, SURPRISED)
+        optional = {SURPRISED: self.perception.surprise_held_s, CIRCLING: self.perception.circling}
+        return (*NAMES, *(name for name, setting in optional.items() if setting is not None))
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:

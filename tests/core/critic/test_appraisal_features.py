@@ -203,3 +203,44 @@ def test_surprised_without_setting_is_zero() -> None:
     of = perception()
     of.notify_surprise()
     assert after(0.1, of, readings()).surprised == 0.0
+
+
+# Circling
+
+
+def circling() -> AppraisalPerception:
+    return AppraisalPerception(changed(circling={"round_rad": 3.0, "reversal_rad": 0.6}), ROBOT)
+
+
+def test_circling_is_noticed_after_a_round_to_either_side() -> None:
+    for left_m_s, right_m_s in ((0.1, 0.3), (0.3, 0.1)):
+        of = circling()
+        turn_rad_s = abs(after(1.0, of, readings(left_m_s, right_m_s)).turn_rad_s)
+        assert after(2.9 / turn_rad_s - 1.0, of, readings(left_m_s, right_m_s)).circling == 0.0
+        assert after(0.3 / turn_rad_s, of, readings(left_m_s, right_m_s)).circling == 1.0
+
+
+def test_circling_ends_with_a_turn_to_the_other_side() -> None:
+    of = circling()
+    assert after(10.0, of, readings(0.1, 0.3)).circling == 1.0
+    assert after(1.0, of, readings(0.3, 0.3)).circling == 1.0
+    assert after(1.5, of, readings(0.3, 0.1)).circling == 0.0
+
+
+def test_circling_lasts_while_the_robot_stands() -> None:
+    of = circling()
+    after(10.0, of, readings(0.1, 0.3))
+    assert after(30.0, of, readings(), driving=False).circling == 1.0
+
+
+def test_circling_ends_with_a_repositioning_or_a_gap() -> None:
+    of = circling()
+    after(10.0, of, readings(0.1, 0.3))
+    of.forget_turns()
+    assert of.perceive(readings(0.1, 0.3), driving=True).circling == 0.0
+    after(10.0, of, readings(0.1, 0.3))
+    assert of.perceive(readings(0.1, 0.3, age_s=9.0), driving=True).circling == 0.0
+
+
+def test_circling_without_setting_is_zero() -> None:
+    assert after(60.0, perception(), readings(0.1, 0.3)).circling == 0.0
