@@ -8,7 +8,6 @@ from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fa
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
 from behaviors.policies.distances import Distance
 
-
 OptionalDistance = Annotated[float, Field(ge=0, le=0.6)]
 """Distance in m; 0: the rule does not exist, as in recordings of before it."""
 
@@ -41,9 +40,8 @@ class EightSettings(JudgeSettings):
     """Turn rate towards the column above which the curve is good."""
     round_m_s: Speed
     """Speed above which the curve is good."""
-    touches_m: OptionalDistance = 0.0
-    """Distance to the only column below which a curve to it faster than `touches_rad_s` is bad; 0: never."""
-    touches_rad_s: TurnRate = 0.0
+    grazes_rad_s: TurnRate = 0.0
+    """Turn rate towards a column above which a grazing robot, by the feature grazing, is bad."""
     other_m: OptionalDistance = 0.0
     """Distance of the second column at the side below which a circling robot has to leave the first; 0: never."""
     loses_column: bool = False
@@ -92,7 +90,7 @@ class Eight:
         want = self._settings
         if to_it_rad_s < -want.turns_rad_s and ahead_m > want.edge_m:
             return -1
-        if beside_m < want.touches_m and to_it_rad_s > want.touches_rad_s:
+        if now.grazing and to_it_rad_s > want.grazes_rad_s:
             return -1
         right_distance = want.near_m < beside_m < want.far_m
         curves = to_it_rad_s > want.round_rad_s and now.speed_m_s > want.round_m_s

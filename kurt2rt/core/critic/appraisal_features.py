@@ -51,6 +51,9 @@ class AppraisalPerception:
         circling = want.circling
         self._turn_memory = None if circling is None else TurnMemory(circling.reversal_rad)
         self._round_rad = math.inf if circling is None else circling.round_rad
+        grazing = want.grazing
+        self._graze_m = 0.0 if grazing is None else grazing.near_m
+        self._graze_held_ticks = 0 if grazing is None else 1 + round(grazing.held_s / period_s)
         steps = max(1, round(want.no_progress_s / period_s))
         self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
         self._here_x_m = self._here_y_m = self._heading_rad = 0.0
@@ -62,6 +65,7 @@ class AppraisalPerception:
         self.forget_turns()
         self._since_bump = self._bump_held_ticks
         self._since_surprise = self._surprise_held_ticks
+        self._since_graze = self._graze_held_ticks
         self._without_wall = 0
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
@@ -91,10 +95,12 @@ class AppraisalPerception:
             self._without_wall = 0
         elif driving:
             self._without_wall += 1
+        left_m, right_m = distance_m[max(self._left(counts))], distance_m[max(self._right(counts))]
+        self._since_graze = 0 if left_m < self._graze_m or right_m < self._graze_m else self._since_graze + 1
         return AppraisalFeatures(
-            left_m=distance_m[max(self._left(counts))],
+            left_m=left_m,
             front_m=distance_m[max(self._front(counts))],
-            right_m=distance_m[max(self._right(counts))],
+            right_m=right_m,
             rear_m=distance_m[max(self._rear(counts))],
             ahead_left_m=distance_m[max(self._ahead_left(counts))],
             ahead_right_m=distance_m[max(self._ahead_right(counts))],
@@ -107,6 +113,7 @@ class AppraisalPerception:
             no_wall=1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
             surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
             circling=1.0 if abs(self._turned_rad) >= self._round_rad else 0.0,
+            grazing=1.0 if self._since_graze < self._graze_held_ticks else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:

@@ -20,9 +20,9 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-*_ALWAYS, SURPRISED, CIRCLING = AppraisalFeatures._fields
+*_ALWAYS, SURPRISED, CIRCLING, GRAZING = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
-"""Names of the appraisal features in order; SURPRISED and CIRCLING are optional."""
+"""Names of the appraisal features in order; the last three are optional."""
 
 
 class AppraisalSettings(Settings):
@@ -61,6 +61,15 @@ class CirclingSettings(Settings):
     """Turn to the other side that ends it; smaller ones are subtracted."""
 
 
+class GrazingSettings(Settings):
+    """Settings of the feature grazing."""
+
+    near_m: Metres
+    """Distance at a side, from the sensors' faces, below which something is very near."""
+    held_s: Annotated[float, Field(ge=0, le=10)]
+    """Duration of the feature after that: a noisy reading at the border does not make it flicker."""
+
+
 class AppraisalPerceptionSettings(Settings):
     """Settings of the appraisal features: sensors, distances and times."""
 
@@ -79,6 +88,8 @@ class AppraisalPerceptionSettings(Settings):
     """Duration of the feature surprised after a surprise; None: the feature does not exist."""
     circling: CirclingSettings | None = None
     """None: the feature circling does not exist."""
+    grazing: GrazingSettings | None = None
+    """None: the feature grazing does not exist."""
 
 
 class AppraisalWeights(Settings):
@@ -99,6 +110,7 @@ class AppraisalWeights(Settings):
     no_wall: Weight = 0.0
     surprised: Weight = 0.0
     circling: Weight = 0.0
+    grazing: Weight = 0.0
 
     @model_validator(mode="after")
     def _something_counts(self) -> Self:
@@ -191,11 +203,20 @@ class CriticSettings(Settings):
 
     @model_validator(mode="after")
     def _optional_features_are_weighed_only_if_they_exist(self) -> Self:
-        if self.learning.weights.surprised and self.perception.surprise_held_s is None:
-            raise ValueError("learning.weights.surprised weighs nothing; say perception.surprise_held_s, too")
-        if self.learning.weights.circling and self.perception.circling is None:
-            raise ValueError("learning.weights.circling weighs nothing; say perception.circling, too")
+        for name, key, setting in self._optional_features:
+            if getattr(self.learning.weights, name) and setting is None:
+                raise ValueError(f"learning.weights.{name} weighs nothing; say perception.{key}, too")
         return self
+
+    @property
+    def _optional_features(self) -> tuple[tuple[str, str, object], ...]:
+        """Return name, key of the setting, and setting of each optional feature, in order."""
+        want = self.perception
+        return (
+            (SURPRISED, "surprise_held_s", want.surprise_held_s),
+            (CIRCLING, CIRCLING, want.circling),
+            (GRAZING, GRAZING, want.grazing),
+        )
 
     @property
     def level_features(self) -> LevelFeatures:
@@ -205,8 +226,7 @@ class CriticSettings(Settings):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of its features, in order."""
-        optional = {SURPRISED: self.perception.surprise_held_s, CIRCLING: self.perception.circling}
-        return (*NAMES, *(name for name, setting in optional.items() if setting is not None))
+        return (*NAMES, *(name for name, _, setting in self._optional_features if setting is not None))
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:

@@ -23,10 +23,10 @@ class Always:
     """Policy with a single action."""
 
     def __init__(self, action: str) -> None:
-        self.actions = (action,)
+        self._action = action
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002
-        return self.actions[0]
+        return self._action
 
 
 class BlindOnTheRight:
@@ -34,7 +34,6 @@ class BlindOnTheRight:
 
     def __init__(self) -> None:
         self._policy = load_task("eight").policy.build(ROBOT.infrared)
-        self.actions = self._policy.actions
         on_the_right = [sensor.y_m < -0.05 for sensor in ROBOT.infrared.sensors]
         self._far = tuple(far for far, right in zip(counts(0.7), on_the_right, strict=True) if right)
         self._right = on_the_right

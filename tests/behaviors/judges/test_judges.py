@@ -22,6 +22,7 @@ anywhere = st.builds(
     *[flags] * 3,
     surprised=st.just(0.0),
     circling=flags,
+    grazing=flags,
 )
 
 
@@ -144,15 +145,15 @@ ROUND = {"left_m": 0.18, "turn_rad_s": 0.5, "speed_m_s": 0.22}
     ("circumstances", "thought"),
     [
         (ROUND, 1),
-        (ROUND | {"left_m": 0.1}, -1),  # as near as it can tell
+        (ROUND | {"left_m": 0.1}, 0),  # as near as it can tell
         (ROUND | {"left_m": 0.35}, 0),
         (ROUND | {"turn_rad_s": 0.0}, 0),
         (ROUND | {"turn_rad_s": -0.5}, -1),  # away from it
         (ROUND | {"turn_rad_s": -0.5, "ahead_left_m": 0.2}, 0),  # not into it
         ({"left_m": 0.3, "right_m": 0.3}, 1),  # between the two
         ({"left_m": 0.3, "right_m": 0.3, "turn_rad_s": 0.5}, 0),
-        (ROUND | {"left_m": 0.11}, -1),  # it grazes the column
-        (ROUND | {"left_m": 0.11, "turn_rad_s": 0.3}, 1),  # wide enough
+        (ROUND | {"left_m": 0.11, "grazing": 1.0}, -1),  # it closes in on the column
+        (ROUND | {"left_m": 0.11, "turn_rad_s": 0.3, "grazing": 1.0}, 1),  # wide enough
         (ROUND | {"circling": 1.0}, 0),  # round the same column again
         (ROUND | {"circling": 1.0, "right_m": 0.45}, -1),  # past the other one
         ({"left_m": 0.3, "right_m": 0.3, "circling": 1.0}, 1),  # and now it leaves

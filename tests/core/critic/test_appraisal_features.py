@@ -244,3 +244,25 @@ def test_circling_ends_with_a_repositioning_or_a_gap() -> None:
 
 def test_circling_without_setting_is_zero() -> None:
     assert after(60.0, perception(), readings(0.1, 0.3)).circling == 0.0
+
+
+# Grazing
+
+
+@pytest.mark.parametrize("sensor", ["s1", "s4", "s8"])
+def test_grazing_lasts_as_configured(sensor: str) -> None:
+    of = AppraisalPerception(changed(grazing={"near_m": 0.12, "held_s": 0.1}), ROBOT)
+    near, clear = (readings()._replace(infrared_counts=counts(0.7, **{sensor: each_m})) for each_m in (0.11, 0.14))
+    assert of.perceive(clear, driving=True).grazing == 0.0
+    assert of.perceive(near, driving=True).grazing == 1.0
+    assert after(0.1, of, clear).grazing == 1.0
+    assert of.perceive(clear, driving=True).grazing == 0.0
+
+
+def test_grazing_is_about_the_sides() -> None:
+    of = AppraisalPerception(changed(grazing={"near_m": 0.12, "held_s": 0.1}), ROBOT)
+    assert of.perceive(readings(s10=0.11, s13=0.11, s15=0.11), driving=True).grazing == 0.0
+
+
+def test_grazing_without_setting_is_zero() -> None:
+    assert perception().perceive(readings(s1=0.11), driving=True).grazing == 0.0

@@ -7,7 +7,15 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError, load_settings
-from kurt2rt.core.critic.settings import CIRCLING, NAMES, SURPRISED, AppraisalWeights, CriticSettings, load_critic
+from kurt2rt.core.critic.settings import (
+    CIRCLING,
+    GRAZING,
+    NAMES,
+    SURPRISED,
+    AppraisalWeights,
+    CriticSettings,
+    load_critic,
+)
 from kurt2rt.core.task_settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
@@ -40,14 +48,14 @@ def test_shipped_task_has_its_own_critic(task: str, critic: str) -> None:
 
 def test_critic_with_memory_differs_from_that_without() -> None:
     without, with_memory = load_critic("eight"), load_critic("eight_with_memory")
-    assert (without.names, with_memory.names) == (NAMES, (*NAMES, CIRCLING))
+    assert (without.names, with_memory.names) == (NAMES, (*NAMES, CIRCLING, GRAZING))
     assert without.feature_hash != with_memory.feature_hash
 
 
 def test_circling_feature_needs_its_settings() -> None:
     content = json.loads(load_critic("eight_with_memory").model_dump_json())
     content["perception"]["surprise_held_s"] = 1.0
-    assert checked(content).names == (*NAMES, SURPRISED, CIRCLING)
+    assert checked(content).names == (*NAMES, SURPRISED, CIRCLING, GRAZING)
     del content["perception"]["circling"]
     with pytest.raises(ValueError, match=r"weights\.circling .*perception\.circling"):
         checked(content)
@@ -83,7 +91,7 @@ def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], tol
 
 
 def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
-    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING}
+    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING, GRAZING}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):
