@@ -49,10 +49,14 @@ class AppraisalPerception:
         self._no_wall_ticks = round(want.no_wall_s / period_s)
         self._stale_infrared_s = robot.guard.stale_infrared_s
         circling = want.circling
-        self._turn_memory = None if circling is None else TurnMemory(circling.reversal_rad)
+        self._turn_memory = (
+            None if circling is None else TurnMemory(circling.reversal_rad, circling.fades_in_m or math.inf)
+        )
         self._round_rad = math.inf if circling is None else circling.round_rad
         grazing = want.grazing
         self._graze_m = 0.0 if grazing is None else grazing.near_m
+        self._spun_settings = want.spun
+        self._spun_held_ticks = 0 if want.spun is None else 1 + round(want.spun.held_s / period_s)
         self._graze_held_ticks = 0 if grazing is None else 1 + round(grazing.held_s / period_s)
         steps = max(1, round(want.no_progress_s / period_s))
         self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
@@ -66,6 +70,7 @@ class AppraisalPerception:
         self._since_bump = self._bump_held_ticks
         self._since_surprise = self._surprise_held_ticks
         self._since_graze = self._graze_held_ticks
+        self._since_spin = self._spun_held_ticks
         self._without_wall = 0
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
@@ -114,6 +119,7 @@ class AppraisalPerception:
             surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
             circling=1.0 if abs(self._turned_rad) >= self._round_rad else 0.0,
             grazing=1.0 if self._since_graze < self._graze_held_ticks else 0.0,
+            spun=1.0 if self._since_spin < self._spun_held_ticks else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
@@ -130,7 +136,11 @@ class AppraisalPerception:
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
         self._heading_rad += turn_rad
         if self._turn_memory is not None:
-            self._turned_rad = self._turn_memory.update(turn_rad)
+            self._turned_rad = self._turn_memory.update(turn_rad, way_m)
+        spin = self._spun_settings
+        if spin is not None:
+            spins = abs(self._turn_rad_s) > spin.turn_rad_s and abs(self._speed_m_s) < spin.speed_m_s
+            self._since_spin = 0 if spins else self._since_spin + 1
         self._here_x_m += way_m * round_portable(math.cos(self._heading_rad))
         self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 

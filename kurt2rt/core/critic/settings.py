@@ -20,9 +20,9 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-*_ALWAYS, SURPRISED, CIRCLING, GRAZING = AppraisalFeatures._fields
+*_ALWAYS, SURPRISED, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
-"""Names of the appraisal features in order; the last three are optional."""
+"""Names of the appraisal features in order; the last four are optional."""
 
 
 class AppraisalSettings(Settings):
@@ -59,6 +59,8 @@ class CirclingSettings(Settings):
     """Turn to one side from which on the robot is circling."""
     reversal_rad: Annotated[float, Field(gt=0, le=10)]
     """Turn to the other side that ends it; smaller ones are subtracted."""
+    fades_in_m: Metres | None = None
+    """Way over which an earlier turn fades to 37 %; None: it does not."""
 
 
 class GrazingSettings(Settings):
@@ -68,6 +70,17 @@ class GrazingSettings(Settings):
     """Distance at a side, from the sensors' faces, below which something is very near."""
     held_s: Annotated[float, Field(ge=0, le=10)]
     """Duration of the feature after that: a noisy reading at the border does not make it flicker."""
+
+
+class SpunSettings(Settings):
+    """Settings of the feature spun."""
+
+    turn_rad_s: Annotated[float, Field(gt=0, le=10)]
+    """Turn rate to either side above which the robot turns on the spot, together with `speed_m_s`."""
+    speed_m_s: Annotated[float, Field(gt=0, le=2)]
+    """Speed, forward or backward, below which it does."""
+    held_s: Annotated[float, Field(ge=0, le=10)]
+    """Duration of the feature after the last such tick: wheels take time to speed up."""
 
 
 class AppraisalPerceptionSettings(Settings):
@@ -90,6 +103,8 @@ class AppraisalPerceptionSettings(Settings):
     """None: the feature circling does not exist."""
     grazing: GrazingSettings | None = None
     """None: the feature grazing does not exist."""
+    spun: SpunSettings | None = None
+    """None: the feature spun does not exist."""
 
 
 class AppraisalWeights(Settings):
@@ -111,6 +126,7 @@ class AppraisalWeights(Settings):
     surprised: Weight = 0.0
     circling: Weight = 0.0
     grazing: Weight = 0.0
+    spun: Weight = 0.0
 
     @model_validator(mode="after")
     def _something_counts(self) -> Self:
@@ -216,6 +232,7 @@ class CriticSettings(Settings):
             (SURPRISED, "surprise_held_s", want.surprise_held_s),
             (CIRCLING, CIRCLING, want.circling),
             (GRAZING, GRAZING, want.grazing),
+            (SPUN, SPUN, want.spun),
         )
 
     @property

@@ -11,6 +11,7 @@ from kurt2rt.core.critic.settings import (
     CIRCLING,
     GRAZING,
     NAMES,
+    SPUN,
     SURPRISED,
     AppraisalWeights,
     CriticSettings,
@@ -41,7 +42,7 @@ def test_builtin_critics_differ_in_weights_only(name: str) -> None:
     assert other.learning.model_copy(update={"weights": basic.learning.weights}) == basic.learning
 
 
-@pytest.mark.parametrize(("task", "critic"), [("fleeing", "fleeing"), ("eight", "eight_with_memory")])
+@pytest.mark.parametrize(("task", "critic"), [("fleeing", "fleeing_with_memory"), ("eight", "eight_with_memory")])
 def test_shipped_task_has_its_own_critic(task: str, critic: str) -> None:
     assert load_task(task).critic == critic
 
@@ -91,7 +92,7 @@ def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], tol
 
 
 def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
-    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING, GRAZING}
+    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING, GRAZING, SPUN}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):

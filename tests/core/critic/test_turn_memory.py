@@ -41,6 +41,15 @@ def test_turn_memory_wobbling_straight_course_stays_small() -> None:
         assert abs(turned(memory, -0.3)) < 0.6
 
 
+def test_turn_memory_fades_over_the_way() -> None:
+    memory = TurnMemory(0.6, fades_in_m=0.3)
+    turned(memory, 5.0)
+    for _ in range(300):
+        left_rad = memory.update(0.0, 0.001)
+    assert left_rad == pytest.approx(5.0 / math.e, rel=0.01)
+    assert memory.update(0.0, -1.0) == 0.0
+
+
 def test_turn_memory_restart_forgets() -> None:
     memory = TurnMemory(0.6)
     turned(memory, 5.0)
