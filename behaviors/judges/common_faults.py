@@ -23,13 +23,20 @@ class CommonFaults(Settings):
     stands_m_s: Speed
     """Speed below which the robot stands, together with `stands_rad_s`."""
     stands_rad_s: TurnRate
+    may_turn_rad_s: TurnRate = 4.0
+    """Turn rate above which lack of progress is no fault until the robot is circling, by the feature circling."""
 
 
 def has_fault(now: AppraisalFeatures, trouble: CommonFaults) -> bool:
     """Return whether the robot bumped into something, makes no progress, backs or stands, by these thresholds."""
     return (
         now.bumped > 0.0
-        or (now.no_progress > 0.0 and now.speed_m_s < trouble.creeps_m_s)
+        or (now.no_progress > 0.0 and now.speed_m_s < trouble.creeps_m_s and not _turns_out(now, trouble))
         or now.speed_m_s < -trouble.backs_m_s
         or (abs(now.speed_m_s) < trouble.stands_m_s and abs(now.turn_rad_s) < trouble.stands_rad_s)
     )
+
+
+def _turns_out(now: AppraisalFeatures, trouble: CommonFaults) -> bool:
+    """Return whether the robot turns on the spot and has not come round yet."""
+    return not now.circling and abs(now.turn_rad_s) > trouble.may_turn_rad_s

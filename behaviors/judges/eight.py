@@ -1,8 +1,15 @@
 """Judge of the figure of eight round two columns."""
 
+from typing import Annotated
+
+from pydantic import Field
+
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
 from behaviors.policies.distances import Distance
+
+OptionalDistance = Annotated[float, Field(ge=0, le=0.6)]
+"""Distance in m; 0: the rule does not exist, as in recordings of before it."""
 
 
 class EightSettings(JudgeSettings):
@@ -33,6 +40,12 @@ class EightSettings(JudgeSettings):
     """Turn rate towards the column above which the curve is good."""
     round_m_s: Speed
     """Speed above which the curve is good."""
+    grazes_rad_s: TurnRate = 0.0
+    """Turn rate towards a column above which a grazing robot, by the feature grazing, is bad."""
+    other_m: OptionalDistance = 0.0
+    """Distance of the second column at the side below which a circling robot has to leave the first; 0: never."""
+    loses_column: bool = False
+    """Punish the first moments without a column in view, until the feature no_wall is 1."""
     straight_rad_s: TurnRate
     """Turn rate below which driving between two columns is good."""
     unseen_m: Distance
@@ -59,20 +72,26 @@ class Eight:
             return -1 if drives_at_it else int(abs(now.turn_rad_s) > want.away_rad_s)
         if abs(now.turn_rad_s) > want.spins_rad_s and now.speed_m_s < want.spins_m_s:
             return -1
+        if now.circling and max(now.left_m, now.right_m) < want.other_m and abs(now.turn_rad_s) > want.round_rad_s:
+            return -1
         beside_left, beside_right = now.left_m < want.lost_m, now.right_m < want.lost_m
         if beside_left and beside_right:
             return int(now.speed_m_s > want.drives_m_s and abs(now.turn_rad_s) < want.straight_rad_s)
         if beside_left:
-            return self._round(now.left_m, now.ahead_left_m, now.turn_rad_s, now.speed_m_s)
+            return self._round(now, now.left_m, now.ahead_left_m, now.turn_rad_s)
         if beside_right:
-            return self._round(now.right_m, now.ahead_right_m, -now.turn_rad_s, now.speed_m_s)
+            return self._round(now, now.right_m, now.ahead_right_m, -now.turn_rad_s)
         unseen = min(now.ahead_left_m, now.ahead_right_m) > want.unseen_m
-        return -1 if unseen and now.turn_rad_s < -want.turns_rad_s else 0
+        just_lost = want.loses_column and not now.no_wall and now.front_m > want.unseen_m
+        return -1 if unseen and (just_lost or now.turn_rad_s < -want.turns_rad_s) else 0
 
-    def _round(self, beside_m: float, ahead_m: float, to_it_rad_s: float, speed_m_s: float) -> int:
+    def _round(self, now: AppraisalFeatures, beside_m: float, ahead_m: float, to_it_rad_s: float) -> int:
         """Return the reward next to the only column; `ahead_m`: distance at the front edge on that side."""
         want = self._settings
         if to_it_rad_s < -want.turns_rad_s and ahead_m > want.edge_m:
             return -1
+        if now.grazing and to_it_rad_s > want.grazes_rad_s:
+            return -1
         right_distance = want.near_m < beside_m < want.far_m
-        return int(right_distance and to_it_rad_s > want.round_rad_s and speed_m_s > want.round_m_s)
+        curves = to_it_rad_s > want.round_rad_s and now.speed_m_s > want.round_m_s
+        return int(right_distance and curves and not now.circling)

@@ -29,7 +29,7 @@ class FleeingSettings(JudgeSettings):
     straight_rad_s: TurnRate
     """Turn rate below which a course is straight."""
     creeps_m_s: Speed
-    """Speed below which the robot wastes the open space, together with `curves_rad_s`."""
+    """Speed below which the robot wastes the open space, together with `curves_rad_s`, unless it has just spun."""
     curves_rad_s: TurnRate
     wary_m: Distance
     """Distance at a front edge below which curving to that side is bad."""
@@ -75,7 +75,8 @@ class Fleeing:
             return -1 if now.turn_rad_s < 0 else 0
         if self._is_off(now):
             return 1
-        return -1 if now.speed_m_s < want.creeps_m_s and turn_rad_s < want.curves_rad_s else 0
+        # After a turn on the spot the wheels have to speed up first.
+        return -1 if now.speed_m_s < want.creeps_m_s and turn_rad_s < want.curves_rad_s and not now.spun else 0
 
     def _is_off(self, now: AppraisalFeatures) -> bool:
         want = self._settings

@@ -33,6 +33,12 @@ class AppraisalFeatures(NamedTuple):
     """1.0 if no wall has been in view at the sides for long, else 0.0."""
     surprised: float = 0.0
     """1.0 shortly after an unexpected event, else 0.0; 0.0 for a critic without this feature."""
+    circling: float = 0.0
+    """1.0 if the robot has turned one way for about a round, else 0.0; 0.0 for a critic without this feature."""
+    grazing: float = 0.0
+    """1.0 shortly after something at a side was very near, else 0.0; 0.0 for a critic without this feature."""
+    spun: float = 0.0
+    """1.0 during and shortly after a turn on the spot, else 0.0; 0.0 for a critic without this feature."""
 
 
 class Judge(Protocol):

@@ -431,6 +431,8 @@ class Tick:
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()
                 self._handler.forget_obstacles()
+                if self._appraisal_perception is not None:
+                    self._appraisal_perception.forget_turns()
                 self._reset_transitions()
 
     def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:

@@ -10,6 +10,7 @@ from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.turn_memory import TurnMemory
 from kurt2rt.core.numerics import round_portable
 
 
@@ -47,6 +48,16 @@ class AppraisalPerception:
         self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
         self._no_wall_ticks = round(want.no_wall_s / period_s)
         self._stale_infrared_s = robot.guard.stale_infrared_s
+        circling = want.circling
+        self._turn_memory = (
+            None if circling is None else TurnMemory(circling.reversal_rad, circling.fades_in_m or math.inf)
+        )
+        self._round_rad = math.inf if circling is None else circling.round_rad
+        grazing = want.grazing
+        self._graze_m = 0.0 if grazing is None else grazing.near_m
+        self._spun_settings = want.spun
+        self._spun_held_ticks = 0 if want.spun is None else 1 + round(want.spun.held_s / period_s)
+        self._graze_held_ticks = 0 if grazing is None else 1 + round(grazing.held_s / period_s)
         steps = max(1, round(want.no_progress_s / period_s))
         self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
         self._here_x_m = self._here_y_m = self._heading_rad = 0.0
@@ -55,8 +66,11 @@ class AppraisalPerception:
     def restart(self) -> None:
         """Reset after power-on or missing sensor data."""
         self._speed_m_s = self._turn_rad_s = 0.0
+        self.forget_turns()
         self._since_bump = self._bump_held_ticks
         self._since_surprise = self._surprise_held_ticks
+        self._since_graze = self._graze_held_ticks
+        self._since_spin = self._spun_held_ticks
         self._without_wall = 0
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
@@ -64,6 +78,12 @@ class AppraisalPerception:
     def notify_surprise(self) -> None:
         """Record that the previous tick was surprising; the time since then is a feature."""
         self._since_surprise = -1
+
+    def forget_turns(self) -> None:
+        """Begin the turn since the last reversal at 0, because the robot was carried elsewhere."""
+        self._turned_rad = 0.0
+        if self._turn_memory is not None:
+            self._turn_memory.restart()
 
     def perceive(self, readings: SensorReadings, *, driving: bool) -> AppraisalFeatures:
         """Return the features of this tick; `driving`: whether an action drove the wheels until now.
@@ -80,10 +100,12 @@ class AppraisalPerception:
             self._without_wall = 0
         elif driving:
             self._without_wall += 1
+        left_m, right_m = distance_m[max(self._left(counts))], distance_m[max(self._right(counts))]
+        self._since_graze = 0 if left_m < self._graze_m or right_m < self._graze_m else self._since_graze + 1
         return AppraisalFeatures(
-            left_m=distance_m[max(self._left(counts))],
+            left_m=left_m,
             front_m=distance_m[max(self._front(counts))],
-            right_m=distance_m[max(self._right(counts))],
+            right_m=right_m,
             rear_m=distance_m[max(self._rear(counts))],
             ahead_left_m=distance_m[max(self._ahead_left(counts))],
             ahead_right_m=distance_m[max(self._ahead_right(counts))],
@@ -95,6 +117,9 @@ class AppraisalPerception:
             no_progress=1.0 if self._no_progress(driving=driving) else 0.0,
             no_wall=1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
             surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
+            circling=1.0 if abs(self._turned_rad) >= self._round_rad else 0.0,
+            grazing=1.0 if self._since_graze < self._graze_held_ticks else 0.0,
+            spun=1.0 if self._since_spin < self._spun_held_ticks else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
@@ -110,6 +135,12 @@ class AppraisalPerception:
         self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
         self._heading_rad += turn_rad
+        if self._turn_memory is not None:
+            self._turned_rad = self._turn_memory.update(turn_rad, way_m)
+        spin = self._spun_settings
+        if spin is not None:
+            spins = abs(self._turn_rad_s) > spin.turn_rad_s and abs(self._speed_m_s) < spin.speed_m_s
+            self._since_spin = 0 if spins else self._since_spin + 1
         self._here_x_m += way_m * round_portable(math.cos(self._heading_rad))
         self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 

@@ -39,7 +39,7 @@ class Critic:
     def __init__(self, system: RlaSystem, settings: CriticSettings) -> None:
         self.settings = settings
         self._system = system
-        self._dimensions = len(settings.names)
+        self._places = [AppraisalFeatures._fields.index(name) for name in settings.names]
         self._appraisals: dict[str, AppraisalSettings] = {each.name: each for each in settings.appraisals}
         self._opinion: Opinion | None = None
         self._lessons = -1
@@ -72,7 +72,7 @@ class Critic:
 
     def to_vector(self, circumstances: AppraisalFeatures) -> NDArray[np.float64]:
         """Return the appraisal situation (d,), unweighted, for `opinion` and for conditions."""
-        return np.array(circumstances[: self._dimensions], dtype=np.float64)
+        return np.array([circumstances[place] for place in self._places], dtype=np.float64)
 
     def opinion(self, vector: NDArray[np.float64]) -> Opinion | None:
         """Return the opinion of an appraisal situation (d,); None before the first lesson."""

@@ -20,9 +20,9 @@ Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
-*_ALWAYS, SURPRISED = AppraisalFeatures._fields
+*_ALWAYS, SURPRISED, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
-"""Names of the appraisal features in order; SURPRISED is optional."""
+"""Names of the appraisal features in order; the last four are optional."""
 
 
 class AppraisalSettings(Settings):
@@ -52,6 +52,37 @@ class SideSensors(Settings):
         return frozenset(name for names in self.model_dump().values() for name in names)
 
 
+class CirclingSettings(Settings):
+    """Settings of the feature circling."""
+
+    round_rad: Annotated[float, Field(gt=0, le=100)]
+    """Turn to one side from which on the robot is circling."""
+    reversal_rad: Annotated[float, Field(gt=0, le=10)]
+    """Turn to the other side that ends it; smaller ones are subtracted."""
+    fades_in_m: Metres | None = None
+    """Way over which an earlier turn fades to 37 %; None: it does not."""
+
+
+class GrazingSettings(Settings):
+    """Settings of the feature grazing."""
+
+    near_m: Metres
+    """Distance at a side, from the sensors' faces, below which something is very near."""
+    held_s: Annotated[float, Field(ge=0, le=10)]
+    """Duration of the feature after that: a noisy reading at the border does not make it flicker."""
+
+
+class SpunSettings(Settings):
+    """Settings of the feature spun."""
+
+    turn_rad_s: Annotated[float, Field(gt=0, le=10)]
+    """Turn rate to either side above which the robot turns on the spot, together with `speed_m_s`."""
+    speed_m_s: Annotated[float, Field(gt=0, le=2)]
+    """Speed, forward or backward, below which it does."""
+    held_s: Annotated[float, Field(ge=0, le=10)]
+    """Duration of the feature after the last such tick: wheels take time to speed up."""
+
+
 class AppraisalPerceptionSettings(Settings):
     """Settings of the appraisal features: sensors, distances and times."""
 
@@ -68,6 +99,12 @@ class AppraisalPerceptionSettings(Settings):
     """Displacement in no_progress_s below which a driving robot makes no progress."""
     surprise_held_s: Seconds | None = None
     """Duration of the feature surprised after a surprise; None: the feature does not exist."""
+    circling: CirclingSettings | None = None
+    """None: the feature circling does not exist."""
+    grazing: GrazingSettings | None = None
+    """None: the feature grazing does not exist."""
+    spun: SpunSettings | None = None
+    """None: the feature spun does not exist."""
 
 
 class AppraisalWeights(Settings):
@@ -87,10 +124,13 @@ class AppraisalWeights(Settings):
     no_progress: Weight = 0.0
     no_wall: Weight = 0.0
     surprised: Weight = 0.0
+    circling: Weight = 0.0
+    grazing: Weight = 0.0
+    spun: Weight = 0.0
 
     @model_validator(mode="after")
     def _something_counts(self) -> Self:
-        if not any(getattr(self, name) for name in (*NAMES, SURPRISED)):
+        if not any(getattr(self, name) for name in AppraisalFeatures._fields):
             raise ValueError("every circumstance weighs 0; give one more")
         return self
 
@@ -178,10 +218,22 @@ class CriticSettings(Settings):
         return appraisals
 
     @model_validator(mode="after")
-    def _surprise_is_weighed_where_it_is_seen(self) -> Self:
-        if self.learning.weights.surprised and self.perception.surprise_held_s is None:
-            raise ValueError("learning.weights.surprised weighs nothing; say perception.surprise_held_s, too")
+    def _optional_features_are_weighed_only_if_they_exist(self) -> Self:
+        for name, key, setting in self._optional_features:
+            if getattr(self.learning.weights, name) and setting is None:
+                raise ValueError(f"learning.weights.{name} weighs nothing; say perception.{key}, too")
         return self
+
+    @property
+    def _optional_features(self) -> tuple[tuple[str, str, object], ...]:
+        """Return name, key of the setting, and setting of each optional feature, in order."""
+        want = self.perception
+        return (
+            (SURPRISED, "surprise_held_s", want.surprise_held_s),
+            (CIRCLING, CIRCLING, want.circling),
+            (GRAZING, GRAZING, want.grazing),
+            (SPUN, SPUN, want.spun),
+        )
 
     @property
     def level_features(self) -> LevelFeatures:
@@ -191,7 +243,7 @@ class CriticSettings(Settings):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of its features, in order."""
-        return NAMES if self.perception.surprise_held_s is None else (*NAMES, SURPRISED)
+        return (*NAMES, *(name for name, _, setting in self._optional_features if setting is not None))
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:

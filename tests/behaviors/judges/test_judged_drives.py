@@ -4,6 +4,7 @@ from collections import Counter
 
 import pytest
 
+from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import load_repertoire
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -13,7 +14,9 @@ from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2Simulation
-from tests.behaviors.helpers import ROBOT
+from tests.behaviors.helpers import ROBOT, counts
+
+Shares = dict[int, float]
 
 
 class Always:
@@ -26,14 +29,29 @@ class Always:
         return self._action
 
 
-async def judged(task_name: str, seconds: float, action: str | None = None) -> dict[int, float]:
-    """Return the fractions of the driven time by reward; `action` replaces the task's policy."""
+class BlindOnTheRight:
+    """The eight's policy without the readings of the right: round the left column for ever."""
+
+    def __init__(self) -> None:
+        self._policy = load_task("eight").policy.build(ROBOT.infrared)
+        on_the_right = [sensor.y_m < -0.05 for sensor in ROBOT.infrared.sensors]
+        self._far = tuple(far for far, right in zip(counts(0.7), on_the_right, strict=True) if right)
+        self._right = on_the_right
+
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        far = iter(self._far)
+        seen = (next(far) if right else each for each, right in zip(infrared_counts, self._right, strict=True))
+        return self._policy.choose(tuple(seen), behaviour)
+
+
+async def judged(task_name: str, seconds: float, other: ReferencePolicy | None = None, since_s: float = 0.5) -> Shares:
+    """Return the fractions of the driven time after `since_s` by reward; `other` replaces the task's policy."""
     task = load_task(task_name)
     assert task.judge is not None
     judge = task.judge.build()
     simulation = Kurt2Simulation(ROBOT, task.teaching.world, 1, "exam")
     wanted = ActiveBehaviour(task.behaviours)
-    policy = task.policy.build(ROBOT.infrared) if action is None else Always(action)
+    policy = task.policy.build(ROBOT.infrared) if other is None else other
     level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
     clock = LockstepClock(simulation.step)
     runtime = build_runtime(
@@ -48,7 +66,7 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
     heard: Counter[int] = Counter()
 
     def after_tick(record: TickRecord) -> None:
-        if record.appraisal_features is not None and record.decision.driving and record.tick > 50:
+        if record.appraisal_features is not None and record.decision.driving and record.tick > 100 * since_s:
             heard[judge.judge(record.appraisal_features)] += 1
 
     await runtime.scheduler.run(round(seconds * 100), after_tick)
@@ -74,4 +92,14 @@ async def test_judges_reward_the_teachers_drive_for_minutes(task: str) -> None:
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
 @pytest.mark.parametrize("action", ["stand", "back"])
 async def test_judges_punish_standing_and_backing(task: str, action: str) -> None:
-    assert (await judged(task, seconds=3, action=action))[-1] > 0.95
+    assert (await judged(task, seconds=3, other=Always(action)))[-1] > 0.95
+
+
+@pytest.mark.deep
+async def test_eight_judge_punishes_circling_round_one_column() -> None:
+    first_round = await judged("eight", seconds=16, other=BlindOnTheRight(), since_s=8)
+    assert first_round[1] > 0.8
+    assert first_round[-1] == 0.0
+    later = await judged("eight", seconds=60, other=BlindOnTheRight(), since_s=32)
+    assert later[-1] > 0.04  # wherever it passes the other column
+    assert later[1] == 0.0

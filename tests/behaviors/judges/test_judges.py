@@ -20,6 +20,9 @@ anywhere = st.builds(
     st.floats(-0.3, 0.5),
     st.floats(-1.5, 1.5),
     *[flags] * 3,
+    surprised=st.just(0.0),
+    circling=flags,
+    grazing=flags,
 )
 
 
@@ -149,8 +152,14 @@ ROUND = {"left_m": 0.18, "turn_rad_s": 0.5, "speed_m_s": 0.22}
         (ROUND | {"turn_rad_s": -0.5, "ahead_left_m": 0.2}, 0),  # not into it
         ({"left_m": 0.3, "right_m": 0.3}, 1),  # between the two
         ({"left_m": 0.3, "right_m": 0.3, "turn_rad_s": 0.5}, 0),
-        ({}, 0),
-        ({"turn_rad_s": -0.5, "speed_m_s": 0.22}, -1),  # with neither in view: left, by agreement
+        (ROUND | {"left_m": 0.11, "grazing": 1.0}, -1),  # it closes in on the column
+        (ROUND | {"left_m": 0.11, "turn_rad_s": 0.3, "grazing": 1.0}, 1),  # wide enough
+        (ROUND | {"circling": 1.0}, 0),  # round the same column again
+        (ROUND | {"circling": 1.0, "right_m": 0.45}, -1),  # past the other one
+        ({"left_m": 0.3, "right_m": 0.3, "circling": 1.0}, 1),  # and now it leaves
+        ({}, -1),  # it has just lost both
+        ({"no_wall": 1.0}, 0),  # it searches
+        ({"turn_rad_s": -0.5, "speed_m_s": 0.22, "no_wall": 1.0}, -1),  # with neither in view: left, by agreement
         ({"turn_rad_s": -0.5, "speed_m_s": 0.22, "ahead_right_m": 0.4}, 0),
         ({"turn_rad_s": 1.0, "speed_m_s": 0.0}, -1),
         ({"turn_rad_s": 1.0, "speed_m_s": 0.0, "front_m": 0.15}, 1),

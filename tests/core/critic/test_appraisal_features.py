@@ -203,3 +203,66 @@ def test_surprised_without_setting_is_zero() -> None:
     of = perception()
     of.notify_surprise()
     assert after(0.1, of, readings()).surprised == 0.0
+
+
+# Circling
+
+
+def circling() -> AppraisalPerception:
+    return AppraisalPerception(changed(circling={"round_rad": 3.0, "reversal_rad": 0.6}), ROBOT)
+
+
+def test_circling_is_noticed_after_a_round_to_either_side() -> None:
+    for left_m_s, right_m_s in ((0.1, 0.3), (0.3, 0.1)):
+        of = circling()
+        turn_rad_s = abs(after(1.0, of, readings(left_m_s, right_m_s)).turn_rad_s)
+        assert after(2.9 / turn_rad_s - 1.0, of, readings(left_m_s, right_m_s)).circling == 0.0
+        assert after(0.3 / turn_rad_s, of, readings(left_m_s, right_m_s)).circling == 1.0
+
+
+def test_circling_ends_with_a_turn_to_the_other_side() -> None:
+    of = circling()
+    assert after(10.0, of, readings(0.1, 0.3)).circling == 1.0
+    assert after(1.0, of, readings(0.3, 0.3)).circling == 1.0
+    assert after(1.5, of, readings(0.3, 0.1)).circling == 0.0
+
+
+def test_circling_lasts_while_the_robot_stands() -> None:
+    of = circling()
+    after(10.0, of, readings(0.1, 0.3))
+    assert after(30.0, of, readings(), driving=False).circling == 1.0
+
+
+def test_circling_ends_with_a_repositioning_or_a_gap() -> None:
+    of = circling()
+    after(10.0, of, readings(0.1, 0.3))
+    of.forget_turns()
+    assert of.perceive(readings(0.1, 0.3), driving=True).circling == 0.0
+    after(10.0, of, readings(0.1, 0.3))
+    assert of.perceive(readings(0.1, 0.3, age_s=9.0), driving=True).circling == 0.0
+
+
+def test_circling_without_setting_is_zero() -> None:
+    assert after(60.0, perception(), readings(0.1, 0.3)).circling == 0.0
+
+
+# Grazing
+
+
+@pytest.mark.parametrize("sensor", ["s1", "s4", "s8"])
+def test_grazing_lasts_as_configured(sensor: str) -> None:
+    of = AppraisalPerception(changed(grazing={"near_m": 0.12, "held_s": 0.1}), ROBOT)
+    near, clear = (readings()._replace(infrared_counts=counts(0.7, **{sensor: each_m})) for each_m in (0.11, 0.14))
+    assert of.perceive(clear, driving=True).grazing == 0.0
+    assert of.perceive(near, driving=True).grazing == 1.0
+    assert after(0.1, of, clear).grazing == 1.0
+    assert of.perceive(clear, driving=True).grazing == 0.0
+
+
+def test_grazing_is_about_the_sides() -> None:
+    of = AppraisalPerception(changed(grazing={"near_m": 0.12, "held_s": 0.1}), ROBOT)
+    assert of.perceive(readings(s10=0.11, s13=0.11, s15=0.11), driving=True).grazing == 0.0
+
+
+def test_grazing_without_setting_is_zero() -> None:
+    assert perception().perceive(readings(s1=0.11), driving=True).grazing == 0.0

@@ -7,7 +7,16 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError, load_settings
-from kurt2rt.core.critic.settings import NAMES, SURPRISED, AppraisalWeights, CriticSettings, load_critic
+from kurt2rt.core.critic.settings import (
+    CIRCLING,
+    GRAZING,
+    NAMES,
+    SPUN,
+    SURPRISED,
+    AppraisalWeights,
+    CriticSettings,
+    load_critic,
+)
 from kurt2rt.core.task_settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
@@ -31,7 +40,26 @@ def test_builtin_critics_differ_in_weights_only(name: str) -> None:
     same = {"name": basic.name, "learning": basic.learning}
     assert other.model_copy(update=same) == basic
     assert other.learning.model_copy(update={"weights": basic.learning.weights}) == basic.learning
-    assert load_task(name).critic == name
+
+
+@pytest.mark.parametrize(("task", "critic"), [("fleeing", "fleeing_with_memory"), ("eight", "eight_with_memory")])
+def test_shipped_task_has_its_own_critic(task: str, critic: str) -> None:
+    assert load_task(task).critic == critic
+
+
+def test_critic_with_memory_differs_from_that_without() -> None:
+    without, with_memory = load_critic("eight"), load_critic("eight_with_memory")
+    assert (without.names, with_memory.names) == (NAMES, (*NAMES, CIRCLING, GRAZING))
+    assert without.feature_hash != with_memory.feature_hash
+
+
+def test_circling_feature_needs_its_settings() -> None:
+    content = json.loads(load_critic("eight_with_memory").model_dump_json())
+    content["perception"]["surprise_held_s"] = 1.0
+    assert checked(content).names == (*NAMES, SURPRISED, CIRCLING, GRAZING)
+    del content["perception"]["circling"]
+    with pytest.raises(ValueError, match=r"weights\.circling .*perception\.circling"):
+        checked(content)
 
 
 def test_load_critic_unknown_name_is_refused() -> None:
@@ -64,7 +92,7 @@ def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], tol
 
 
 def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
-    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED}
+    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING, GRAZING, SPUN}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):
