@@ -23,6 +23,7 @@ anywhere = st.builds(
     surprised=st.just(0.0),
     circling=flags,
     grazing=flags,
+    spun=flags,
 )
 
 
@@ -52,7 +53,7 @@ def test_judges_always_punish_common_faults(task: str, circumstances: AppraisalF
         {"bumped": 1.0},
         {"speed_m_s": -0.1},
         {"speed_m_s": 0.0, "turn_rad_s": 0.0},
-        {"no_progress": 1.0, "speed_m_s": 0.05},
+        {"no_progress": 1.0, "speed_m_s": 0.05, "circling": 1.0},
     ):
         assert JUDGES[task].judge(circumstances._replace(**trouble)) == -1
 
@@ -118,6 +119,9 @@ def test_wall_following_judge(circumstances: dict[str, float], thought: int) -> 
         ({"speed_m_s": 0.4}, 1),
         ({"speed_m_s": 0.4, "left_m": 0.11, "right_m": 0.11, "rear_m": 0.1, "no_wall": 1.0}, 1),  # along the walls
         ({"speed_m_s": 0.2}, -1),  # creeps where it is free
+        ({"speed_m_s": 0.2, "spun": 1.0}, 0),  # speeds up after a spin
+        ({"front_m": 0.4, "speed_m_s": 0.0, "turn_rad_s": 1.4, "no_progress": 1.0}, 1),  # out of a corner
+        ({"front_m": 0.4, "speed_m_s": 0.0, "turn_rad_s": 1.4, "no_progress": 1.0, "circling": 1.0}, -1),  # for ever
         ({"speed_m_s": 0.3}, 0),
         ({"speed_m_s": 0.0, "turn_rad_s": 1.4}, 0),
         ({"speed_m_s": 0.0, "turn_rad_s": -1.4}, -1),

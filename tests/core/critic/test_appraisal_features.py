@@ -266,3 +266,33 @@ def test_grazing_is_about_the_sides() -> None:
 
 def test_grazing_without_setting_is_zero() -> None:
     assert perception().perceive(readings(s1=0.11), driving=True).grazing == 0.0
+
+
+# Spun
+
+
+def spinning() -> AppraisalPerception:
+    return AppraisalPerception(changed(spun={"turn_rad_s": 0.9, "speed_m_s": 0.1, "held_s": 0.5}), ROBOT)
+
+
+def test_spun_lasts_as_configured_after_a_turn_on_the_spot() -> None:
+    of = spinning()
+    assert after(1.0, of, readings(-0.3, 0.3)).spun == 1.0
+    assert after(0.5, of, readings(0.3, 0.3)).spun == 1.0
+    assert after(0.3, of, readings(0.3, 0.3)).spun == 0.0
+
+
+def test_spun_is_not_about_curves() -> None:
+    assert after(2.0, spinning(), readings(0.1, 0.3)).spun == 0.0
+
+
+def test_spun_without_setting_is_zero() -> None:
+    assert after(2.0, perception(), readings(-0.3, 0.3)).spun == 0.0
+
+
+def test_circling_fades_over_the_way_as_configured() -> None:
+    settings = {"round_rad": 6.0, "reversal_rad": 0.6, "fades_in_m": 0.3}
+    of = AppraisalPerception(changed(circling=settings), ROBOT)
+    assert after(6.0, of, readings(-0.3, 0.3)).circling == 1.0
+    assert after(2.0, of, readings(0.3, 0.3)).circling == 0.0
+    assert after(60.0, of, readings(0.1, 0.3)).circling == 0.0
