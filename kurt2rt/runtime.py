@@ -11,6 +11,7 @@ from hal.sensor_ring import SubstituteReadings
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead, set_points
+from kurt2rt.core.basic.guessed_lessons import GuessedLessons
 from kurt2rt.core.basic.obstacle_memory import ObstacleMemory
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
@@ -164,6 +165,7 @@ class _Assembly:
             self.active_behaviour,
             self.reinforcement.choice,
             self._doubt(repertoire),
+            self._guesses(),
         )
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None
@@ -181,6 +183,12 @@ class _Assembly:
         self.self_teaching = SelfTeaching(self.reinforcement, self._system, self.critic, agreement, self._period_s)
         self.self_teaching.restore(events, options.checkpoint)
         self.handler = self._build_handler(agreement)
+
+    def _guesses(self) -> GuessedLessons | None:
+        learning = self._task.learning
+        if not learning.asks_about_guesses:
+            return None
+        return GuessedLessons(self._system, action_groups(self._task.repertoire), learning.insert_beyond_share)
 
     def _doubt(self, repertoire: Repertoire) -> DoubtMeter | None:
         settings = self._task.learning.doubt
@@ -219,6 +227,7 @@ class _Assembly:
                 mid=lessons,
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
+                holds_yield=self._task.learning.holds_yield,
                 lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from behaviors.action_groups import action_groups
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.basic.guessed_lessons import GuessedLessons
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
@@ -20,7 +22,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler
+from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.tick import InMemoryEventStore, Tick, TickOptions, TickParts, TickRecord
@@ -30,6 +32,7 @@ from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, st
 
 FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
 RADIUS = 50.0
+NARROW_SHARE = 0.1
 PAST_WEIGHT = 0.1  # little, so that the first seconds of a history are not another situation
 
 
@@ -83,6 +86,8 @@ class Corridor:
         asked: bool = True,
         asks_when_held: bool = True,
         asks_beyond_share: float = 1.0,
+        asks_about_guesses: bool = False,
+        holds_yield: bool = False,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
@@ -91,8 +96,13 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
+        guesses = GuessedLessons(self.system, action_groups("basic"), NARROW_SHARE) if asks_about_guesses else None
         self.level = BasicLevel(
-            self.system, repertoire, minimum_action_ticks=3, active_behaviour=ActiveBehaviour(behaviours)
+            self.system,
+            repertoire,
+            minimum_action_ticks=3,
+            active_behaviour=ActiveBehaviour(behaviours),
+            guesses=guesses,
         )
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
@@ -105,6 +115,7 @@ class Corridor:
             handled_command_ids=(),
             teacher_available=asked,
             asks_beyond_share=asks_beyond_share,
+            parts=HandlerParts(holds_yield=holds_yield),
         )
         parts = TickParts(
             robot=self.robot,

@@ -85,6 +85,8 @@ class HandlerParts:
     goals: GoalCommands | None = None
     delay: TeacherDelay | None = None
     """Delay of the teachers; None: it begins with the default."""
+    holds_yield: bool = False
+    """Keep what an answer or a press taught where a hold would replace it."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 
@@ -201,6 +203,7 @@ class CommandHandler:
         self._level.counts = self.lesson_speed.counts
         taught = self._is_taught
         self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
+        self._level.asks_about_guesses = taught
         # A teacher is to see what the robot would do by its lessons alone.
         self._level.avoids = not taught
         authority = self.authority
@@ -412,4 +415,5 @@ def _lesson_builder(
         reinforcement=parts.reinforcement,
         appraisal_lessons=appraisal_lessons,
         mid=parts.mid,
+        holds_yield=parts.holds_yield,
     )

@@ -235,8 +235,15 @@ class _Reader:
             driver=driver,
             others=tuple(others),
             count=self._system.candidate_count(behaviour, level_name),
-            radius_share=self._system.radius_share if level_name == BASIC else 1.0,
+            radius_share=self._radius_share(level_name, match),
         )
+
+    def _radius_share(self, level_name: str, match: Match | None) -> float:
+        """Return the fraction of R that counted: that of the nearest RLA, which may have a narrow radius of its own."""
+        if level_name != BASIC:
+            return 1.0
+        whole = 0.0 if match is None else self._system.whole_radius(match.rla)
+        return self._system.radius_share if match is None or whole == 0.0 else match.radius / whole
 
     def _ranking(
         self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
