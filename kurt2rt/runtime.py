@@ -11,7 +11,6 @@ from hal.sensor_ring import SubstituteReadings
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead, set_points
-from kurt2rt.core.basic.guessed_lessons import GuessedLessons
 from kurt2rt.core.basic.obstacle_memory import ObstacleMemory
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
@@ -32,6 +31,7 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.guessed_lessons import GuessedLessons
 from kurt2rt.core.rla.rla import CRITIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -138,7 +138,10 @@ def empty_system(
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
-    return RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    if task.learning.passes_over_guesses:
+        system.is_guess = GuessedLessons(system, action_groups(task.repertoire)).includes
+    return system
 
 
 class _Assembly:
@@ -165,7 +168,6 @@ class _Assembly:
             self.active_behaviour,
             self.reinforcement.choice,
             self._doubt(repertoire),
-            self._guesses(),
         )
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None
@@ -183,12 +185,6 @@ class _Assembly:
         self.self_teaching = SelfTeaching(self.reinforcement, self._system, self.critic, agreement, self._period_s)
         self.self_teaching.restore(events, options.checkpoint)
         self.handler = self._build_handler(agreement)
-
-    def _guesses(self) -> GuessedLessons | None:
-        learning = self._task.learning
-        if not learning.asks_about_guesses:
-            return None
-        return GuessedLessons(self._system, action_groups(self._task.repertoire), learning.insert_beyond_share)
 
     def _doubt(self, repertoire: Repertoire) -> DoubtMeter | None:
         settings = self._task.learning.doubt

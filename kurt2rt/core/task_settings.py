@@ -63,9 +63,9 @@ class LearningSettings(Settings):
     """Fraction of R beyond which the robot asks in phases 1 and 2, with a teacher there; otherwise it asks beyond R."""
     holds_yield: bool = False
     """Keep the action of an RLA that an answer or a press taught where a lesson of a hold would replace it."""
-    asks_about_guesses: bool = False
-    """Ask in phases 1 and 2, with a teacher there, also where a lesson of a hold would drive that differs from its five
-    nearest neighbours of other presses."""
+    passes_over_guesses: bool = False
+    """Let neighbours answer, without a teacher, in place of a lesson of a hold that differs from its five nearest
+    neighbours of other presses."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
@@ -91,7 +91,7 @@ class PlainSettings(LearningSettings):
     insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     asks_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     holds_yield: Literal[False] = False
-    asks_about_guesses: Literal[False] = False
+    passes_over_guesses: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: None = None
 

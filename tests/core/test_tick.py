@@ -6,13 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from behaviors.action_groups import action_groups
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.basic.guessed_lessons import GuessedLessons
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
@@ -32,7 +30,6 @@ from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, st
 
 FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
 RADIUS = 50.0
-NARROW_SHARE = 0.1
 PAST_WEIGHT = 0.1  # little, so that the first seconds of a history are not another situation
 
 
@@ -86,7 +83,6 @@ class Corridor:
         asked: bool = True,
         asks_when_held: bool = True,
         asks_beyond_share: float = 1.0,
-        asks_about_guesses: bool = False,
         holds_yield: bool = False,
     ) -> None:
         self.robot = CorridorRobot()
@@ -96,13 +92,8 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
-        guesses = GuessedLessons(self.system, action_groups("basic"), NARROW_SHARE) if asks_about_guesses else None
         self.level = BasicLevel(
-            self.system,
-            repertoire,
-            minimum_action_ticks=3,
-            active_behaviour=ActiveBehaviour(behaviours),
-            guesses=guesses,
+            self.system, repertoire, minimum_action_ticks=3, active_behaviour=ActiveBehaviour(behaviours)
         )
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()

@@ -9,7 +9,6 @@ from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
-from kurt2rt.core.basic.guessed_lessons import GuessedLessons
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
@@ -68,7 +67,6 @@ class BasicLevel:
         active_behaviour: ActiveBehaviour,
         choice: EpsilonGreedy | None = None,
         doubt: DoubtMeter | None = None,
-        guesses: GuessedLessons | None = None,
     ) -> None:
         """Check the RLAs and connect them to the repertoire.
 
@@ -79,7 +77,6 @@ class BasicLevel:
             active_behaviour: only its RLAs compete.
             choice: chooses among RLAs on the same condition; without it the oldest answers.
             doubt: score by which the robot stands, asks or avoids inside the radius; None: it never doubts.
-            guesses: lessons of holds that the robot asks about while it is taught; None: it asks about none.
 
         Raises:
             UnknownActionError: for an RLA whose action the repertoire lacks.
@@ -95,9 +92,6 @@ class BasicLevel:
         self.doubt = doubt
         self._doubts = None if doubt is None else DoubtWatch(doubt)
         self._memory = None if doubt is None else doubt.memory
-        self._guesses = guesses
-        self.asks_about_guesses = False
-        """Ask where a lesson of a hold that other lessons contradict would drive."""
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
         self.avoids = False
@@ -161,8 +155,6 @@ class BasicLevel:
             self._memory.update(readings)
         self.held_action = self._held.held
         match = self.system.match(situation.vector, self._behaviour, include_withdrawn=not self.skip_withdrawn)
-        if match is not None and self.asks_about_guesses and self._guesses is not None:
-            match = self._guesses.narrowed(match)
         if blocking_cause is not None:
             return self._stand(blocking_cause, match)
         if match is None or not match.known:

@@ -203,7 +203,6 @@ class CommandHandler:
         self._level.counts = self.lesson_speed.counts
         taught = self._is_taught
         self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
-        self._level.asks_about_guesses = taught
         # A teacher is to see what the robot would do by its lessons alone.
         self._level.avoids = not taught
         authority = self.authority
