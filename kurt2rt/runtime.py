@@ -32,6 +32,7 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.guessed_lessons import GuessedLessons
 from kurt2rt.core.rla.rla import CRITIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -140,7 +141,10 @@ def empty_system(
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
-    return RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+    if task.learning.passes_over_guesses:
+        system.is_guess = GuessedLessons(system, action_groups(task.repertoire)).includes
+    return system
 
 
 class _Assembly:
@@ -223,6 +227,7 @@ class _Assembly:
                 mid=lessons,
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
+                holds_yield=self._task.learning.holds_yield,
                 lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,

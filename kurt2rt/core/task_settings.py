@@ -61,6 +61,11 @@ class LearningSettings(Settings):
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     asks_beyond_share: Annotated[float, Field(gt=0, le=1)] = 1.0
     """Fraction of R beyond which the robot asks in phases 1 and 2, with a teacher there; otherwise it asks beyond R."""
+    holds_yield: bool = False
+    """Keep the action of an RLA that an answer or a press taught where a lesson of a hold would replace it."""
+    passes_over_guesses: bool = False
+    """Let neighbours answer, without a teacher, in place of a lesson of a hold that differs from its five nearest
+    neighbours of other presses."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
     """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
@@ -85,6 +90,8 @@ class PlainSettings(LearningSettings):
     weights: Annotated[tuple[FeatureWeight, ...], Field(max_length=0)] = ()
     insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     asks_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
+    holds_yield: Literal[False] = False
+    passes_over_guesses: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: None = None
 

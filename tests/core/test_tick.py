@@ -20,7 +20,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler
+from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.tick import InMemoryEventStore, Tick, TickOptions, TickParts, TickRecord
@@ -83,6 +83,7 @@ class Corridor:
         asked: bool = True,
         asks_when_held: bool = True,
         asks_beyond_share: float = 1.0,
+        holds_yield: bool = False,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
@@ -105,6 +106,7 @@ class Corridor:
             handled_command_ids=(),
             teacher_available=asked,
             asks_beyond_share=asks_beyond_share,
+            parts=HandlerParts(holds_yield=holds_yield),
         )
         parts = TickParts(
             robot=self.robot,

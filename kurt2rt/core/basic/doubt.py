@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from behaviors.behaviour import Behaviour, DrivesOn, HasSetPoints
 from hal.robot import WheelSpeeds
@@ -53,6 +53,13 @@ class DoubtSettings(Settings):
     """
     contact: ContactSettings | None = None
     """Remembered obstacles; an action that meets one is doubted by the threshold. None: none are remembered."""
+
+    @field_validator("contact", mode="before")
+    @classmethod
+    def _has_a_value(cls, contact: object) -> object:
+        if contact is None:
+            raise ValueError("give settings, or leave the key out for a robot that remembers no obstacles")
+        return contact
 
     @model_validator(mode="after")
     def _rare_is_beyond_usual(self) -> Self:

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
 
 import numpy as np
@@ -47,20 +47,24 @@ class ActiveRlas:
         return self._rlas.get(rla_id)
 
     def match(
-        self, situation: NDArray[np.float64], behaviour: str, level: str, *, include_withdrawn: bool
+        self,
+        situation: NDArray[np.float64],
+        behaviour: str,
+        level: str,
+        passes_over: Callable[[Rla], bool] | None = None,
     ) -> Match | None:
         """Return the RLA nearest to a situation (d,), and the runner-up; None if the level and behaviour have no RLA.
 
         All distances are infinite if the situation holds NaN: the robot does not know its position.
-        `include_withdrawn`: False skips RLAs without an action.
+        `passes_over`: tells which RLAs do not answer; None: all answer.
         """
         index = self._indexes.get((level, behaviour))
         nearest = None if index is None else index.index.nearest(situation * index.weights)
         if index is None or nearest is None:
             return None
         rla = self._rlas[index.ids[nearest.position]]
-        if not include_withdrawn and rla.is_withdrawn:
-            return self._match_without_withdrawn(index, situation)
+        if passes_over is not None and passes_over(rla):
+            return self._match_of_others(index, situation, passes_over)
         runner_up = self._rlas[index.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = self.radius_of(rla)
         if math.isnan(nearest.distance):
@@ -76,11 +80,13 @@ class ActiveRlas:
         """Return R of an RLA of a matched level in counts, or m for a place, also while the robot asks sooner."""
         return self._spaces[rla.level].radius if rla.radius is None else rla.radius
 
-    def _match_without_withdrawn(self, index: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
-        """Return the nearest RLA that has an action. Computes all distances: rare, so not optimised."""
+    def _match_of_others(
+        self, index: CandidateIndex, situation: NDArray[np.float64], passes_over: Callable[[Rla], bool]
+    ) -> Match | None:
+        """Return the nearest RLA that is not passed over. Computes all distances: rare, so not optimised."""
         distances = index.index.distances(situation * index.weights)
         order = np.argsort(distances, kind="stable").tolist()  # stable: the older of equally near RLAs comes first
-        found = [place for place in order if not self._rlas[index.ids[place]].is_withdrawn][:2]
+        found = list(islice((place for place in order if not passes_over(self._rlas[index.ids[place]])), 2))
         if not found:
             return None
         rla = self._rlas[index.ids[found[0]]]

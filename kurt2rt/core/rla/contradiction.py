@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
@@ -14,6 +15,8 @@ were (docs/results-and-limits.md, Contradictions)."""
 
 _LOOKED_AT = 2 * NEIGHBOURS + 1
 """Nearest RLAs that are looked at for neighbours: itself, and some that were withdrawn."""
+_LOOKED_AT_OTHER_PRESSES = 6 * NEIGHBOURS + 1
+"""The same where neighbours of the same hold are passed over; a hold of 2 s gives at most 20."""
 
 
 class Contradiction(NamedTuple):
@@ -29,7 +32,9 @@ class Contradiction(NamedTuple):
         return tuple(dict.fromkeys(each.action for each in self.neighbours))
 
 
-def find_contradiction(system: RlaSystem, rla: Rla, groups: Mapping[str, str]) -> Contradiction | None:
+def find_contradiction(
+    system: RlaSystem, rla: Rla, groups: Mapping[str, str], *, of_other_presses: bool = False
+) -> Contradiction | None:
     """Return the neighbours that an RLA contradicts; None if one of them agrees, or five are not to be found.
 
     Computes all distances: for explanations, not for each tick.
@@ -38,14 +43,19 @@ def find_contradiction(system: RlaSystem, rla: Rla, groups: Mapping[str, str]) -
         system: with the RLA and its neighbours, those of its behaviour.
         rla: of any level; only those of the basic level that have an action contradict anything.
         groups: group of each action, as of behaviors.action_groups.
+        of_other_presses: pass over neighbours that the same hold taught, because one press cannot confirm itself.
     """
     if rla.level != BASIC or rla.is_withdrawn:
         return None
-    near = system.nearest_first(np.array(rla.condition), rla.behaviour, limit=_LOOKED_AT)
+    hold = hold_of(rla.origin.command_id) if of_other_presses else None
+    limit = _LOOKED_AT if hold is None else _LOOKED_AT_OTHER_PRESSES
+    near = system.nearest_first(np.array(rla.condition), rla.behaviour, limit=limit)
     neighbours: list[Rla] = []
     for rla_id, _ in near:
         other = system.get(rla_id)
         if other is None or rla_id == rla.rla_id or other.is_withdrawn:
+            continue
+        if hold is not None and hold_of(other.origin.command_id) == hold:
             continue
         if groups.get(other.action, other.action) == groups.get(rla.action, rla.action):
             return None

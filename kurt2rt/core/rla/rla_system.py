@@ -4,7 +4,7 @@ RLAs of each level and taught behaviour compete among themselves; ids and the hi
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -66,6 +66,8 @@ class RlaSystem:
         """Total duration of the ended sessions, in ticks."""
         self.changes = 0
         """Number of applied events; while it is unchanged, equal situations have equal matches."""
+        self.is_guess: Callable[[Rla], bool] | None = None
+        """Predicate of guesses, which a robot without a teacher passes over at the basic level; None: none is one."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
         self._active = ActiveRlas(self._spaces)
         self._last_id = 0
@@ -174,9 +176,13 @@ class RlaSystem:
         """Return the RLA of a level and taught behaviour nearest to a situation (d,), and the runner-up.
 
         Returns None if nothing was taught yet. Distances are infinite if the situation holds NaN.
-        `include_withdrawn`: False skips RLAs without an action, for a robot without a teacher.
+        `include_withdrawn`: False passes over RLAs without an action, and guesses, for a robot without a teacher.
         """
-        return self._active.match(situation, behaviour, level, include_withdrawn=include_withdrawn)
+        return self._active.match(situation, behaviour, level, None if include_withdrawn else self.passes_over)
+
+    def passes_over(self, rla: Rla) -> bool:
+        """Return whether a robot without a teacher lets neighbours of an RLA answer: of a withdrawn one and a guess."""
+        return rla.is_withdrawn or (rla.level == BASIC and self.is_guess is not None and self.is_guess(rla))
 
     @property
     def radius_share(self) -> float:

@@ -86,6 +86,8 @@ class HandlerParts:
     goals: GoalCommands | None = None
     delay: TeacherDelay | None = None
     """Delay of the teachers; None: it begins with the default."""
+    holds_yield: bool = False
+    """Keep what an answer or a press taught where a hold would replace it."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 
@@ -420,4 +422,5 @@ def _lesson_builder(
         reinforcement=parts.reinforcement,
         appraisal_lessons=appraisal_lessons,
         mid=parts.mid,
+        holds_yield=parts.holds_yield,
     )

@@ -40,6 +40,7 @@ class LessonBuilder:
         reinforcement: Reinforcement | None,
         appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
+        holds_yield: bool = False,
     ) -> None:
         """Connect the level and its optional parts.
 
@@ -51,6 +52,7 @@ class LessonBuilder:
             reinforcement: shares rewards out; without it they are only counted.
             appraisal_lessons: lessons of the critic; None without a critic.
             mid: lessons of the mid level; None without one.
+            holds_yield: keep what an answer or a press taught where a hold would replace it.
         """
         self._level = level
         self._system = level.system
@@ -61,6 +63,7 @@ class LessonBuilder:
         self._appraisal_lessons = appraisal_lessons
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
+        self._holds_yield = holds_yield
         self.corrections_at: Counter[str] = Counter()
         """Number of corrections by level."""
 
@@ -101,7 +104,7 @@ class LessonBuilder:
         Raises:
             CommandRefusedError: if the tick was forgotten or had no situation.
         """
-        event = self._in_context(action, self._basic_context(meant, None), origin)
+        event = self._in_context(action, self._basic_context(meant, None), origin, yields=self._holds_yield)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
@@ -114,11 +117,20 @@ class LessonBuilder:
         context = LessonContext(vector, behaviour, BASIC, None, self._insert_beyond_share)
         return self._in_context(action, context, origin)
 
-    def _in_context(self, action: str, context: LessonContext, origin: Origin) -> TeachingEvent | None:
+    def _in_context(
+        self, action: str, context: LessonContext, origin: Origin, *, yields: bool = False
+    ) -> TeachingEvent | None:
+        """Return the lesson of an action in a context; None if it would be done already, or yields to an answer."""
         nearest = self._system.match(context.vector, context.behaviour, BASIC)
         if self._agreeing(nearest, context, action) is not None:
             return None
-        return self._corrected(action, nearest, context, context.insert_beyond_share, origin).event
+        share = context.insert_beyond_share
+        if yields and nearest is not None and self._is_within(share, nearest) and _is_exact(nearest.rla):
+            return None
+        return self._corrected(action, nearest, context, share, origin).event
+
+    def _is_within(self, share: float, nearest: Match) -> bool:
+        return nearest.distance <= share * self._system.whole_radius(nearest.rla)
 
     def _action_lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
         """Return the lesson that makes the taught action the answer to the situation that the command means."""
@@ -154,7 +166,7 @@ class LessonBuilder:
         self, action: str, nearest: Match | None, context: LessonContext, replace_within_share: float, origin: Origin
     ) -> LessonResult:
         """Replace the action of the nearest RLA within a share of its radius, else create another one."""
-        if nearest is None or nearest.distance > replace_within_share * self._system.whole_radius(nearest.rla):
+        if nearest is None or not self._is_within(replace_within_share, nearest):
             return self._create(action, context, origin)
         rla = self._corrected_rla(nearest.rla, context)
         if rla.action == action:
@@ -338,6 +350,11 @@ class LessonBuilder:
     def _require_known(self, tick: int) -> None:
         if not self._recent.contains(tick):
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
+
+
+def _is_exact(rla: Rla) -> bool:
+    """Return whether an RLA has an action that no hold taught: the moment of a hold's lesson is an estimate."""
+    return not rla.is_withdrawn and hold_of(rla.origin.command_id) is None
 
 
 def _is_at_known_place(nearest: Match, context: LessonContext) -> bool:

@@ -105,13 +105,13 @@ def build_minds(
 
 
 def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) -> TaughtMind:
-    """Return the RLAs that answer in an exam: without those whose action was withdrawn."""
+    """Return the RLAs that answer in an exam: without withdrawn ones, and guesses that a task passes over."""
     level, definition = runtime.level, runtime.definition
     system, width = level.system, len(definition.features)
     if system.weights[width:].any():
         raise _refused(task, "averages that count in a distance")
     behaviour = runtime.active_behaviour.behaviour
-    rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not rla.is_withdrawn]
+    rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not system.passes_over(rla)]
     place = {rla.rla_id: index for index, rla in enumerate(rlas)}
     groups = [system.competitors(rla) for rla in rlas]
     answers = [

@@ -219,8 +219,8 @@ class _Reader:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
-            if rla.is_withdrawn and level_name == BASIC and self._runtime.level.skip_withdrawn:
-                continue  # passed over
+            if level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla):
+                continue
             if self._most is not None and len(others) >= self._most:
                 break
             others.append(self._rla_facts(rla, self._radius_of(rla), distance))
@@ -246,7 +246,7 @@ class _Reader:
             ranking = self._system.nearest_first(vector, behaviour, level_name, limit=self._most + 1 + _PASSED_OVER)
             ids = {rla_id for rla_id, _ in ranking}
             rlas = [self._system.get(rla_id) for rla_id in ids]
-            speak = sum(rla is not None and not rla.is_withdrawn for rla in rlas)
+            speak = sum(rla is not None and not self._system.passes_over(rla) for rla in rlas)
             if (driver_id is None or driver_id in ids) and speak > self._most:
                 return ranking
         return self._system.nearest_first(vector, behaviour, level_name)

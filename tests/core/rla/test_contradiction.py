@@ -5,6 +5,7 @@ import pytest
 from behaviors.action_groups import action_groups
 from kurt2rt.core.rla.contradiction import find_contradiction
 from kurt2rt.core.rla.events import ActionWithdrawn
+from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -58,3 +59,15 @@ def test_contradiction_is_within_one_behaviour_and_level() -> None:
     system.apply(created(20, (2.5,), "whirl_left", behaviour="turn_right"))
     system.apply(created(21, (2.5,), "whirl_left", level=MID))
     assert contradicted(system) == []
+
+
+def test_neighbours_of_the_same_hold_can_be_passed_over(system: RlaSystem) -> None:
+    hold = hold_id("Ann", 3)
+    system.apply(created(7, (4.2,), "whirl_right", command_id=f"{hold}{DERIVED}50"))
+    system.apply(created(8, (4.3,), "whirl_right", command_id=f"{hold}{DERIVED}60"))
+    held = system.get(8)
+    assert held is not None
+    assert find_contradiction(system, held, GROUPS) is None
+    found = find_contradiction(system, held, GROUPS, of_other_presses=True)
+    assert found is not None
+    assert [each.rla_id for each in found.neighbours] == [6, 4, 3, 5, 2]
