@@ -7,9 +7,10 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report, run_exam, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.route.lesson import copy_knowledge
 from kurt2rt.experiments.study.jobs import StudyJob
@@ -31,6 +32,11 @@ def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[i
     if presses >= len(press_ticks):
         return len(events)
     return sum(event.origin.tick <= press_ticks[presses] for event in events)
+
+
+def verdict_by(policy: Drive, exam: ExamResult, success: SuccessSettings) -> ExamVerdict:
+    """Return the verdict on a drive by the policy's own one; not judged if the policy did not pass."""
+    return exam.verdict(policy.progress, success) if policy.passed else ExamVerdict.NOT_JUDGED
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +61,12 @@ class Examiner:
     async def examine(self, events: Sequence[TeachingEvent], policy: Drive) -> Drive:
         """Return the drive of a robot with the knowledge in `events`, judged by the policy's drive.
 
+        A world in which the policy itself does not pass is no measure, and the drive is not judged.
+
         Raises SettingsError, LessonLostError.
         """
         exam = await self._drive(events, teacher_policy=False)
-        return drive_of(exam, exam.verdict(policy.progress, self.task.exam.success))
+        return drive_of(exam, verdict_by(policy, exam, self.task.exam.success))
 
     async def _drive(self, events: Sequence[TeachingEvent], *, teacher_policy: bool) -> ExamResult:
         setup = ExamSetup(self.world, self.seed, teacher_policy)

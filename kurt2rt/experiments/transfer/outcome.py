@@ -21,6 +21,8 @@ class Drive(Settings):
     alarm: str
     share_unknown: float
     """Ratio of ticks in unknown situations, 0 to 1."""
+    right_share: float = 0.0
+    """Ratio of the junctions that were left as required, 0 to 1; 0 without junctions."""
 
     @property
     def passed(self) -> bool:
@@ -43,6 +45,7 @@ def drive_of(exam: ExamResult, verdict: ExamVerdict) -> Drive:
         stuck=exam.stuck,
         alarm=exam.alarm,
         share_unknown=exam.share_unknown,
+        right_share=exam.right_share,
     )
 
 

@@ -28,7 +28,7 @@ def curve_table(study: TransferStudy) -> Table:
     rows = []
     for each in study.summaries:
         judged, (place, how) = len(each.judged), _heading(each)
-        policy = f"{sum(robot.policy.passed for robot in each.judged)} of {judged}"
+        policy = f"{sum(robot.policy.passed for robot in each.outcomes)} of {len(each.outcomes)}"
         rows.append((place, how, policy, *(_of(each.right_after(presses), judged) for presses in study.plan.after)))
         rows.append((place, f"{how}, until right", "", *(_of(each.right_by(n), judged) for n in study.plan.after)))
     return Table(
@@ -39,7 +39,8 @@ def curve_table(study: TransferStudy) -> Table:
         note=f"Exams of {study.plan.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. Until right: "
         "as if teaching ended with the first exam that was passed; the best of several exams flatters. A robot that "
         "gave cause for fewer presses has all that it was taught. Policy: own drives of the teacher's policy without "
-        "collision or standstill; without progress of the policy a robot is not judged and not counted.",
+        "collision or standstill, with enough junctions right; a robot whose policy does not pass there is not judged "
+        "and not counted.",
     )
 
 
@@ -114,7 +115,9 @@ def drive_text(drive: Drive) -> str:
         return f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
     if drive.alarm:
         return drive.alarm
-    return f"stuck at {drive.duration_s:.0f} s" if drive.stuck else "slow"
+    if drive.stuck:
+        return f"stuck at {drive.duration_s:.0f} s"
+    return f"{drive.right_share:.0%} of junctions right" if 0.0 < drive.right_share < 1.0 else "slow"
 
 
 def _heading(summary: TransferSummary) -> tuple[str, str]:

@@ -5,11 +5,15 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.core.task_settings import SuccessSettings
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.verdict import Target
+from kurt2rt.experiments.transfer.jobs import verdict_by
 from kurt2rt.experiments.transfer.outcome import TransferOutcome
 from kurt2rt.experiments.transfer.tables import all_tables, curve_table, drive_text, teaching_table
 from kurt2rt.experiments.transfer.verdicts import median_of, verdicts
+from tests.experiments.results import exam_result
 from tests.experiments.transfer.outcomes import NOT_JUDGED, drive, robot, study_of
 
 RIGHT_AT_ONCE = ("right", "right", "right")
@@ -83,5 +87,24 @@ def test_worlds_without_a_judged_exam_have_no_verdict(tmp_path: Path) -> None:
     assert list(verdicts(study.summaries[0], study)) == []
 
 
+@pytest.mark.parametrize(
+    ("policy", "verdict"),
+    [("right", ExamVerdict.PASSED), ("collided", ExamVerdict.NOT_JUDGED), ("stuck", ExamVerdict.NOT_JUDGED)],
+)
+def test_world_whose_policy_fails_judges_no_robot(policy: str, verdict: ExamVerdict) -> None:
+    assert verdict_by(drive(policy), exam_result(laps=2.0), SuccessSettings()) is verdict
+
+
+def test_robot_that_fails_where_the_policy_passes_failed() -> None:
+    assert verdict_by(drive(), exam_result(laps=2.0, collisions=1), SuccessSettings()) is ExamVerdict.FAILED
+
+
+def test_curve_shows_the_policy_of_all_robots(tmp_path: Path) -> None:
+    (after, _) = curve_table(study_of(Results(tmp_path), *robots(RIGHT_AT_ONCE, (NOT_JUDGED,) * 3))).rows
+    assert after[2] == "2 of 2"
+
+
 def test_a_drive_is_told_by_what_went_wrong() -> None:
     assert len({drive_text(drive(what)) for what in ("right", "collided", "stuck", "slow", NOT_JUDGED)}) == 5
+    lost_way = drive("slow").model_copy(update={"right_share": 0.9})
+    assert drive_text(lost_way) == "90% of junctions right"
