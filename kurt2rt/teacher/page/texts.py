@@ -34,7 +34,7 @@ _TEXTS: Mapping[PageNotice, str] = {
     PageNotice.NOTHING_DECIDED: "nothing was decided yet",
     PageNotice.PRESS_LOST: "no word from this page for 250 ms: the robot was stopped; press again",
     PageNotice.STOP_UNANSWERED: "the robot did not answer the stop at the end of the press",
-    PageNotice.UNSEEN_STOP: "the page was hidden or closed: the robot was stopped; GO lets it drive on",
+    PageNotice.UNSEEN_STOP: "page hidden, closed or too busy for 0.3 s: the robot was stopped; GO lets it drive on",
     PageNotice.ROBOT_ABSENT: "no robot at {place}; is kurt2rt run running?",
     PageNotice.ROBOT_SILENT: "no answer from the robot at {place}",
     PageNotice.FOREIGN_HOST: "this address does not belong to this machine (see --host-name)",

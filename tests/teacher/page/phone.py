@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from selenium import webdriver
-from selenium.common.exceptions import StaleElementReferenceException
+from selenium.common.exceptions import StaleElementReferenceException, TimeoutException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.wait import WebDriverWait
@@ -73,6 +73,15 @@ document.activeElement?.blur();
 """
 
 
+_KEEPS_WHAT_IT_SAYS = """
+window.saidBefore = [];
+addEventListener("DOMContentLoaded", () => {
+  const line = document.querySelector("#said");
+  if (!line) return;
+  const keep = () => line.textContent.trim() && saidBefore.push(`${line.className}: ${line.textContent}`);
+  new MutationObserver(keep).observe(line, {childList: true, characterData: true, subtree: true});
+});
+"""
 _HAS_BEEN_HERE = "try { localStorage.setItem('kurt2rt.bubbles', 'seen'); } catch { /* about:blank has no storage */ }"
 
 
@@ -84,6 +93,7 @@ class Phone:
         self._screenshots = screenshots
         self._at: str | None = None
         self._before = self._add_before_scripts(_HAS_BEEN_HERE)
+        self._add_before_scripts(_KEEPS_WHAT_IT_SAYS)
 
     @contextmanager
     def first_visit(self) -> Iterator[None]:
@@ -154,9 +164,13 @@ class Phone:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, until: Callable[[], object], what: str) -> None:
-        """Wait for something to be so."""
+        """Wait for something to be so. The failure tells the last sentences of the page, which it clears after 8 s."""
         waiting = WebDriverWait(self.driver, PATIENCE_S, 0.05, (StaleElementReferenceException,))
-        waiting.until(lambda _: until(), f"never: {what}")
+        try:
+            waiting.until(lambda _: until(), f"never: {what}")
+        except TimeoutException as never:
+            never.msg = f"{never.msg}; the page said {self.run('return window.saidBefore?.slice(-4);')}"
+            raise
 
     def touch(self, selector: str) -> None:
         """Touch the middle of an element."""

@@ -82,6 +82,16 @@ def test_then_go_does_not_lift_a_stop_after_the_touch(lesson: Lesson) -> None:
     assert not any("resume" in str(message) for message in lesson.phone.run("return window.sent;"))
 
 
+def test_rewind_shows_the_path_and_then_the_robot(lesson: Lesson) -> None:
+    assert lesson.phone.shows("#robot-view")
+    enter(lesson)
+    assert lesson.phone.shows("#world-view")
+    assert not lesson.phone.shows("#robot-view")
+    lesson.phone.touch("#rewind-close")
+    lesson.phone.wait(lambda: lesson.phone.shows("#robot-view"), "the view of before is back")
+    assert not lesson.phone.shows("#world-view")
+
+
 @pytest.mark.parametrize("button", ["#rewind-close", "#go"])
 def test_leaving_the_past_corrects_the_present_again(lesson: Lesson, button: str) -> None:
     enter(lesson)

@@ -1,9 +1,12 @@
 """Show it on the page: what was driven by hand is seen as actions, and taught once the teacher has confirmed it."""
 
+from dataclasses import replace
+
 import pytest
 
 from kurt2rt.channel.protocol.state import ShownState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.teacher.page.test_browser import assert_handy
@@ -40,6 +43,19 @@ def test_not_now_leaves_the_drive_untaught(lesson: Lesson) -> None:
     lesson.phone.touch("#drop-shown")
     lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")
     assert lesson.robot.told_of("teach_shown") == []
+
+
+def test_not_now_is_not_asked_again_at_the_next_stand(lesson: Lesson) -> None:
+    lesson.phone.touch("#drop-shown")
+    lesson.show(standing=Standing(), stopped=None, left_m_s=0.3, right_m_s=0.3)
+    lesson.reads("#sentence", "RLA 1 ")
+    stop = ActiveStop(StopReason.SAID_STOP, "local")
+    stands = Standing(StandReason.STOPPED, needs_resume=True, stop=stop)
+    lesson.show(standing=stands, stopped=stop, left_m_s=0.0, right_m_s=0.0)
+    lesson.reads("#sentence", "Stands")
+    assert not lesson.phone.shows("#shown")
+    lesson.show(shown=replace(SHOWN, press_id=92))
+    lesson.phone.wait(lambda: lesson.phone.shows("#shown"), "another drive is offered")
 
 
 @pytest.mark.parametrize("shown", [None, ShownState("anna", 91, ("forward",), (100,), (180,))])

@@ -34,6 +34,7 @@ const FASTEST_BY_HAND_M_S = 0.6;
 const MESSAGE_MS = 8000;
 const STATE_MS = 1000;
 const LIST_MS = 5000;
+const LONG_ANSWER = 80; // characters, beyond two lines of a phone
 
 const link = new Link();
 const drive = new Drive(link);
@@ -52,7 +53,7 @@ const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
 const simulation = new Simulation(sendCommand);
 const shownDrive = new Shown((pressId, segments) => sendCommand("teach_shown", { press_id: pressId, segments }, "teach what was shown"));
-const rewind = new Rewind({ stop, onChange: draw });
+const rewind = new Rewind({ stop, onChange: draw, onOpen: showPath });
 const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args), rewind);
 
 let hello = null;
@@ -90,6 +91,7 @@ function showMessage(outcome, sentence) {
   const line = $("said");
   $("undo-hold").hidden = true;
   line.className = outcome;
+  line.classList.toggle("long", sentence.length > LONG_ANSWER);
   setText(line, sentence);
   clearTimeout(hideTimer);
   if (outcome === "pending") return;
@@ -518,7 +520,22 @@ function showView(name) {
   setText($("view"), name === "robot" ? "World" : "Robot");
   draw();
 }
-$("view").addEventListener("click", () => showView($("robot-view").hidden ? "robot" : "world"));
+let viewBefore = null; // the view to return to after rewind
+
+// The driven path is in the picture of the world; from the robot's own the moment is hard to find.
+function showPath(open) {
+  if (open && hello.simulated) {
+    viewBefore = $("world-view").hidden ? "robot" : "world";
+    showView("world");
+  } else if (!open && viewBefore) {
+    showView(viewBefore);
+    viewBefore = null;
+  }
+}
+$("view").addEventListener("click", () => {
+  viewBefore = null; // the teacher has chosen
+  showView($("robot-view").hidden ? "robot" : "world");
+});
 new ResizeObserver(draw).observe($("stage"));
 onTheme(draw);
 new Bubbles();

@@ -17,11 +17,13 @@ export class Rewind {
   #openedTick = 0; // newest tick of driving when rewind was entered
   #tickS = 0.01;
   #onChange;
+  #onOpen;
   open = false;
 
-  // `stop` stops the robot; `onChange` draws the page again.
-  constructor({ stop, onChange }) {
+  // `stop` stops the robot; `onChange` draws the page again; `onOpen` is told when rewind is entered or left.
+  constructor({ stop, onChange, onOpen }) {
     this.#onChange = onChange;
+    this.#onOpen = onOpen;
     document.getElementById("rewind").addEventListener("click", () => {
       stop();
       this.enter();
@@ -70,6 +72,7 @@ export class Rewind {
     this.#time.max = 0;
     this.#time.value = 0;
     this.#time.focus();
+    this.#onOpen(true);
     this.#show();
   }
 
@@ -78,6 +81,7 @@ export class Rewind {
     this.open = false;
     this.#bar.hidden = true;
     if (document.activeElement === this.#time) this.#time.blur();
+    this.#onOpen(false);
     this.#onChange();
   }
 

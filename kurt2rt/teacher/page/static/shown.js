@@ -10,23 +10,29 @@ export class Shown {
   #button = document.getElementById("teach-shown");
   #shown = null;
   #key = "";
+  #dropped = null; // number of the drive that the teacher does not want to teach
   #tickS = 0.01;
   #chosen = new Set();
 
   // `teach` sends the press and the indexes of the chosen segments.
   constructor(teach) {
-    document.getElementById("drop-shown").addEventListener("click", () => (this.#box.hidden = true));
+    document.getElementById("drop-shown").addEventListener("click", () => {
+      this.#dropped = this.#shown.press_id;
+      this.#box.hidden = true;
+    });
     this.#button.addEventListener("click", () => teach(this.#shown.press_id, [...this.#chosen].sort((a, b) => a - b)));
   }
 
   setHello({ period_s: period }) {
     this.#tickS = period;
     this.#key = ""; // another robot may show the same
+    this.#dropped = null;
   }
 
   // Offers the teacher's own drive while the robot stands.
   show({ shown, stands }, device) {
-    const own = shown && shown.teacher === device && stands.reason !== "drives" ? shown : null;
+    const offered = shown && shown.teacher === device && shown.press_id !== this.#dropped;
+    const own = offered && stands.reason !== "drives" ? shown : null;
     const key = JSON.stringify(own);
     if (key === this.#key) return;
     this.#key = key;
