@@ -142,7 +142,14 @@ def test_watch_finds_a_phantom_that_moves_with_the_robot(drive: Drive) -> None:
     assert [(each.name, each.fault) for each in drive.run(400)] == [("s3", SensorFault.SEES_A_PHANTOM)]
 
 
-def test_watch_takes_a_circled_post_for_no_phantom(drive: Drive) -> None:
+def test_watch_sees_no_phantom_in_forged_encoder_frames(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.left_ticks = drive.right_ticks = 30_000
+    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 11))
+    assert drive.run(400) == ()
+
+
+def test_watch_does_not_take_a_circled_post_for_a_phantom(drive: Drive) -> None:
     """On a circle to the left round a post 0.196 m from s3 the post stays where it is."""
     flicker = random.Random(1)
     middle_m = INFRARED.sensors[PLACES["s3"]].y_m + INFRARED.distance_m(300)
