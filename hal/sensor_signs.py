@@ -55,7 +55,7 @@ DIFFERS_COUNTS = 60
 SEES_NOTHING_TICKS = 450
 """Ticks of driving in such a contradiction by SensorRules.NOISE."""
 DARK_TICKS = 90
-"""Ticks of driving in such a contradiction by SensorRules.MOTION; 30 had four false alarms in 25 minutes, 45 one."""
+"""Ticks of driving in such a contradiction by SensorRules.MOTION; 30 had four false alarms in 27 minutes, 45 one."""
 DARK_DIFFERS_COUNTS = 40
 """Difference to both neighbours that contradicts a dark sensor: they see something within 0.44 m."""
 AGREES_COUNTS = 30

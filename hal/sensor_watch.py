@@ -50,6 +50,8 @@ class SensorWatch:
         self._rules = rules
         self._odometry = WheelOdometry(robot.geometry)
         self._left_ticks = self._right_ticks = 0
+        # No wheel turns farther between two looks: another node forged such encoder frames.
+        self._farthest_m = 2 * robot.motors.maximum_speed_m_s * LOOK_TICKS * robot.can.cycle_s
         stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s)
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
@@ -79,6 +81,8 @@ class SensorWatch:
             return ()
         counts, driven, broken, signs = readings.infrared_counts, self._driven, self._broken, None
         motion = self._odometry.motion(self._left_ticks, self._right_ticks)
+        if max(abs(motion.left_m), abs(motion.right_m)) > self._farthest_m:
+            motion = self._odometry.motion(0, 0)
         self._left_ticks = self._right_ticks = 0
         for state in self._states:
             state.update(counts, driven, motion)

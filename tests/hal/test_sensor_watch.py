@@ -142,8 +142,15 @@ def test_watch_finds_a_phantom_that_moves_with_the_robot(drive: Drive) -> None:
     assert [(each.name, each.fault) for each in drive.run(400)] == [("s3", SensorFault.SEES_A_PHANTOM)]
 
 
-def test_watch_takes_a_circled_post_for_no_phantom(drive: Drive) -> None:
-    """On a circle to the left round a post 0.196 m from s3 the post stays where it is."""
+def test_watch_sees_no_phantom_in_forged_encoder_frames(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.left_ticks = drive.right_ticks = 30_000
+    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 11))
+    assert drive.run(400) == ()
+
+
+def test_watch_finds_no_phantom_in_a_circled_post(drive: Drive) -> None:
+    """A post 0.196 m from s3 stays in its beam while the robot circles it to the left."""
     flicker = random.Random(1)
     middle_m = INFRARED.sensors[PLACES["s3"]].y_m + INFRARED.distance_m(300)
     outer = 1 + ROBOT.geometry.effective_track_m / 2 / middle_m
