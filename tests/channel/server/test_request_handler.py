@@ -163,17 +163,19 @@ async def test_hold_of_a_stopped_robot_or_unknown_action_is_refused(desk: Channe
 
 
 async def test_lessons_of_a_hold_are_one_line_and_undone_as_one(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer())
+    await desk.stream(desk.hold("forward"))
+    desk.run()
+    await desk.ask(StopRequest(desk.new_id(), 1))
     for _ in range(110):  # longer than a press is put back
         await desk.stream(desk.watch())
         desk.run()
-    await desk.stream(desk.hold("back"))
+    await desk.stream(desk.hold("back", press=2))
     desk.run()
-    await desk.ask(StopRequest(desk.new_id(), 1))
-    hold, answer = (await desk.ask(LessonsRequest(5))).body["lessons"]
-    assert (hold[0], hold[2], hold[6]) == ("ann-hold-1", "ann", False)
+    await desk.ask(StopRequest(desk.new_id(), 2))
+    hold, first = (await desk.ask(LessonsRequest(5))).body["lessons"]
+    assert (hold[0], hold[2], hold[6]) == ("ann-hold-2", "ann", False)
     assert "back" in hold[1]
-    assert "forward" in answer[1]
+    assert "forward" in first[1]
     undone = await desk.ask(desk.command(UndoRequest, hold[0]))
     assert outcome_of(undone) == Outcome.of(ResultCode.HOLD_UNDONE, lessons=1)
     assert (await desk.ask(LessonsRequest(1))).body["lessons"][0][6] is True
