@@ -314,9 +314,9 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     phone.run("sockets.at(-1).close(); shut = true")
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
     phone.wait(lambda: not room.client.watching, "its server knows that no teacher looks")
-    # A page that went may have left a stop on its way, which goes before what is said meanwhile.
-    phone.wait(lambda: room.portal.call(room.client.resume).accepted, "its teacher is heard")
-    phone.wait(lambda: room.state().stopped is None, "the robot may drive")
+    # A page that went may have left a stop on its way, also behind the first resume.
+    resumed = room.client.resume
+    phone.wait(lambda: room.portal.call(resumed).accepted and room.state().stopped is None, "the robot may drive")
     phone.touch("#stop")
     phone.wait(lambda: "no link" in phone.text("#said"), "the page says that STOP waits")
     assert phone.text("#stop") == "STOP …"
