@@ -67,6 +67,7 @@ def workload_table(title: str, stages: Sequence[str], study: PhasesStudy) -> Tab
         "Go",
         "stops to look back",
         "own presses undone",
+        "demonstrated",
         "+1",
         "-1",
         "too late",
