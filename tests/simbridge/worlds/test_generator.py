@@ -118,8 +118,8 @@ def test_floors_leave_no_gap_in_which_a_robot_gets_stuck(some: range) -> None:
         world = generated(f"floors-{seed}")
         room = shapely.Polygon(world.outline).exterior
         pieces = pieces_of(world)
-        gaps_m = [one.distance(other) for one, other in itertools.combinations(pieces, 2)]
-        gaps_m += [piece.distance(room) for piece in pieces]
+        gaps_m = [float(shapely.distance(one, other)) for one, other in itertools.combinations(pieces, 2)]
+        gaps_m += [float(shapely.distance(piece, room)) for piece in pieces]
         assert all(gap_m <= 0.2 or gap_m >= 0.7 for gap_m in gaps_m), world.name
 
 
