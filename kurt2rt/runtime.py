@@ -19,6 +19,7 @@ from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
+from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
@@ -46,7 +47,8 @@ from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.teaching.teacher_delay import TeacherDelay
-from kurt2rt.core.tick import EventStore, Tick, TickOptions, TickParts, TickRecord
+from kurt2rt.core.tick import Tick, TickOptions, TickParts
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.ledger import TickTimer

@@ -49,13 +49,13 @@ CORE_NEVER_IMPORTS = {"time", "asyncio", "anyio", "threading", "socket", "sqlite
 LAYERS_OF_CORE = (
     {"numerics", "outcome", "lesson_speed"},
     {"rla", "perception"},
-    {"decision", "outcome_text"},
+    {"decision", "outcome_text", "event_store"},
     {"basic", "mid"},
     {"planning", "expectations", "critic"},
     {"reinforcement"},
     {"task_settings", "phase_settings", "teacher_settings"},
     {"teaching"},
-    {"layer_stack"},
+    {"layer_stack", "tick_record"},
     {"tick", "progress_meter"},
 )
 """Folders and files of core, low to high: each imports only lower ones and itself."""

@@ -2,7 +2,7 @@
 
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 
 class ProgressMeter:

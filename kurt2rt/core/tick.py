@@ -1,19 +1,19 @@
 """The tick: order of all steps of one control cycle, 100 times a second."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from dataclasses import dataclass
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
 from hal.sensor_ring import SubstituteReadings
-from hal.sensor_watch import BrokenSensor, SensorWatch
+from hal.sensor_watch import SensorWatch
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause, MidDecision, stopped
+from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause, stopped
 from kurt2rt.core.decision.level import Level
-from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
+from kurt2rt.core.decision.standing import BumperWatch, StandingWatch
+from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.mid.mid_level import MidUsageCounter
@@ -21,12 +21,13 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.perception import Perception, Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import AUTONOMOUS
-from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import Stage, TickTimer
 
 _KNOWLEDGE_PERIOD_TICKS = 100
@@ -38,75 +39,6 @@ _TEACHER, _UNATTENDED = DecisionCause.TEACHER, DecisionCause.UNATTENDED
 
 _TEACHABLE = BY_RLA | ASKING
 """Causes of decisions that a held action may correct."""
-
-
-class EventStore(Protocol):
-    """Store of teaching events; it works outside the tick, and its methods return at once."""
-
-    @property
-    def saving_error(self) -> str | None:
-        """Reason that lessons cannot be saved now, in one line; None if they can."""
-        ...
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Queue an event for saving; return at once. A failure appears in `saving_error`."""
-        ...
-
-
-@dataclass(slots=True)
-class InMemoryEventStore:
-    """List of events in submission order (EventStore)."""
-
-    events: list[TeachingEvent] = field(default_factory=list)
-    saving_error: str | None = None
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Append an event to the list."""
-        self.events.append(event)
-
-
-class TickRecord(NamedTuple):
-    """Inputs, decision and results of one tick."""
-
-    tick: int
-    now_s: float
-    readings: SensorReadings
-    situation: Situation
-    decision: Decision
-    guard_result: GuardResult
-    results: tuple[CommandResult, ...]
-    """Answers to the teacher's commands of this tick."""
-    behaviour: str = ""
-    """The active behaviour."""
-    appraisal_features: AppraisalFeatures | None = None
-    """The critic's features; None without a critic and while the robot is blind."""
-    opinion: Opinion | None = None
-    """The critic's opinion of the features; None without a critic and before its first lesson."""
-    surprise: Surprise | None = None
-    """Comparison with the expectation of the RLA that ended in this tick; None if none ended."""
-    commands: tuple[Input, ...] = ()
-    """Messages taken from the inbox, in order."""
-    saving_error: str | None = None
-    """Reason that lessons cannot be saved, read once in this tick; None if they can."""
-    events: tuple[TeachingEvent, ...] = ()
-    """Changes of knowledge in this tick, by teachers and by the robot itself."""
-    number: int = 0
-    """1, 2, 3 ... of the ticks that were run; `tick` skips missed ticks."""
-    knowledge: tuple[Rla, ...] | None = None
-    """All active RLAs after this tick, if it changed them and once a second; None otherwise."""
-    standing: Standing = DRIVES
-    """Reason that the robot stands, or DRIVES."""
-    broken_sensors: tuple[BrokenSensor, ...] = ()
-    """Infra-red sensors that do not count in this tick."""
-    lesson_speed: float = 1.0
-    """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""
-    trusted_counts: tuple[int, ...] | None = None
-    """Counts that the robot decided by, one per sensor, if they are not those of `readings`."""
-
-    @property
-    def mid(self) -> MidDecision | None:
-        """Command of the mid level; None without one."""
-        return self.decision.mid
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from hal.settings import SettingsError
 from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.system_events import RobotRepositioned
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 _MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)
 """Metrics that only observe. Other metrics choose the next behaviour, which the teacher does here."""

@@ -11,7 +11,7 @@ from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_doubt, ask_the_way
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.gc_control import collect_young
 from kurt2rt.runs.recording.recorder import RunRecorder

@@ -18,7 +18,7 @@ from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import RunControl
 from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now

@@ -16,7 +16,7 @@ from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.assembly import RunSettings

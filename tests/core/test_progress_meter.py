@@ -5,7 +5,7 @@ import sys
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from tests.channel.channel_fixture import ChannelFixture
 
 DESK = ChannelFixture()

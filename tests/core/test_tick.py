@@ -13,6 +13,7 @@ from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.events import TeachingEvent
@@ -23,7 +24,8 @@ from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.tick import InMemoryEventStore, Tick, TickOptions, TickParts, TickRecord
+from kurt2rt.core.tick import Tick, TickOptions, TickParts
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, stop, teach

@@ -13,7 +13,7 @@ from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, S
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay

@@ -35,7 +35,7 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import FORWARD, Corridor
 from tests.examples import examples
 from tests.teacher.helpers import correct, resume, set_phase, stop, teach

@@ -10,6 +10,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
@@ -36,7 +37,6 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT

@@ -7,7 +7,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
 from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Take, Teach, Undo, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import Corridor
 from tests.teacher.helpers import resume, teach
 

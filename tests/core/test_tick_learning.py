@@ -6,6 +6,7 @@ import pytest
 
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent
@@ -14,7 +15,7 @@ from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT, WideRobot

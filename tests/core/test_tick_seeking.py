@@ -10,6 +10,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.goal_text import goal_text
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import SituationNamed, TeachingEvent
 from kurt2rt.core.rla.rla import MID
@@ -26,7 +27,7 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from tests.channel.channel_fixture import ROBOT

@@ -7,6 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
@@ -28,7 +29,7 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT, WideRobot

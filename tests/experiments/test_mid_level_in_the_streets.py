@@ -14,7 +14,7 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock

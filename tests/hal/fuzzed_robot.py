@@ -16,7 +16,7 @@ from hal.shared_bus import SharedBus
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime

@@ -7,7 +7,7 @@ from typing import Any, Never
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import Endpoint
 from kurt2rt.cli.main import main
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.service import program_startup

@@ -16,7 +16,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus

@@ -7,12 +7,13 @@ import pytest
 
 from kurt2rt.channel.protocol.requests import CorrectRequest
 from kurt2rt.channel.server.reply import ReplyStatus
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter

@@ -11,7 +11,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import Question
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.service.rig import Rig, eager_task, end_service, rig, scripted

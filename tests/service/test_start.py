@@ -23,7 +23,7 @@ from kurt2rt.channel.security.pairing import LOCAL, local_pairing
 from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot

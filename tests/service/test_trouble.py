@@ -8,7 +8,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command, Resume, Stop
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of
 from tests.service.rig import end_service, rig, scripted

@@ -22,7 +22,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.teaching.system_events import PairingRenewed
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.explain.collect import LiveExplainer
 from kurt2rt.runtime import Runtime

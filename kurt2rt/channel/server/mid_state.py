@@ -6,7 +6,7 @@ from collections.abc import Callable
 from kurt2rt.channel.protocol.state import MidState, SurpriseState
 from kurt2rt.core.decision.decision import MidDecision
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 
 def mid_state(mid: MidLevel, decided: MidDecision, stamp_of: Callable[[str], str]) -> MidState:

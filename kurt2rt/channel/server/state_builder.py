@@ -10,7 +10,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import ASK, BASIC, Rla
 from kurt2rt.core.teaching.question import FeatureDifference, ask, ask_in_doubt
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 
 _SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)

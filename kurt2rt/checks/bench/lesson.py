@@ -14,7 +14,7 @@ from anyio import to_thread
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer
 from kurt2rt.core.teaching.commands import Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.fsync_probe import fsync_ns

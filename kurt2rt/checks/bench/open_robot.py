@@ -15,7 +15,7 @@ from kurt2rt.checks.bench.press_schedule import ObservedRobot
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, open_writer
 from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.timerfd_clock import TimerfdClock

@@ -7,7 +7,7 @@ from pathlib import Path
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.gc_control import gc_frozen

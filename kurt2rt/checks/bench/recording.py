@@ -11,7 +11,7 @@ from kurt2rt.checks.bench.lateness_clock import LatenessClock
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress, open_writer
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.switch_interval import short_switch_interval

@@ -8,9 +8,9 @@ from pathlib import Path
 from hal.batch import BatchFactory
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.entry import JournalEntry

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.scheduler import Scheduler
 

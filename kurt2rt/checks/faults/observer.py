@@ -7,7 +7,7 @@ from kurt2rt.checks.faults.bus_observer import BusObserver
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.fault_rig import FaultRig
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 
 class Stand(NamedTuple):

@@ -20,9 +20,10 @@ from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome, Standstill
 from kurt2rt.checks.faults.script import Script
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.checks.faults.teacher_link import TeacherLink
+from kurt2rt.core.event_store import EventStore, InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import Clock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 

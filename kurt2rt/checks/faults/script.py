@@ -7,7 +7,7 @@ from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.checks.faults.teacher_link import TeacherLink
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Resume, Stop, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 
 _TEACHER = "ann"

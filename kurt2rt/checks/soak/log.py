@@ -6,7 +6,7 @@ from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.resource_usage import open_files, resident_mb, threads
 from kurt2rt.checks.soak.result import SoakMinute
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 
 class MinuteLog:

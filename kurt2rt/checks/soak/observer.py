@@ -10,7 +10,7 @@ from kurt2rt.checks.faults.table import EnvelopeSettings
 from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Resume
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import TickTimer
 
 _MOST_TOLD = 200

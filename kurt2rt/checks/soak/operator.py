@@ -5,7 +5,7 @@ import math
 from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.core.decision.decision import BY_RLA, DecisionCause
 from kurt2rt.core.teaching.commands import Resume
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 _WAY_M = 0.3
 _DRIVES = BY_RLA | {DecisionCause.TEACHER}

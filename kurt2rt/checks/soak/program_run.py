@@ -21,7 +21,7 @@ from kurt2rt.checks.soak.teacher import NAME, SoakTeacher
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Take
 from kurt2rt.core.teaching.inbox import InboxFullError
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.runs.recording.recorder import RunRecorder

@@ -21,7 +21,7 @@ from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb
 from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakResult, SoakStart
 from kurt2rt.checks.soak.settings import SoakSettings
 from kurt2rt.checks.soak.teacher import SoakTeacher
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runs.recording.recording import Recording

@@ -21,7 +21,7 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
 

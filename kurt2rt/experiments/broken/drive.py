@@ -16,7 +16,7 @@ from kurt2rt.core.decision.active_stop import StopReason
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.broken.fault import FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 
 

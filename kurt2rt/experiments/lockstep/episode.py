@@ -11,7 +11,7 @@ from behaviors.metrics.task_metric import RouteMetric
 from hal.simulation import Pose, Position, Simulation
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 
 

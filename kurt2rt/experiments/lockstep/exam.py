@@ -15,7 +15,7 @@ from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
 from kurt2rt.core.teaching.commands import Pursue
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict

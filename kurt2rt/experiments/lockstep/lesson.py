@@ -18,7 +18,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.compatibility import route_of
 from kurt2rt.experiments.lockstep.episode import Episode

@@ -26,7 +26,7 @@ class LessonKeeping:
         self.opened = opened
         """Journal and content of the file when it was opened, to continue from."""
         self.writer = writer
-        """Event store of the training run (kurt2rt.core.tick.EventStore)."""
+        """Event store of the training run (kurt2rt.core.event_store.EventStore)."""
         self._file = file
         self._on_saved = on_saved
 

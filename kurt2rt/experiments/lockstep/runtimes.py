@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
+from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings, as_its_teacher_wants
-from kurt2rt.core.tick import EventStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 

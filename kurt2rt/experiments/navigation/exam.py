@@ -14,7 +14,7 @@ from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime

@@ -8,7 +8,7 @@ from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import Street
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import BeAt, Command, NameSituation, Pursue, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.press_times import PressTimes
 
 HOME = "home"

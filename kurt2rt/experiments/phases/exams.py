@@ -11,7 +11,7 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict

@@ -6,7 +6,7 @@ from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, Passage
 from behaviors.metrics.task_metric import TaskMetric
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.route.outcome import Layer, Wrong
 
 _HISTORY = 12

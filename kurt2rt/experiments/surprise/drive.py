@@ -14,7 +14,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.runtime import Runtime

@@ -61,7 +61,7 @@ def utc_now() -> str:
 class JournalWriter:
     """Owner of a journal, which writes lessons in the order of `submit`, drops none, and closes the journal.
 
-    It is the tick's `EventStore` (`kurt2rt/core/tick.py`) on a robot: a thread of its own writes, so no tick waits.
+    It is the `EventStore` of a robot (`kurt2rt/core/event_store.py`): a thread of its own writes, so no tick waits.
     On a failing disk the lessons wait and `saving_error` tells the cause: the robot must stand meanwhile. The writer
     tries again until it succeeds.
     """

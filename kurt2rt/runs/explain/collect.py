@@ -16,7 +16,7 @@ from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.explain.facts import (
     MOST_OTHERS,
     ContactFacts,

@@ -14,7 +14,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.teaching.commands import CommandResult
 from kurt2rt.core.teaching.system_events import Input
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 
 
 class MatchEntry(NamedTuple):

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from hal.simulation import SimulatedPlace, WorldPlan
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.recording.topics import Topics
 

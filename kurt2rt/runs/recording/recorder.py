@@ -10,7 +10,7 @@ from typing import Any, Self
 from foxglove import Context
 
 from hal.simulation import SimulatedWorld
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.live_view import LiveView

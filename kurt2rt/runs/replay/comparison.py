@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.recording.entries import RECORDED_AS, TickEntry, tick_entry
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from kurt2rt.core.decision.decision import BY_RLA, DecisionCause
 from kurt2rt.core.rla.rla import BASIC, MID
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.counterfactual_policy import (
     CounterfactualPolicy,
     PolicyAnswer,

@@ -24,7 +24,7 @@ from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import read_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.run import Run

@@ -12,7 +12,7 @@ from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

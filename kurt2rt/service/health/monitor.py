@@ -13,7 +13,7 @@ from typing import Self
 
 from hal.health import Health
 from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, JournalHealth, SensorAges, TickLateness
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.diagnostics import Counted, Diagnostics
 from kurt2rt.service.health.free_space import DiskMonitor

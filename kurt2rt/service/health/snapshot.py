@@ -8,7 +8,7 @@ from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.decision.standing_text import short_text
 from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.probes import JournalStats, Probes
 

@@ -11,7 +11,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
 from kurt2rt.teacher.scripted.press_times import HumanTimes, PressTimes
 

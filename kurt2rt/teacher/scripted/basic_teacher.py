@@ -8,7 +8,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command, Pursue, Resume, SetPhase
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.press_times import PressTimes
 
 

@@ -1,7 +1,6 @@
 """Scripted teacher with the limits of a person: late, seldom, sometimes wrong, and blind for small mistakes."""
 
-import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -11,15 +10,16 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.teacher_settings import Delay, PersonSettings, TeacherProfile
+from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, TeachShown, Undo
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.demonstrator import Demonstrator
 from kurt2rt.teacher.scripted.hand import Hand
-from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit
+from kurt2rt.teacher.scripted.human_limits import PressLimit
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
+from kurt2rt.teacher.scripted.person_chance import PersonChance
 from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 _Way = Literal["press", "hold", "rewind"]
@@ -68,35 +68,6 @@ class _PlannedUndo:
     """Command id of the wrong press."""
 
 
-class _Draws:
-    """All chance of a person: one random stream for each kind of event."""
-
-    def __init__(self, person: PersonSettings, period_s: float, of: str) -> None:
-        """Begin the streams; `of` tells them from those of another lesson."""
-
-        def delays(delay: Delay, name: str) -> DelaySampler:
-            return DelaySampler(delay, person.slower_per_minute, period_s, name + of)
-
-        self.question_delay = delays(person.question_delay, "question delays")
-        self.mistake_delay = delays(person.mistake_delay, "mistake delays")
-        self._look_back_delay = delays(person.look_back.takes, "looks back")
-        self.look_over = delays(person.look_back.takes, "looks over what was shown")
-        self.attention = Attention(person.lapses, period_s, "lapses" + of)
-        self.errors = random.Random("errors" + of)
-        self.slips = random.Random("slips that are noticed" + of)
-        self._moments = random.Random("moments of mistakes" + of)
-        self._moment_spread = person.look_back.moment_spread_s / period_s
-        self._period_s = period_s
-
-    def look_back(self, mistakes: Sequence[Mistake]) -> LookBack:
-        """Return the correction of mistakes by rewind."""
-        return LookBack(mistakes, self._look_back_delay, self._period_s)
-
-    def moment_error_ticks(self) -> int:
-        """Return the error of the moment that the person takes for the begin of a mistake."""
-        return round(self._moments.gauss(0.0, self._moment_spread))
-
-
 class ScriptedPerson(BasicTeacher):
     """Teacher with the delays, errors and lapses of a person, who sees old pictures over a link.
 
@@ -132,7 +103,7 @@ class ScriptedPerson(BasicTeacher):
         # No slip of the finger teaches standing: the page asks for a second touch.
         self._slip_actions = [each for each in sense.actions if sense.groups.get(each, each) != STAND]
 
-        self._draws = _Draws(person, period_s, f" of {session}, seed {seed}")
+        self._chance = PersonChance(person, period_s, f" of {session}, seed {seed}")
         self._presses = PressLimit(person.presses_per_minute, period_s)
         self.times = HumanTimes(person, self._presses, period_s=period_s, seed=seed, session=session)
         self._mistakes = MistakeWatcher(person.notices, sense.groups, period_s)
@@ -188,7 +159,7 @@ class ScriptedPerson(BasicTeacher):
                 self._go_on_showing(self._demonstrator, picture)
             elif self._shows_left and self._presses.allows(_SHOW_PRESSES):
                 self._begin_to_show(picture)
-            elif self._draws.attention.is_on(self._now) and self._now >= self._ignore_until:
+            elif self._chance.attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
         if self._hand is None and self._look_back is None and self._demonstrator is None:
             self._press_if_due()
@@ -202,7 +173,7 @@ class ScriptedPerson(BasicTeacher):
             self._mistakes.reset()
             self._correction = None
             planned = self._answer
-            due = self._now + self._draws.question_delay.draw(self._now) if planned is None else planned.due
+            due = self._now + self._chance.question_delay.draw(self._now) if planned is None else planned.due
             self._answer = _PlannedPress(due, picture, self._profile.answers_by)
         elif self._may_correct(picture) and self._mistakes.update(picture, self._right(picture)):
             assert self._profile.corrects_by != "nothing"
@@ -210,7 +181,7 @@ class ScriptedPerson(BasicTeacher):
         self._look_for_touch(picture)
 
     def _plan_correction(self, about: TeacherView, by: _Way) -> None:
-        self._correction = _PlannedPress(self._now + self._draws.mistake_delay.draw(self._now), about, by)
+        self._correction = _PlannedPress(self._now + self._chance.mistake_delay.draw(self._now), about, by)
 
     def _look_for_touch(self, picture: TeacherView) -> None:
         """Plan a look back when the robot begins to touch something, if that is this teacher's way.
@@ -266,7 +237,7 @@ class ScriptedPerson(BasicTeacher):
             self._begin_hold(action, is_right=action == right)
             return
         if planned.by == "rewind":
-            self._look_back = self._draws.look_back([self._mistake(picture, action), *self._further_mistakes(picture)])
+            self._look_back = self._chance.look_back([self._mistake(picture, action), *self._further_mistakes(picture)])
             return
         seen_tick = picture.tick if self._seen is None else self._seen.tick
         command: Command
@@ -281,7 +252,7 @@ class ScriptedPerson(BasicTeacher):
         self._send(command)
 
     def _mistake(self, began: TeacherView, action: str) -> Mistake:
-        moment = max(0, began.tick + self._draws.moment_error_ticks())
+        moment = max(0, began.tick + self._chance.moment_error_ticks())
         return Mistake(moment, action, is_slip=action != self._right(began))
 
     def _further_mistakes(self, corrected: TeacherView) -> list[Mistake]:
@@ -296,8 +267,8 @@ class ScriptedPerson(BasicTeacher):
 
     def _plan_undo(self, lesson: str) -> None:
         """Plan the undo of an own wrong press, if the person notices it."""
-        if self._draws.slips.random() < self._person.errors.undone:
-            self._undo = _PlannedUndo(self._now + self._draws.mistake_delay.draw(self._now), lesson)
+        if self._chance.slips.random() < self._person.errors.undone:
+            self._undo = _PlannedUndo(self._now + self._chance.mistake_delay.draw(self._now), lesson)
 
     def _send(self, command: Command) -> None:
         """Send a press, and look away from pictures from before its effect."""
@@ -324,7 +295,7 @@ class ScriptedPerson(BasicTeacher):
         self._press_id += 1
         right, ends = self._right(picture), self._now + self._show_ticks
         hand = Hand(self._hand_ticks, self._press_id, right, begins=self._now, ends=ends)
-        self._demonstrator = Demonstrator(hand, self._shown_speeds, self._draws.look_over)
+        self._demonstrator = Demonstrator(hand, self._shown_speeds, self._chance.look_over)
         self._go_on_showing(self._demonstrator, picture)
 
     def _go_on_showing(self, demonstrator: Demonstrator, picture: TeacherView) -> None:
@@ -347,9 +318,9 @@ class ScriptedPerson(BasicTeacher):
         ends = self._now + self._hold_ticks
         hand = Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
         if not is_right:  # a wrong button is a mistake to be noticed
-            noticed = self._now + self._draws.mistake_delay.draw(self._now)
+            noticed = self._now + self._chance.mistake_delay.draw(self._now)
             hand.stay(noticed)
-            if self._draws.slips.random() < self._person.errors.undone:
+            if self._chance.slips.random() < self._person.errors.undone:
                 hand.ends = noticed
                 self._undo = _PlannedUndo(noticed + self._effect_ticks, hold_id(SCRIPTED, self._press_id))
         self._hand = hand
@@ -373,6 +344,6 @@ class ScriptedPerson(BasicTeacher):
         return self._sense.policy.choose(picture.infrared_counts, picture.behaviour)
 
     def _choose(self, right: str, error_rate: float) -> str:
-        if self._draws.errors.random() >= error_rate:
+        if self._chance.errors.random() >= error_rate:
             return right
-        return self._draws.errors.choice([action for action in self._slip_actions if action != right])
+        return self._chance.errors.choice([action for action in self._slip_actions if action != right])

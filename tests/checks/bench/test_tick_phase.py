@@ -6,7 +6,7 @@ from hal.robot_settings import load_robot
 from hal.simulation import Simulation
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.checks.bench.tick_phase import LoopPacer
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.runtime import build_runtime
 

@@ -12,7 +12,7 @@ from kurt2rt.checks.soak.operator import SoakOperator
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Resume
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from simbridge.faults.long_run_rig import LongRunRig
 from tests.checks.soak.helpers import CYCLE_S
 

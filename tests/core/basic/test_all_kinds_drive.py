@@ -14,10 +14,11 @@ from config import CONFIG_DIR
 from hal.robot import STANDSTILL
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import ReplaceAction, Teach
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, build_runtime
 from tests.core.basic.helpers import keep, with_repertoire

@@ -9,7 +9,7 @@ from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime

@@ -20,7 +20,7 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from tests.core.rla.helpers import created
 from tests.core.test_tick_learning import TASK, Drive
 from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict

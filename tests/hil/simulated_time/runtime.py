@@ -20,7 +20,7 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime

@@ -6,10 +6,11 @@ import anyio
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import load_robot
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hal.simulation import SimulatedWorld
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.runs.recording.live_view import LiveView
 from kurt2rt.runs.recording.recorded_run import RecordedRun

@@ -16,7 +16,7 @@ from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 from kurt2rt.channel.protocol.health_codec import plain_of, report_of
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.teaching.commands import Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry

@@ -20,6 +20,7 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.standing_text import stop_text
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -39,7 +40,7 @@ from kurt2rt.core.teaching.commands import (
     Watch,
 )
 from kurt2rt.core.teaching.system_events import PairingRenewed
-from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments

@@ -24,7 +24,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import BeginSession, Resume, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal

@@ -17,7 +17,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, Stop, Teach, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in

@@ -10,7 +10,7 @@ from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Resume, SetPhase, Stop, Undo, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run

@@ -9,7 +9,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, SetPhase, Teach, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.reasons import format_reasons
 from kurt2rt.runs.replay.comparison import compare

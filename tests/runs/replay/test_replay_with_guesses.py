@@ -8,7 +8,7 @@ from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import HoldAction, Resume, SetPhase, Stop, Teach, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run

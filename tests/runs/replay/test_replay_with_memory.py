@@ -7,7 +7,7 @@ from kurt2rt.core.critic.settings import CirclingSettings, load_critic
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Appraise, Resume, SetPhase, Teach, Watch
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay

@@ -12,7 +12,7 @@ from hal.robot_settings import load_robot
 from hal.simulation import Pose
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.simulation import Kurt2SimulationFactory

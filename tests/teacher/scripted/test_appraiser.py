@@ -14,7 +14,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (
     FeedbackTiming,
     JudgeReward,

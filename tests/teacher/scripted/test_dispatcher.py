@@ -11,7 +11,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 from kurt2rt.teacher.scripted.press_times import FixedTimes

@@ -15,7 +15,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
 from tests.core.helpers import sensed

@@ -1,0 +1,31 @@
+"""Event store: what the tick gives its teaching events to, so that they are saved outside the tick."""
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from kurt2rt.core.rla.events import TeachingEvent
+
+
+class EventStore(Protocol):
+    """Store of teaching events; it works outside the tick, and its methods return at once."""
+
+    @property
+    def saving_error(self) -> str | None:
+        """Reason that lessons cannot be saved now, in one line; None if they can."""
+        ...
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Queue an event for saving; return at once. A failure appears in `saving_error`."""
+        ...
+
+
+@dataclass(slots=True)
+class InMemoryEventStore:
+    """List of events in submission order (EventStore)."""
+
+    events: list[TeachingEvent] = field(default_factory=list)
+    saving_error: str | None = None
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Append an event to the list."""
+        self.events.append(event)
