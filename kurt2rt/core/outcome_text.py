@@ -206,7 +206,7 @@ def fields_of(code: Code) -> frozenset[str]:
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher, in the words of a surface. Raises KeyError for a missing field."""
     text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
-    return text + _late_press_text(outcome.fields) + _contradiction_text(outcome.fields)
+    return text + _no_lesson_text(outcome) + _late_press_text(outcome.fields) + _contradiction_text(outcome.fields)
 
 
 def neighbours_text(actions: Sequence[str], nearest: int) -> str:
@@ -217,6 +217,13 @@ def neighbours_text(actions: Sequence[str], nearest: int) -> str:
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
     return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
+
+
+def _no_lesson_text(outcome: Outcome) -> str:
+    """Return why a hold taught nothing, as the end of its sentence; empty for other outcomes."""
+    if outcome.code is not ResultCode.HOLD_RELEASED or outcome.fields.get("lessons") != 0:
+        return ""
+    return "; the robot does so there already, or an answer stands there, which a short press corrects"
 
 
 def _late_press_text(fields: Mapping[str, Field]) -> str:

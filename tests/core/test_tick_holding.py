@@ -5,6 +5,7 @@ import pytest
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
 from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Take, Teach, Undo, Watch
 from kurt2rt.core.tick_record import TickRecord
@@ -230,9 +231,9 @@ def test_hold_teaches_each_tenth_of_a_second_unless_agreed(driving: Corridor) ->
 
 def test_hold_of_what_the_robot_does_teaches_nothing(driving: Corridor) -> None:
     held(driving, 200, 105, "forward")
-    assert driving.run(105, release()).results[0].outcome == Outcome.of(
-        ResultCode.HOLD_RELEASED, lessons=0, lesson=None
-    )
+    outcome = driving.run(105, release()).results[0].outcome
+    assert outcome == Outcome.of(ResultCode.HOLD_RELEASED, lessons=0, lesson=None)
+    assert "already" in text_of(outcome)
     assert events(driving) == []
 
 
