@@ -332,7 +332,7 @@ def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
 
 
 def test_printed_demos_of_streets_name_one_seed() -> None:
-    # 4 of 8 seeds get stuck there, seed 1 among them: docs/results-and-limits.md
+    # Other seeds may get stuck there: docs/results-and-limits.md#streets-in-manhattan
     assert {seed_of(line) for line in printed_demos() if "streets" in line} == {2}
 
 
