@@ -21,7 +21,7 @@ from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, load_settings
 from kurt2rt.core.perception.definition import SituationDefinition
-from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.service.settings import ServiceSettings
@@ -328,7 +328,9 @@ def test_printed_task_on_the_default_seed_succeeds(beginning: str, tmp_path: Pat
 @pytest.mark.deep
 def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
     (words,) = {line for line in printed_demos() if "streets" in line}
-    assert [exam.succeeded for exam in examined(load_task("streets"), seed_of(words), tmp_path)] == [True]
+    assert [
+        exam.succeeded for exam in examined(taught_by_named(load_task("streets"), None), seed_of(words), tmp_path)
+    ] == [True]
 
 
 def test_printed_demos_of_streets_name_one_seed() -> None:
