@@ -309,6 +309,7 @@ class CommandHandler:
         if not taught or not isinstance(command, Teach | Correct) or command.level != BASIC:
             return
         asked, meant = self.delay.asked_tick, command.decision_tick
+        self.delay.last_asked_tick = None
         if asked is not None and (meant is None or meant >= asked):
             given = tick if command.seen_tick is None else command.seen_tick
             self.delay.on_answer(command.teacher, given, self.authority.speed)

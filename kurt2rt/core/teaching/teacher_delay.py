@@ -46,6 +46,8 @@ class TeacherDelay:
         }
         self.asked_tick: int | None = None
         """First tick of the present question; None if the robot does not ask."""
+        self.last_asked_tick: int | None = None
+        """Newest tick of the last question, also if it ended by itself; None once a lesson was given after it."""
         self._answered = False
 
     def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
@@ -55,8 +57,10 @@ class TeacherDelay:
         """
         if not asks:
             self.asked_tick = None
-        elif self.asked_tick is None:
+            return
+        if self.asked_tick is None:
             self.asked_tick, self._answered = tick, not present
+        self.last_asked_tick = tick
 
     def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
         """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.

@@ -72,6 +72,35 @@ def test_late_press_answers_the_question_of_its_state(driving: Corridor) -> None
     assert driving.run(400).decision.action == "back"
 
 
+def asks_and_goes_on(corridor: Corridor, ticks: int) -> int:
+    """Let the robot ask for 5 ticks and drive on by itself for `ticks`; return the last tick of its question."""
+    for _ in range(5):
+        asked = corridor.run(400)
+    assert asked.decision.asking
+    for _ in range(ticks):
+        assert corridor.run(100).decision.action == "forward"
+    return asked.tick
+
+
+def test_late_press_answers_a_question_that_ended_by_itself(driving: Corridor) -> None:
+    asked = asks_and_goes_on(driving, DELAY - 10)
+    result = given(driving, press(driving))
+    assert (result.outcome.fields["decision_tick"], result.outcome.fields["decided_by"]) == (asked, None)
+    assert driving.run(400).decision.action == "back"
+
+
+def test_late_press_after_its_delay_answers_no_question(driving: Corridor) -> None:
+    asks_and_goes_on(driving, DELAY + 10)
+    assert given(driving, press(driving)).outcome.fields["decision_tick"] == driving.ticks - 1 - DELAY
+
+
+def test_late_press_answers_a_question_once(driving: Corridor) -> None:
+    asked = asks_and_goes_on(driving, DELAY // 2)
+    assert given(driving, press(driving)).outcome.fields["decision_tick"] == asked
+    again = given(driving, press(driving, name="again"))
+    assert again.outcome.fields["decision_tick"] != asked
+
+
 def test_answers_of_a_teacher_set_their_delay(driving: Corridor) -> None:
     for number in range(4):
         for _ in range(60):
