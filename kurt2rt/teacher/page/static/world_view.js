@@ -112,7 +112,7 @@ export class WorldView {
       const nothing = metres >= farthest(this.#hello);
       paint.strokeStyle = paint.fillStyle = marked.has(name) ? DIFFERS : FAR;
       paint.lineWidth = (marked.has(name) ? 2.5 : 1) / scale;
-      paint.globalAlpha = marked.has(name) ? 0.9 : nothing ? 0.25 : 0.6;
+      paint.globalAlpha = marked.has(name) ? 1 : nothing ? 0.25 : 0.6;
       paint.beginPath();
       paint.moveTo(sx, sy);
       paint.lineTo(...end);
