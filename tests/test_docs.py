@@ -328,9 +328,8 @@ def test_printed_task_on_the_default_seed_succeeds(beginning: str, tmp_path: Pat
 @pytest.mark.deep
 def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
     (words,) = {line for line in printed_demos() if "streets" in line}
-    assert [
-        exam.succeeded for exam in examined(taught_by_named(load_task("streets"), None), seed_of(words), tmp_path)
-    ] == [True]
+    task = taught_by_named(load_task("streets"), None)
+    assert [exam.succeeded for exam in examined(task, seed_of(words), tmp_path)] == [True]
 
 
 def test_printed_demos_of_streets_name_one_seed() -> None:

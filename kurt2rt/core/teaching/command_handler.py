@@ -242,10 +242,13 @@ class CommandHandler:
 
     def sample_manual_drive(self, tick: int, readings: SensorReadings, speeds: WheelSpeeds) -> None:
         """Sample speeds that the teacher drives by hand in this tick; an action that runs is no demonstration."""
-        press, authority = self.authority.driving_press, self.authority
-        if press is not None:
-            reacted = authority.drive_seen_tick - self.delay.hand_ticks(press[0], authority.speed)
-            self.demonstration.update(tick, press, readings, speeds, reacted)
+        authority = self.authority
+        press = authority.driving_press
+        if press is None:
+            return
+        teacher, _ = press
+        reacted = authority.drive_seen_tick - self.delay.hand_ticks(teacher, authority.speed)
+        self.demonstration.update(tick, press, readings, speeds, reacted)
 
     def teach_driven(self, tick: int) -> Sequence[TeachingEvent]:
         """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.
