@@ -79,6 +79,8 @@ def reasons() -> Iterator[tuple[str, str]]:
     more: dict[str, DecisionFacts] = {
         "rla, of one condition": facts(replace(CROWD, driver=TWIN)),
         "rla, pushes": replace(facts(KNOWN), granted=STOOD, reasons=("rear bumper",)),
+        "rla, passes over a guess": facts(replace(KNOWN, passed_over=replace(ELSE, distance=3.0))),
+        "rla, passes over a withdrawn one": facts(replace(KNOWN, passed_over=replace(WITHDRAWN, distance=3.0))),
         "rla, doubts a little": replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8)),
         "avoids, turns on the spot": replace(AVOIDED, doubt=replace(CONTACT, turns=True)),
         "avoids, turns without a contact": replace(AVOIDED, doubt=replace(OBSTACLE, turns=True)),

@@ -63,6 +63,7 @@ _LEVEL = MapOf(
     words=ManyOf(NAME, most=_MOST_FEATURES),
     nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
     radius_share=MayLack(Float(1.0)),
+    passed_over=MayLack(OrNone(_RLA)),
 )
 
 

@@ -62,6 +62,10 @@ class TeacherDelay:
             self.asked_tick, self._answered = tick, not present
         self.last_asked_tick = tick
 
+    def forget_question(self) -> None:
+        """Forget a question that ended by itself, because the robot was set down elsewhere."""
+        self.last_asked_tick = None
+
     def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
         """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.
 

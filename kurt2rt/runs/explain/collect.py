@@ -215,11 +215,18 @@ class _Reader:
                 driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf)
             )
         others: list[RlaFacts] = []
+        passed_over = None
+        nearer = True
         for rla_id, distance in ranking:
             rla = self._system.get(rla_id)
-            if rla is None or (match is not None and rla_id == match.rla.rla_id):
+            if rla is None:
+                continue
+            if match is not None and rla_id == match.rla.rla_id:
+                nearer = False
                 continue
             if level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla):
+                if nearer and passed_over is None and match is not None:
+                    passed_over = self._rla_facts(rla, self._radius_of(rla), distance)
                 continue
             if self._most is not None and len(others) >= self._most:
                 break
@@ -236,6 +243,7 @@ class _Reader:
             others=tuple(others),
             count=self._system.candidate_count(behaviour, level_name),
             radius_share=self._system.radius_share if level_name == BASIC else 1.0,
+            passed_over=passed_over,
         )
 
     def _ranking(

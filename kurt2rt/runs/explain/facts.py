@@ -85,6 +85,8 @@ class LevelFacts:
     """Condition of the nearest RLA in words."""
     radius_share: float = 1.0
     """Fraction of R within which RLAs answer; below 1 while the robot is taught and asks sooner."""
+    passed_over: RlaFacts | None = None
+    """RLA nearer than the nearest, which does not answer because no teacher can be asked; None without one."""
 
     @property
     def runner_up(self) -> RlaFacts | None:

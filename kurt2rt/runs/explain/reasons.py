@@ -62,9 +62,9 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
             f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
         )
     if facts.cause == DecisionCause.RLA:
-        lines += [*_rla_drives(facts.basic), *_doubts_a_little(facts.doubt)]
+        lines += [*_rla_drives(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.HELD:
-        lines += [*_held(facts.basic), *_doubts_a_little(facts.doubt)]
+        lines += [*_held(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.AVOIDS:
         lines += _avoids(facts.basic, facts.doubt, facts.action)
     elif facts.cause == DecisionCause.DOUBT:
@@ -138,6 +138,15 @@ def _held(level: LevelFacts) -> list[str]:
         f"{driver.title} ({driver.action}) was chosen a moment ago, and its action keeps its minimum time.",
         f"Nearest by now is {format_rla(nearest)}, at {format_nearness(nearest)}{_format_percent(nearest)}.",
     ]
+
+
+def _passed_over(level: LevelFacts) -> list[str]:
+    """Describe the nearest of the RLAs that do not answer without a teacher."""
+    rla = level.passed_over
+    if rla is None:
+        return []
+    why = "its action was withdrawn" if rla.asks else "it came from a held action, and the RLAs near it act otherwise"
+    return [f"{format_rla(rla)} is nearer, at {format_nearness(rla)}. Without a teacher it does not answer: {why}."]
 
 
 def _touches(facts: DecisionFacts) -> list[str]:

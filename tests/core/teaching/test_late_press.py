@@ -4,6 +4,7 @@ import pytest
 
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Correct, Undo
+from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.teaching.teacher_delay import CORRECTION_PART, DEFAULT_TICKS
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_holding import condition
@@ -92,6 +93,14 @@ def test_late_press_answers_a_question_that_ended_by_itself(driving: Corridor) -
 def test_late_press_after_its_delay_answers_no_question(driving: Corridor) -> None:
     asks_and_goes_on(driving, DELAY + 10)
     assert given(driving, press(driving)).outcome.fields["decision_tick"] == driving.ticks - 1 - DELAY
+
+
+def test_late_press_answers_no_question_of_another_place(driving: Corridor) -> None:
+    asked = asks_and_goes_on(driving, 1)
+    driving.inbox.put(RobotRepositioned())
+    for _ in range(DELAY - 10):
+        driving.run(100)
+    assert given(driving, press(driving)).outcome.fields["decision_tick"] != asked
 
 
 def test_late_press_answers_a_question_once(driving: Corridor) -> None:

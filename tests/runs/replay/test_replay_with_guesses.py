@@ -59,5 +59,7 @@ def test_run_over_a_guess_is_replayed_bit_for_bit(tmp_path: Path) -> None:
             assert facts.nearest is not None
             assert facts.nearest.rla_id == match.rla.rla_id
             assert nearest.rla.rla_id not in [each.rla_id for each in facts.others]
+            assert facts.passed_over is not None
+            assert facts.passed_over.rla_id == nearest.rla.rla_id
             passed_over += 1
     assert passed_over > 0
