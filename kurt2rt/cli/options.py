@@ -26,8 +26,8 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
 _TASK = "Task: a name in config/tasks, or the path of a YAML file."
 _TEACHER = "Scripted teacher: a name in config/teachers, or the path of a YAML file."
 _WORLD = (
-    "World: a name in config/worlds, rooms-N, streets-N or floors-N for a generated one, or the path of a YAML file "
-    "(a world, or a map of ROS map_server)."
+    "World: a name in config/worlds, rooms-N, flats-N, streets-N or floors-N for a generated one, or the path of a "
+    "YAML file (a world, or a map of ROS map_server)."
 )
 
 

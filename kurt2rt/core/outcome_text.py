@@ -156,7 +156,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.NEXT_RUN_FAILED: "{says}",
     RefusalCode.NEXT_RUN_CRASHED: "the next run cannot begin: {error}",
     RefusalCode.TAUGHT_BY_SCRIPT: "the scripted teacher teaches this run; start kurt2rt run without --auto",
-    RefusalCode.NO_WORLD: "world: {world!r} is not known; give one of {known}, rooms-N, streets-N, floors-N",
+    RefusalCode.NO_WORLD: "world: {world!r} is not known; give one of {known}, rooms-N, flats-N, streets-N, floors-N",
     RefusalCode.NO_TASK: "task: {task!r} is not known; give one of {known}",
     RefusalCode.COPY_FAILED: "{says}",
     RefusalCode.COPY_CRASHED: "the copy failed: {error}",

@@ -7,6 +7,7 @@ import shapely
 
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
 from hal.settings import SettingsError, content_of, find_config, load_settings
+from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room
 from simbridge.worlds.generator.streets import streets
@@ -16,9 +17,9 @@ from simbridge.worlds.world_settings import WorldSettings
 START_CLEARANCE_M = 0.05
 """Least wall clearance of a start pose; a robot that turns at a smaller one collides."""
 
-GENERATED = "rooms-N, streets-N or floors-N with any whole number N up to 9 digits, such as rooms-17"
+GENERATED = "rooms-N, flats-N, streets-N or floors-N with any whole number N up to 9 digits, such as rooms-17"
 """Valid names of generated worlds, for messages."""
-_GENERATORS = {"rooms": room, "streets": streets, "floors": cluttered_floor}
+_GENERATORS = {"rooms": room, "flats": flat, "streets": streets, "floors": cluttered_floor}
 _GENERATED = re.compile(rf"({'|'.join(_GENERATORS)})-(0|[1-9]\d{{0,8}})", re.ASCII)
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
@@ -28,7 +29,8 @@ _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".ti
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
     """Return a world that the robot (KURT2 unless given) can drive in: shipped or generated, by name, or from a file.
 
-    Names: those in config/worlds, `rooms-17`, `streets-17` and `floors-17` for any number (simbridge.worlds.generator).
+    Names: those in config/worlds, and `rooms-17`, `flats-17`, `streets-17` and `floors-17` for any number
+    (simbridge.worlds.generator).
     Files: a world, a map of ROS's map_server, or a world on such a map (simbridge.worlds.map_server).
     Raises hal.settings.SettingsError that names file and key.
     """

@@ -26,7 +26,7 @@ class SimulationView:
     """World as chosen: `a`, `rooms-7`, a path."""
     task: str
     worlds: tuple[str, ...]
-    """Worlds by name; `rooms-N`, `streets-N` and `floors-N` are made for any whole number N."""
+    """Worlds by name; `rooms-N`, `flats-N`, `streets-N` and `floors-N` are made for any whole number N."""
     tasks: tuple[TaskName, ...]
     speed: int = 1
     """Chosen number of robot seconds in one second."""

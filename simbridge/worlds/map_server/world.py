@@ -4,7 +4,9 @@ import math
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 from pydantic import ValidationError
 from shapely.affinity import scale, translate
 
@@ -56,7 +58,7 @@ def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
             f"no free space for the robot, which needs {2 * turning_m:.2f} m to turn",
             "check resolution, negate, the thresholds and mode",
         )
-    return _world(source, best[1], starts_beside_walls(best[1], best[2]), _rays_for(best[1]))
+    return world_of_floor(source, best[1], starts_beside_walls(best[1], best[2]))
 
 
 def world_on_map(source: Path) -> WorldSettings:
@@ -72,16 +74,23 @@ def world_on_map(source: Path) -> WorldSettings:
     if floor is None:
         raise image_error(map_source, "no cell is free", "check negate and the thresholds")
     _require_few_walls(map_source, _walls_of(floor))
-    return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
+    return world_of_floor(source, floor, starts, chosen.infrared_rays)
 
 
 def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
     """Return the free areas in m from the lower left corner of the image, the largest first."""
     try:
-        cells = trace(drivable_cells(source, settings))
+        return floors_of_cells(drivable_cells(source, settings), settings.resolution)
     except TooRaggedError as error:
         raise image_error(source, str(error), f"{_SHRINK}; check the thresholds") from error
-    floors = [scale(each, settings.resolution, settings.resolution, origin=(0, 0)) for each in cells]
+
+
+def floors_of_cells(cells: NDArray[np.bool_], cell_m: float) -> list[shapely.Polygon]:
+    """Return the free areas of cells in m from the lower left corner, the largest first.
+
+    `cells`: whether each is free, (rows, columns), row 0 at the bottom. `cell_m`: their length. Raises TooRaggedError.
+    """
+    floors = [scale(each, cell_m, cell_m, origin=(0, 0)) for each in trace(cells)]
     return sorted(floors, key=lambda each: float(each.area), reverse=True)
 
 
@@ -102,7 +111,13 @@ def _on_grid(start: Pose, settings: MapSettings) -> Pose:
     return Pose(dx * cos + dy * sin, dy * cos - dx * sin, start.heading_rad - turned_rad)
 
 
-def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_rays: Literal[1, 3]) -> WorldSettings:
+def world_of_floor(
+    source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_rays: Literal[1, 3] | None = None
+) -> WorldSettings:
+    """Return the world of a floor with its islands, named as the source.
+
+    `infrared_rays`: for each sensor; None: as many as the thinnest island needs. Raises SettingsError.
+    """
     west_m, south_m, east_m, north_m = floor.bounds
     width_m, height_m = east_m - west_m, north_m - south_m
     if max(width_m, height_m) > _MOST_M:
@@ -116,7 +131,7 @@ def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_ra
         return WorldSettings(
             name=source.stem,
             size_m=(width_m, height_m),
-            infrared_rays=infrared_rays,
+            infrared_rays=infrared_rays or _rays_for(floor),
             outline=_corners(shifted.exterior),
             polygon_obstacles=tuple(
                 PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])

@@ -4,6 +4,7 @@ import hashlib
 import itertools
 import math
 
+import numpy as np
 import pytest
 import shapely
 
@@ -131,14 +132,36 @@ def pieces_of(world: WorldSettings) -> list[shapely.Geometry]:
     return [shapely.convex_hull(shapely.union_all(each)) for each in parts.values()]
 
 
+@pytest.mark.parametrize("some", seeds(range(0, 100, 12), range(1100)))
+def test_flats_let_the_robot_turn_in_all_rooms(some: range) -> None:
+    for seed in some:
+        world = generated(f"flats-{seed}")
+        floor = world.free_space
+        centres = floor.buffer(-TURNING_M, quad_segs=4)
+        largest = max(shapely.get_parts(centres), key=shapely.area)
+        assert largest.area >= 0.95 * centres.area, world.name
+        assert len(world.start_poses) >= 6
+        assert all(largest.buffer(0.002).contains(shapely.Point(each.x_m, each.y_m)) for each in world.start_poses)
+        # Rooms need walls inside: more than the outer walls and the furniture have.
+        assert floor.length - sum(map(shapely.length, world.shapes)) > 1.3 * shapely.box(*floor.bounds).length
+
+
+def test_flats_have_ragged_walls() -> None:
+    outline = shapely.get_coordinates(shapely.Polygon(generated("flats-1").outline).exterior)
+    steps_m = np.abs(np.diff(outline, axis=0)).max(axis=1)
+    assert np.count_nonzero(steps_m < 0.11) > 40
+
+
 def test_generated_worlds_are_equal_on_every_machine() -> None:
     # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
     assert [digest("rooms-17"), digest("streets-3")] == ["38d54f9daa54236a", "6635d1be71c0b592"]
     assert digest("floors-17") == "aafca8973228c551"
+    corners = [(round(x, 3), round(y, 3)) for x, y in generated("flats-17").outline]
+    assert hashlib.sha256(repr(corners).encode()).hexdigest()[:16] == "8811241cf44b5ffa"
 
 
 def test_generated_worlds_differ_between_seeds() -> None:
-    assert len({digest(f"{kind}-{i}") for kind in ("rooms", "streets", "floors") for i in range(10)}) == 30
+    assert len({digest(f"{kind}-{i}") for kind in ("rooms", "flats", "streets", "floors") for i in range(10)}) == 40
 
 
 def test_seeded_random_reaches_its_bounds() -> None:
