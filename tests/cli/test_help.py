@@ -67,6 +67,7 @@ def test_every_command_is_found() -> None:
             "transfer",
             "doubt",
             "broken",
+            "results",
             "faults",
             "soak",
             "why",
