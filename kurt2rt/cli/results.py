@@ -33,7 +33,7 @@ def show(folder: Folder, as_json: AsJson = False) -> None:
 @results.command()
 def merge(
     out: Annotated[Path, typer.Argument(help="Folder that gets all results; created when absent.")],
-    parts: Annotated[list[Path], typer.Argument(metavar="PART...", help="Folder of a shard; name one or more.")],
+    parts: Annotated[list[Path], typer.Argument(help="Folder of a shard; name one or more.")],
     as_json: AsJson = False,
 ) -> None:
     """Merge the results of shards into one folder.
