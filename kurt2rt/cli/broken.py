@@ -11,7 +11,9 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, results_option, task_option
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.broken.fault import FaultKind
 from kurt2rt.experiments.broken.plan import BrokenDrives, chosen_sensors, make_plan, read_study
@@ -19,6 +21,7 @@ from kurt2rt.experiments.broken.tables import all_tables
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
@@ -60,6 +63,7 @@ class _Options:
         bool, typer.Option("--faults/--no-faults", help="Break sensors; without, only drives of working sensors.")
     ] = True
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
     out: Annotated[Path, results_option("results/broken")] = Path("results/broken")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -103,8 +107,12 @@ def broken(options: _Options) -> None:
         healthy_s=options.healthy,
     )
     parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
-    plan = make_plan(task, drives, parts)
+    plan, command = make_plan(task, drives, parts), typed_command("broken", options)
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, command)
         run_missing(plan, results, options.jobs, bar.update)
         study = read_study(plan, results)
     tables = list(all_tables(study))

@@ -27,6 +27,7 @@ from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
+from kurt2rt.experiments.lockstep.seed_result import seed_result
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
 
@@ -89,7 +90,7 @@ def demo(options: _Options) -> None:
         result = anyio.run(run, report)
     draw_curriculum(result, taught, stage, picture)
     if options.as_json:
-        print_json({**curriculum_as_data(result, taught), "picture": picture, "knowledge": knowledge})
+        print_json({**curriculum_as_data(seed_result(result), taught), "picture": picture, "knowledge": knowledge})
         return
     files = (f"picture    {picture}", f"knowledge  {knowledge}")
     print_whole(console_of(), render_curriculum(result, taught), *files)

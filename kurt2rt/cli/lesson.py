@@ -1,13 +1,10 @@
 """`kurt2rt lesson`."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import anyio
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
@@ -16,18 +13,25 @@ from kurt2rt.cli.lesson_errands import errands, runs_errands
 from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
 from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_options, teaches_route
 from kurt2rt.cli.options import changes_of
-from kurt2rt.cli.progress import job_bars
+from kurt2rt.cli.progress import job_bars, one_bar
+from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
-from kurt2rt.core.teacher_settings import SUPERHUMAN, load_teacher
+from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop, choose_drivers
+from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
+from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
-from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
+from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
@@ -66,11 +70,12 @@ def lesson(options: LessonOptions) -> None:
 
         kurt2rt lesson --task errands --seeds 0-9 --controls
     """
-    name = _task_name(options)
-    setup = _setup(name, options)
+    setup = _setup(_task_name(options), options)
     task = setup.task
     if options.seeds is None and options.exams is not ExamLoop.BUS:
         raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
+    if options.seeds is None and options.shard is not None:
+        raise typer.BadParameter("a shard is a part of many robots: give --seeds as well", param_hint="--shard")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
     if options.exams is ExamLoop.BATCH:
@@ -83,7 +88,7 @@ def lesson(options: LessonOptions) -> None:
     elif options.seeds is None:
         one_route(setup, options)
     else:
-        many_routes(setup, options, _command(name, options))
+        many_routes(setup, options)
 
 
 def _require_batch(task: TaskSettings, options: LessonOptions) -> None:
@@ -116,7 +121,8 @@ def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
     robot = load_robot(options.robot_settings)
     task = load_task(task_name, plain=options.plain, changes=changes_of(options.changes))
     taught = taught_by(task, load_teacher(options.teacher))
-    return LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, taught)
+    command = typed_command("lesson", options, {"task": task_name, "task_word": None})
+    return LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, taught, command)
 
 
 def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
@@ -124,7 +130,6 @@ def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
     worlds = (task.teaching.world, *(task.exam.worlds if options.seeds is not None else ()))
     setup.factory.require_worlds(*worlds)
     require_course(setup.factory, task, worlds)
-    out.mkdir(parents=True, exist_ok=True)
     if options.seeds is None:
         _one_seed(setup, options, out)
     else:
@@ -133,9 +138,11 @@ def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
 
 def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     task = setup.task
+    out.mkdir(parents=True, exist_ok=True)
     file = options.knowledge or out / f"{task.name}-{options.seed}.knowledge"
     if options.knowledge is None:
         archive_existing(file)
+        forget_result(out, task.name, options.seed)
 
     async def run(report: Report) -> CurriculumResult:
         result, _ = await run_lesson(setup.factory, setup.robot, task, file, seed=options.seed, report=report)
@@ -144,33 +151,28 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     with job_bars() as report:
         result = anyio.run(run, report)
     if options.as_json:
-        print_json({**curriculum_as_data(result, task), "knowledge": file})
+        print_json({**curriculum_as_data(seed_result(result), task), "knowledge": file})
     else:
         print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
 
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     tasks = compared_tasks(setup.task) if options.controls else {"": setup.task}
-    work = []
-    for place, task in enumerate(tasks.values()):
-        for seed in options.all_seeds:
-            file = out / f"{task.name}-{seed}{f'-control-{place}' if place else ''}.knowledge"
-            archive_existing(file)
-            work.append(SeedJob(setup.factory, setup.robot, task, task.exam.worlds, seed, file))
-    drivers = choose_drivers(options.exams, len(work), setup.task.exam.worlds)
-    work = [replace(job, driver=driver) for job, driver in zip(work, drivers, strict=True)]
-    columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        bar = progress.add_task("seeds", total=len(work))
-        results = run_seeds(work, options.jobs, lambda _seed: progress.advance(bar))
-    each = len(options.all_seeds)
-    by_teacher = {label: results[each * place : each * (place + 1)] for place, label in enumerate(tasks)}
+    results = Results(out)
+    parts = JobParts(factory=setup.factory, robot=setup.robot, results=results)
+    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, exams=options.exams)
+    forget_lost_robots(plan, results)
+    if options.shard is not None:
+        run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
+        return
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(out, plan, setup.command)
+        run_missing(plan, results, options.jobs, bar.update)
+        by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 
 
-def _show_seeds(
-    by_teacher: Mapping[str, Sequence[CurriculumResult]], task: TaskSettings, options: LessonOptions
-) -> None:
+def _show_seeds(by_teacher: Mapping[str, Sequence[SeedResult]], task: TaskSettings, options: LessonOptions) -> None:
     own, *controls = by_teacher.items()
     if options.as_json:
         robots = {label: [curriculum_as_data(each, task) for each in results] for label, results in by_teacher.items()}
@@ -179,13 +181,3 @@ def _show_seeds(
         return
     compared = (render_teachers(by_teacher),) if controls else ()
     print_whole(console_of(), render_seeds(own[1], task), *compared)
-
-
-def _command(name: str, options: LessonOptions) -> str:
-    """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = [f"kurt2rt lesson --task {Path(name).name}", *(["--plain"] if options.plain else [])]
-    words += [f"--seeds {options.seeds}", *(f"--decisions {each}" for each in options.decisions or ())]
-    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != SUPERHUMAN else []
-    words += ["--basic FOLDER"] if options.basic is not None else []
-    words += ["--controls"] if options.controls else []
-    return " ".join([*words, *(f"--set {each}" for each in options.changes or ())])

@@ -6,6 +6,7 @@ from behaviors.metrics.errands import ErrandsSettings
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
@@ -15,6 +16,7 @@ from kurt2rt.experiments.route.plan import basic_task_of
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
@@ -50,7 +52,11 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         basic_folder=options.basic,
         controls=options.controls,
     )
+    if options.shard is not None:
+        run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, setup.command)
         run_missing(plan, results, options.jobs, bar.update)
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)

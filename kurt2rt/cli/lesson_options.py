@@ -22,6 +22,7 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
+from kurt2rt.cli.shards import ShardOption
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
@@ -55,6 +56,7 @@ class LessonOptions:
         ),
     ] = None
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
     exams: Annotated[
         ExamLoop,
         typer.Option(
@@ -108,3 +110,5 @@ class LessonSetup:
     factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
+    command: str
+    """Typed words, as far as they decide the numbers."""

@@ -7,6 +7,7 @@ from behaviors.metrics.route import RouteSettings
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ROUTES, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import job_bars, one_bar
+from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.tables import console_of, print_study, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -20,6 +21,7 @@ from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
@@ -88,10 +90,8 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
     print_whole(console_of(), as_rich(robot_table(outcome, task)), *files)
 
 
-def many_routes(setup: LessonSetup, options: LessonOptions, command: str) -> None:
+def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
     """Teach and examine many robots; keep results that are in the folder. Print tables and write a report.
-
-    `command`: typed words, for the report.
 
     Raises:
         SettingsError: task, robot or world cannot be loaded.
@@ -112,11 +112,15 @@ def many_routes(setup: LessonSetup, options: LessonOptions, command: str) -> Non
         JobParts(factory=factory, robot=setup.robot, results=results),
         basic_folder=options.basic,
     )
+    if options.shard is not None:
+        run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, setup.command)
         run_missing(plan, results, options.jobs, bar.update)
         bar.say("pictures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, factory, results.folder))
         report = results.folder / "report.html"
-        write_report(study, pictures, command, report)
+        write_report(study, pictures, setup.command, report)
     print_study(all_tables(study), reasons_against_judging(plan.seeds), report, as_json=options.as_json)

@@ -20,7 +20,9 @@ from kurt2rt.cli.options import (
     teacher_option,
 )
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.tables import print_study
+from kurt2rt.cli.typed_command import typed_command
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
@@ -43,6 +45,7 @@ class _Options:
     ] = None
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
@@ -72,6 +75,7 @@ def paper(options: _Options) -> None:
 
         kurt2rt paper --quick
         kurt2rt paper --task circle --task eight
+        kurt2rt paper --seeds 100-1099 --shard 2/8 --out part-2
     """
     _run_study(options)
 
@@ -89,6 +93,7 @@ def _run_study(options: _Options) -> None:
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.study.study_record import record_study
     from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
@@ -105,8 +110,12 @@ def _run_study(options: _Options) -> None:
         JobParts(factory=stage, robot=robot, results=results),
         tasks=options.task or (),
     )
-    command = _command(options, typed_seeds)
+    command = typed_command("paper", options, {"seeds": typed_seeds})
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, command)
         run_missing(plan, results, options.jobs, bar.update)
         bar.say("figures and report")
         study = read_study(plan, results)
@@ -114,11 +123,3 @@ def _run_study(options: _Options) -> None:
         report = results.folder / "report.html"
         write_report(study, pictures, command, report)
     print_study(all_tables(study), reasons_not_to_judge(plan), report, as_json=options.as_json)
-
-
-def _command(options: _Options, seeds: str) -> str:
-    """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = ["kurt2rt paper", *(["--quick"] if options.quick else []), f"--seeds {seeds}"]
-    words += [f"--task {Path(name).name}" for name in options.task or ()]
-    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher is not None else []
-    return " ".join([*words, *([] if options.plain else ["--no-plain"])])

@@ -21,7 +21,9 @@ from kurt2rt.cli.options import (
     teacher_option,
 )
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.tables import print_study
+from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 
 if TYPE_CHECKING:
@@ -45,6 +47,7 @@ class _Options:
     ] = False
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None
     as_json: AsJson = False
 
@@ -76,9 +79,14 @@ def phases(options: _Options) -> None:
     from kurt2rt.experiments.phases.report import reasons_not_to_judge
     from kurt2rt.experiments.phases.tables import all_tables
     from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+    from kurt2rt.experiments.study.study_record import record_study
 
     plan, results = _plan(options)
+    if options.shard is not None:
+        run_shard(plan, results, _command(options), options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, _command(options))
         run_missing(plan, results, options.jobs, bar.update)
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
@@ -119,8 +127,4 @@ def _seeds(options: _Options) -> str:
 
 
 def _command(options: _Options) -> str:
-    """Return the command as far as it decides the numbers, without paths of this machine."""
-    quick = ["--quick"] if options.quick else []
-    words = ["kurt2rt phases", *quick, f"--task {Path(options.task).name}", f"--seeds {_seeds(options)}"]
-    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != SUPERHUMAN else []
-    return " ".join([*words, *(f"--set {each}" for each in options.changes or [])])
+    return typed_command("phases", options, {"seeds": _seeds(options)})

@@ -22,13 +22,16 @@ from kurt2rt.cli.options import (
     teacher_option,
 )
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
 from kurt2rt.experiments.transfer.tables import all_tables
@@ -91,6 +94,7 @@ class _Options:
     ] = False
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -129,8 +133,12 @@ def transfer(options: _Options) -> None:
         (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
         JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
     )
-    figure = options.out / "transfer.png"
+    figure, command = options.out / "transfer.png", typed_command("transfer", options)
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        return
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        record_study(results.folder, plan, command)
         run_missing(plan, results, options.jobs, bar.update)
         bar.say("figure")
         study = read_study(plan, results)

@@ -48,6 +48,7 @@ def test_errors_of_several_tasks_are_printed_once_each(
 def test_a_lesson_of_many_says_whose_file_is_of_no_use(kurt2rt: CommandLine) -> None:
     made = Path("made")
     made.mkdir()
+    (made / "wall_following-7.knowledge").touch()
     (made / "wall_following-7.knowledge.lock").mkdir()
     said = kurt2rt("lesson", "--seeds", "7", "--jobs", "1", "--out", "made")
     assert said.exit_code == 2

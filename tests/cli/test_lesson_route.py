@@ -40,7 +40,8 @@ def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLin
     assert said.exit_code == 0, said.err
     assert " 2 robots " in said.out
     report = Path("made/report.html").read_text(encoding="utf-8")
-    assert "kurt2rt lesson --task route --seeds 1,2" in report
+    assert "kurt2rt lesson --task route --set " in report
+    assert " --seeds 1,2 --basic streets" in report
     assert str(streets) not in report
     kept = Path("made/results/taught/route-8-1.json")
     before = kept.stat().st_mtime_ns

@@ -33,7 +33,7 @@ from tests.experiments.navigation.test_tables import GOOD
 from tests.experiments.navigation.test_tables import robot as errands_robot
 from tests.experiments.paper import outcomes as paper
 from tests.experiments.phases.outcomes import study as phases_study
-from tests.experiments.results import curriculum_result, exam_result
+from tests.experiments.results import curriculum_result, exam_result, robot_of_seed
 from tests.experiments.route.outcomes import drive as route_drive
 from tests.experiments.route.outcomes import outcome as route_outcome
 from tests.experiments.route.test_tables import study as route_study
@@ -65,7 +65,7 @@ REPORTS: dict[str, Print] = {
     "status": printing(health_as_rich(ILL)),
     "exam": printing(render_curriculum(curriculum_result(7, 88, exam_result("rooms-9007", stuck=True)), short_task())),
     "lesson --seeds": printing(
-        render_seeds([curriculum_result(100, 80, exam_result("a"), exam_result("manhattan"))], short_task())
+        render_seeds([robot_of_seed(100, 80, exam_result("a"), exam_result("manhattan"))], short_task())
     ),
     "lesson errands": printing(*map(as_rich, navigation_tables([errands_robot(100, GOOD)], settings()))),
     "lesson route": printing(

@@ -7,7 +7,10 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
+from kurt2rt.experiments.study.provenance import settings_hash
 from tests.cli.helpers import CommandLine, unknown_name
+
+COMMAND = "kurt2rt paper --seeds 100 --task short.yaml --no-plain"
 
 
 def short_task(folder: Path, **teaching: Any) -> Path:
@@ -37,9 +40,10 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
         "knowledge/shipped/short_circle-100.knowledge",
         "report.html",
         "results/shipped/short_circle-100.json",
+        f"studies/{settings_hash(COMMAND)}.json",
     ]
     report = Path("made/report.html").read_text()
-    assert "kurt2rt paper --seeds 100 --task short.yaml --no-plain" in report
+    assert COMMAND in report
     assert str(tmp_path) not in report
 
     short_task(tmp_path, supervised_s=3.0)

@@ -8,6 +8,7 @@ from kurt2rt.core.task_settings import SuccessSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.platform.ledger import TickTimer
 
 TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
@@ -54,3 +55,7 @@ def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumRes
         ledger=TickTimer(),
     )
     return CurriculumResult(lesson, tuple(world_result(each) for each in exams))
+
+
+def robot_of_seed(seed: int, rlas: int, *exams: ExamResult) -> SeedResult:
+    return seed_result(curriculum_result(seed, rlas, *exams))

@@ -27,6 +27,7 @@ class _Job(ABC):
     """Drives of one taught robot, with a stored result."""
 
     outcome: ClassVar[type[Settings]]
+    replaces_others: ClassVar[bool] = False
     factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
@@ -42,6 +43,11 @@ class _Job(ABC):
     @abstractmethod
     def name(self) -> str:
         """Name in progress displays."""
+
+    @property
+    def knowledge_name(self) -> str | None:
+        """None: the job stores no knowledge."""
+        return None
 
     @property
     @abstractmethod

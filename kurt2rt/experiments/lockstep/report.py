@@ -14,6 +14,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, NOT_JUDGED_BECAUSE, ExamVerdict
+from kurt2rt.experiments.lockstep.seed_result import TRAILS, SeedResult
 from kurt2rt.platform.text_table import TextTable
 
 _COLOURS = {ExamVerdict.PASSED: "green", ExamVerdict.FAILED: "red", ExamVerdict.NOT_JUDGED: "yellow"}
@@ -45,18 +46,13 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     return Group(taught, render_exams(result.exams, task)) if result.exams else taught
 
 
-_TRAILS = ("trail", "unknown_positions", "collision_positions")
-"""Fields of an exam that are for pictures."""
 _JSON_NAMES = {"distance_travelled_m": "way_m"}
 """Keys that differ from the names of the fields."""
 
 
-def curriculum_as_data(result: CurriculumResult, task: TaskSettings) -> dict[str, Any]:
+def curriculum_as_data(result: SeedResult, task: TaskSettings) -> dict[str, Any]:
     """Return the numbers of one lesson and its exams, for JSON. Keys tell units, as in teaching_s."""
-    lesson = result.lesson
-    numbers = ("seed", "world", "teacher", "teaching_s", "asks", "corrections", "presses", "rescues", "alarms")
-    taught = {name: getattr(lesson, name) for name in (*numbers, "repositions", "deletions")}
-    taught["rlas"] = len(lesson.rlas)
+    taught = result.lesson.model_dump(exclude={"knowledge_hash", "collisions"})
     return {"lesson": taught, **exams_as_data(result.exams, task)}
 
 
@@ -78,7 +74,7 @@ def exams_as_data(exams: Sequence[WorldResult], task: TaskSettings) -> dict[str,
 
 
 def _exam_as_data(exam: ExamResult) -> dict[str, Any]:
-    names = {field.name: _JSON_NAMES.get(field.name, field.name) for field in fields(exam) if field.name not in _TRAILS}
+    names = {field.name: _JSON_NAMES.get(field.name, field.name) for field in fields(exam) if field.name not in TRAILS}
     return {key: getattr(exam, name) for name, key in names.items()}
 
 
@@ -192,7 +188,7 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
     return at(0.25), at(0.5), at(0.75)
 
 
-def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> RenderableType:
+def render_seeds(results: Sequence[SeedResult], task: TaskSettings) -> RenderableType:
     """Return the tables of many seeds: a row for each, then medians, quartiles and intervals."""
     worlds = [each.learned.world for each in results[0].exams]
     unit = results[0].exams[0].learned.unit
@@ -212,7 +208,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             of_teacher = f"{each.teacher.progress:.1f}{_not_well(each.teacher)}"
             unjudged = f", {EXAM_VERDICT_TEXTS[each.verdict]}" if not_judged(each) else ""
             cells.append(Text(f"{exam.progress:.1f} of {of_teacher}, {exam.collisions}{end}{unjudged}", colour))
-        numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
+        numbers = (lesson.seed, lesson.rlas, lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 
     by_world = [[result.exams[place].learned for result in results] for place in range(len(worlds))]
@@ -220,12 +216,12 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     return Group(seeds, _render_medians(results, task), _render_success(results), *measures)
 
 
-def _render_medians(results: Sequence[CurriculumResult], task: TaskSettings) -> TextTable:
+def _render_medians(results: Sequence[SeedResult], task: TaskSettings) -> TextTable:
     summary = TextTable(title=f"{len(results)} seeds")
     for heading in ("", "median", "quartiles", "paper"):
         summary.add_column(heading, number=bool(heading))
     counted = (
-        ("RLAs", [len(result.lesson.rlas) for result in results], str(task.paper.rlas)),
+        ("RLAs", [result.lesson.rlas for result in results], str(task.paper.rlas)),
         ("asks", [result.lesson.asks for result in results], ""),
         ("corrections", [result.lesson.corrections for result in results], ""),
         ("presses", [result.lesson.presses for result in results], ""),
@@ -237,7 +233,7 @@ def _render_medians(results: Sequence[CurriculumResult], task: TaskSettings) -> 
     return summary
 
 
-def _render_success(results: Sequence[CurriculumResult]) -> TextTable:
+def _render_success(results: Sequence[SeedResult]) -> TextTable:
     worlds = [each.learned.world for each in results[0].exams]
     unit = results[0].exams[0].learned.unit
     success = TextTable(title="Exams without teacher")

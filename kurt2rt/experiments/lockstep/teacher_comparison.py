@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import QUICK_TEACHER, ShowSettings, TeacherProfile, load_teacher
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult
 from kurt2rt.experiments.lockstep.report import label_of, not_judged, quartiles
+from kurt2rt.experiments.lockstep.seed_result import SeedResult
 from kurt2rt.platform.text_table import TextTable
 
 _MINUTE_S = 60.0
@@ -40,7 +40,7 @@ def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
     return {label: taught_by(task, each) for label, each in profiles.items()}
 
 
-def render_teachers(results: Mapping[str, Sequence[CurriculumResult]]) -> TextTable:
+def render_teachers(results: Mapping[str, Sequence[SeedResult]]) -> TextTable:
     """Return the table of teachers: medians of their lessons, and successes in each world."""
     worlds = [each.learned.world for each in next(iter(results.values()))[0].exams]
     table = TextTable(title="Teachers, medians of all seeds")
@@ -56,14 +56,14 @@ def render_teachers(results: Mapping[str, Sequence[CurriculumResult]]) -> TextTa
             f"{presses:.0f}",
             f"{low:.0f} to {high:.0f}",
             f"{presses / minutes:.1f}",
-            f"{quartiles([len(each.lesson.rlas) for each in robots])[1]:.0f}",
+            f"{quartiles([each.lesson.rlas for each in robots])[1]:.0f}",
             f"{quartiles([each.lesson.collisions for each in robots])[1]:.0f}",
             *(_successes(robots, place) for place in range(len(worlds))),
         )
     return table
 
 
-def _successes(robots: Sequence[CurriculumResult], place: int) -> str:
+def _successes(robots: Sequence[SeedResult], place: int) -> str:
     exams = [each.exams[place] for each in robots]
     judged = [each for each in exams if not not_judged(each)]
     return f"{sum(each.succeeded for each in judged)} of {len(judged)}"

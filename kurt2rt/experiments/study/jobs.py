@@ -33,6 +33,7 @@ class StudyJob(ABC):
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
     keeps_knowledge: ClassVar[bool] = True
+    replaces_others: ClassVar[bool] = False
     factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
@@ -68,9 +69,15 @@ class StudyJob(ABC):
         return f"results/{self.stem}.json"
 
     @property
+    def knowledge_name(self) -> str | None:
+        """Path of the stored knowledge within the folder of results; None: the job stores none."""
+        return f"knowledge/{self.stem}.knowledge" if self.keeps_knowledge else None
+
+    @property
     def knowledge(self) -> Path:
         """Path of the stored knowledge file in the folder of results; it exists after the job."""
-        return self.results.folder / f"knowledge/{self.stem}.knowledge"
+        assert self.knowledge_name is not None
+        return self.results.folder / self.knowledge_name
 
     def run(self, on_progress: Progress) -> None:
         """Run the job in an event loop of its own, and store result and knowledge; `on_progress` gets robot time in s.
@@ -82,6 +89,6 @@ class StudyJob(ABC):
     async def _run(self, report: Report) -> None:
         with self.results.scratch() as folder:
             outcome = await self.measure(folder / "knowledge", report)
-            if self.keeps_knowledge:
-                self.results.keep(folder / "knowledge", f"knowledge/{self.stem}.knowledge")
+            if self.knowledge_name is not None:
+                self.results.keep(folder / "knowledge", self.knowledge_name)
         self.results.write(self, outcome)

@@ -10,6 +10,16 @@ from kurt2rt.experiments.study.results import Results, StoredResult, StudyError
 class StoredJob(StoredResult, Job[None], Protocol):
     """Job that leaves its result in a file."""
 
+    @property
+    def seed(self) -> int:
+        """Seed of the robot; jobs of other robots need none of its files."""
+        ...
+
+    @property
+    def knowledge_name(self) -> str | None:
+        """Path of the stored knowledge within the folder of results; None: the job stores none."""
+        ...
+
 
 class StudyPlan(Protocol):
     """Jobs of a study in waves, each of which needs only the waves before."""

@@ -6,7 +6,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import BinaryIO, Protocol, TypeVar
 
 from pydantic import ValidationError
 
@@ -43,6 +43,11 @@ class StoredResult(Protocol):
         """Class of its outcome, which is the schema of the file."""
         ...
 
+    @property
+    def replaces_others(self) -> bool:
+        """True if the job runs again, and replaces its result, if that is of other settings; False: it is refused."""
+        ...
+
 
 class _AnyOutcome(Settings, extra="ignore"):
     made_of: Provenance
@@ -62,17 +67,31 @@ class Results:
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / ".lock").open("ab") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError as error:
-                raise StudyError(
-                    "another run writes here",
-                    where=self.folder,
-                    do="wait for its end, or give another folder with --out",
-                ) from error
+            self._lock(lock, fcntl.LOCK_EX)
             for left_over in self.folder.glob(f"{_UNFINISHED}*"):
                 shutil.rmtree(left_over)
             yield
+
+    @contextmanager
+    def unchanged(self) -> Iterator[None]:
+        """Keep other runs from writing to the folder. Raises StudyError while one writes there."""
+        path = self.folder / ".lock"
+        if not path.exists():
+            yield
+            return
+        with path.open("rb") as lock:
+            self._lock(lock, fcntl.LOCK_SH)
+            yield
+
+    def _lock(self, lock: BinaryIO, kind: int) -> None:
+        try:
+            fcntl.flock(lock, kind | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise StudyError(
+                "another run writes here",
+                where=self.folder,
+                do="wait for its end, or give another folder with --out",
+            ) from error
 
     @contextmanager
     def scratch(self) -> Iterator[Path]:
@@ -95,7 +114,9 @@ class Results:
                 missing.append(place)
                 continue
             other = self._read(path, _AnyOutcome).made_of.differences(job.made_of)
-            if other:
+            if other and job.replaces_others:
+                missing.append(place)
+            elif other:
                 foreign.append(job.file)
                 differences.update(other)
             else:

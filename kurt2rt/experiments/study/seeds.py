@@ -1,30 +1,36 @@
-"""The same curriculum for many seeds, in parallel processes."""
+"""Study of one task: the same curriculum for many seeds."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
-import anyio
-
-from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver
-from kurt2rt.experiments.study.pool import JobKilledError, Progress, run_jobs
-from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver, ExamLoop, choose_drivers
+from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.pool import Progress
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 
-@dataclass(frozen=True, slots=True)
-class SeedJob:
-    """Job of one seed: training run into a knowledge file, then exams."""
+class SeedOutcome(SeedResult):
+    """Numbers of one robot, with their provenance."""
 
-    factory: SimulationFactory
-    settings: RobotSettings
-    task: TaskSettings
-    worlds: tuple[str, ...]
-    seed: int
-    knowledge: Path
+    made_of: Provenance
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeedJob(StudyJob):
+    """Training run and exams of one seed."""
+
+    outcome = SeedOutcome
+    replaces_others: ClassVar[bool] = True
+    label: str = ""
+    """End of the names of result and knowledge, for a robot of a control; empty otherwise."""
     driver: ExamDriver = ON_BUS
     """Loop of the exams."""
 
@@ -34,42 +40,108 @@ class SeedJob:
         return f"{self.task.name}, seed {self.seed}"
 
     @property
+    def stem(self) -> str:
+        """Path of the result, without the top folder and the ending."""
+        return f"{self.task.name}-{self.seed}{self.label}"
+
+    @property
+    def knowledge_name(self) -> str:
+        """Path of the stored knowledge within the folder of results."""
+        return f"{self.stem}.knowledge"
+
+    @property
     def robot_time_s(self) -> float:
         """Time of the lesson, and in each world of the exam and of the teacher's own drive, in s."""
-        return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s
+        return self.task.teaching.duration_s + 2 * len(self.task.exam.worlds) * self.task.exam.duration_s
 
-    def run(self, tell: Progress) -> CurriculumResult:
-        """Teach and examine the robot of one seed and return the result; `tell` gets the simulated seconds.
+    def run(self, on_progress: Progress) -> None:
+        """Run the job, and store result and knowledge; an earlier knowledge file of the robot gets a new name.
+
+        `on_progress` gets robot time in s. Raises the errors of `measure`, and OSError if results cannot be stored.
+        """
+        archive_existing(self.knowledge)
+        super(SeedJob, self).run(on_progress)
+
+    async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
+        """Teach the robot into the file `knowledge`, examine it and return the outcome.
 
         Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
         """
-        report = ProgressSum(tell).report
-
-        async def run() -> CurriculumResult:
-            lesson, events = await run_lesson(
-                self.factory, self.settings, self.task, self.knowledge, seed=self.seed, report=report
-            )
-            exams = await run_exams(
-                self.factory,
-                self.settings,
-                self.task,
-                events,
-                self.worlds,
-                seed=self.seed,
-                report=report,
-                driver=self.driver,
-            )
-            return CurriculumResult(lesson, exams)
-
-        return anyio.run(run)
+        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
+        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
+        exams = await run_exams(
+            factory, robot, task, events, task.exam.worlds, seed=seed, report=report, driver=self.driver
+        )
+        result = seed_result(CurriculumResult(lesson, exams))
+        return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
 
 
-def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:
-    """Run all jobs; return their results in the order of the jobs.
+DECIDING = (SeedJob,)
+"""Classes whose code, and all that it imports, decides the results."""
 
-    `on_done` gets the index of each job that is through. Raises JobKilledError and the errors of a job.
+
+@dataclass(frozen=True, slots=True)
+class SeedPlan:
+    """Jobs of the study."""
+
+    jobs: Mapping[str, tuple[SeedJob, ...]]
+    """Jobs of each way of teaching, by its label, in the order of the seeds."""
+
+    @property
+    def waves(self) -> tuple[tuple[SeedJob, ...], ...]:
+        """All jobs in one wave: no job needs another."""
+        return (tuple(job for jobs in self.jobs.values() for job in jobs),)
+
+
+def make_plan(
+    tasks: Mapping[str, TaskSettings],
+    seeds: Sequence[int],
+    parts: JobParts,
+    *,
+    wire: str,
+    exams: ExamLoop = ExamLoop.BUS,
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
+) -> SeedPlan:
+    """Return the jobs.
+
+    Args:
+        tasks: the task by the label of each way of teaching, its own first.
+        seeds: one robot each.
+        parts: factory, robot and results of the jobs.
+        wire: name of the simulated wire.
+        exams: loop that drives the exams.
+        source_of: returns the hash of the program's source.
+
+    Raises:
+        hal.settings.SettingsError: settings of a task or a world cannot be loaded.
     """
-    try:
-        return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))
-    except JobKilledError as error:
-        raise JobKilledError(str(error), do="run again, with fewer --jobs it needs less") from error
+    factory = parts["factory"]
+    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    worlds = next(iter(tasks.values())).exam.worlds
+    drivers = iter(choose_drivers(exams, len(tasks) * len(seeds), worlds))
+    jobs = {}
+    for place, (label, task) in enumerate(tasks.items()):
+        made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds), wire)
+        end = f"-control-{place}" if place else ""
+        jobs[label] = tuple(
+            SeedJob(task=task, seed=seed, label=end, driver=driver, made_of=made, **parts)
+            for seed, driver in zip(seeds, drivers, strict=False)
+        )
+    return SeedPlan(jobs)
+
+
+def forget_lost_robots(plan: SeedPlan, results: Results) -> None:
+    """Delete each result whose robot has no knowledge file, because its robot is taught again. Raises OSError."""
+    for job in plan.waves[0]:
+        if not job.knowledge.exists():
+            (results.folder / job.file).unlink(missing_ok=True)
+
+
+def forget_result(folder: Path, task: str, seed: int) -> None:
+    """Delete the result of the robot whose knowledge file gets another content. Raises OSError."""
+    (folder / f"results/{task}-{seed}.json").unlink(missing_ok=True)
+
+
+def read_results(plan: SeedPlan, results: Results) -> dict[str, list[SeedOutcome]]:
+    """Return the outcomes by the label of the way of teaching. Raises StudyError if one is missing or damaged."""
+    return {label: [results.read(job, SeedOutcome) for job in jobs] for label, jobs in plan.jobs.items()}

@@ -17,8 +17,10 @@ from kurt2rt.experiments.lockstep.exam_driver import (
     ExamLoop,
     choose_drivers,
 )
-from kurt2rt.experiments.study.seeds import SeedJob
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.seeds import SeedJob, SeedOutcome
 from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.paper.outcomes import MADE_OF
 
 BATCH = ExamDriver(ExamLoop.BATCH)
 WATCHED = ExamDriver(ExamLoop.BATCH, frozenset("a"))
@@ -73,7 +75,19 @@ def test_witness_refuses_results_that_differ(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_study_of_a_seed_examines_in_the_batch(tmp_path: Path) -> None:
-    task = short_task(exam_s=1.0)
-    job = SeedJob(STAGE, ROBOT, task, ("a",), 1, tmp_path / "k", WATCHED)
-    exams = job.run(lambda _: None).exams
-    assert exams == replace(job, knowledge=tmp_path / "other", driver=ON_BUS).run(lambda _: None).exams
+    in_batch, on_bus = (
+        SeedJob(
+            factory=STAGE,
+            robot=ROBOT,
+            task=short_task(exam_s=1.0),
+            seed=1,
+            made_of=MADE_OF,
+            results=Results(tmp_path / folder),
+            driver=driver,
+        )
+        for folder, driver in (("batch", WATCHED), ("bus", ON_BUS))
+    )
+    for job in (in_batch, on_bus):
+        job.results.folder.mkdir()
+        job.run(lambda _: None)
+    assert in_batch.results.read(in_batch, SeedOutcome) == on_bus.results.read(on_bus, SeedOutcome)

@@ -18,8 +18,9 @@ from kurt2rt.experiments.lockstep.report import (
     verdict_of,
     wilson_interval,
 )
+from kurt2rt.experiments.lockstep.seed_result import seed_result
 from tests.experiments.helpers import short_task
-from tests.experiments.results import curriculum_result, exam_result, world_result
+from tests.experiments.results import curriculum_result, exam_result, robot_of_seed, world_result
 
 
 def printed(what: RenderableType) -> list[list[str]]:
@@ -144,9 +145,11 @@ def test_render_exams_without_a_measure_is_not_judged() -> None:
 
 def test_render_seeds_leaves_out_exams_not_judged() -> None:
     results = [
-        replace(
-            curriculum_result(seed, 80),
-            exams=(world_result(exam_result("a", seed), laps), world_result(exam_result("b", seed), 0.0)),
+        seed_result(
+            replace(
+                curriculum_result(seed, 80),
+                exams=(world_result(exam_result("a", seed), laps), world_result(exam_result("b", seed), 0.0)),
+            )
         )
         for seed, laps in ((100, 9.0), (101, 0.0), (102, 20.0))
     ]
@@ -162,9 +165,9 @@ def test_render_seeds_leaves_out_exams_not_judged() -> None:
 
 def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
     results = [
-        curriculum_result(100, 80, exam_result("a", 100), exam_result("b", 100, laps=8.5)),
-        curriculum_result(101, 90, exam_result("a", 101), exam_result("b", 101, laps=1.0, stuck=True)),
-        curriculum_result(102, 100, exam_result("a", 102), exam_result("b", 102, laps=7.5, collisions=1)),
+        robot_of_seed(100, 80, exam_result("a", 100), exam_result("b", 100, laps=8.5)),
+        robot_of_seed(101, 90, exam_result("a", 101), exam_result("b", 101, laps=1.0, stuck=True)),
+        robot_of_seed(102, 100, exam_result("a", 102), exam_result("b", 102, laps=7.5, collisions=1)),
     ]
     rows = printed(render_seeds(results, short_task()))
     of_101 = next(row for row in rows if row[0] == "101")
@@ -184,6 +187,6 @@ def test_junctions_of_many_seeds_are_added_up() -> None:
         )
         for seed, right in ((100, 20.0), (101, 17.0), (102, 19.0))
     ]
-    rows = printed(render_seeds([curriculum_result(drive.seed, 90, drive) for drive in drives], short_task()))
+    rows = printed(render_seeds([robot_of_seed(drive.seed, 90, drive) for drive in drives], short_task()))
     assert ["manhattan", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
     assert ["junctions right", "56 of 60"] in rows

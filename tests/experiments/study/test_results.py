@@ -18,6 +18,7 @@ class Job:
     file: str
     made_of: Provenance = MADE_OF
     outcome: type[TaughtOutcome] = TaughtOutcome
+    replaces_others: bool = False
 
 
 JOBS = [Job("results/shipped/one-1.json"), Job("results/shipped/one-2.json"), Job("results/plain/one-1.json")]
@@ -47,6 +48,14 @@ def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_pa
         results.missing(other)
     assert caught.value.where == str(tmp_path)
     assert "--out" in caught.value.do
+
+
+def test_missing_has_a_job_that_replaces_results_of_another_make(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    for job in JOBS[:2]:
+        results.write(job, robot(1, 90))
+    other = MADE_OF.model_copy(update={"task": "changed"})
+    assert results.missing([Job(JOBS[0].file, other, replaces_others=True), JOBS[1]]) == [0]
 
 
 def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:

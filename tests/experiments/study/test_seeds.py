@@ -4,51 +4,73 @@ from pathlib import Path
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult
-from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.study.pool import run_jobs
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.seeds import SeedPlan, forget_lost_robots, make_plan, read_results
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
-COUNTED_APART = StatisticsCounter()
+TASK = short_task(2.5, 1.0, 1.0)
 
 
-def jobs(folder: Path) -> list[SeedJob]:
-    task = short_task(2.5, 1.0, 1.0)
-    return [SeedJob(STAGE, ROBOT, task, ("a",), seed, folder / f"{seed}.knowledge") for seed in (5, 6)]
+def plan_in(folder: Path, *seeds: int, wire: str = "none") -> SeedPlan:
+    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
+    return make_plan({"": TASK}, seeds, parts, wire=wire, source_of=lambda _: "tested")
 
 
-def without_counts(result: CurriculumResult) -> CurriculumResult:
-    return replace(result, lesson=replace(result.lesson, statistics=COUNTED_APART))
+def taught(folder: Path, *seeds: int, processes: int = 1) -> SeedPlan:
+    plan, results = plan_in(folder, *seeds), Results(folder)
+    with results.held():
+        run_missing(plan, results, processes, lambda _: None)
+    return plan
+
+
+def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
+    plan, results = taught(tmp_path, 5), Results(tmp_path)
+    (outcome,) = read_results(plan, results)[""]
+    assert results.missing(plan.waves[0]) == []
+    with Journal.read_only(tmp_path / "wall_following-5.knowledge") as journal:
+        assert journal.events()
+    assert (outcome.lesson.seed, outcome.lesson.world, outcome.exams[0].learned.trail) == (5, "a", ())
+    assert outcome.lesson.rlas > 0
+
+    forget_lost_robots(plan, results)
+    assert results.missing(plan.waves[0]) == []
+    (tmp_path / "wall_following-5.knowledge").unlink()
+    forget_lost_robots(plan, results)
+    assert results.missing(plan.waves[0]) == [0]
+
+
+def test_robot_of_another_wire_is_taught_again(tmp_path: Path) -> None:
+    taught(tmp_path, 5)
+    (other,) = plan_in(tmp_path, 5, wire="lossy").waves[0]
+    assert Results(tmp_path).missing([other]) == [0]
+    other.run(lambda _done_s: None)
+    assert Results(tmp_path).missing([other]) == []
+    assert (tmp_path / "wall_following-5.knowledge.1").exists()
 
 
 @pytest.mark.deep
 def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> None:
-    (tmp_path / "here").mkdir()
-    (tmp_path / "there").mkdir()
-    done: list[int] = []
-    there = run_seeds(jobs(tmp_path / "there"), 2, done.append)
-    here = [job.run(lambda _done_s: None) for job in jobs(tmp_path / "here")]
-
-    assert sorted(done) == [5, 6]
-    assert list(map(without_counts, there)) == list(map(without_counts, here))
-    assert [each.lesson.statistics.uses for each in there] == [each.lesson.statistics.uses for each in here]
-    assert [each.lesson.seed for each in there] == [5, 6]
-    assert there[0].lesson.knowledge_hash != there[1].lesson.knowledge_hash
+    there = taught(tmp_path / "there", 5, 6, processes=2)
+    here = taught(tmp_path / "here", 5, 6)
+    results = [read_results(each, Results(tmp_path / name)) for each, name in ((there, "there"), (here, "here"))]
+    assert results[0] == results[1]
+    first, second = results[0][""]
+    assert first.lesson.knowledge_hash != second.lesson.knowledge_hash
     for seed in (5, 6):
-        file = f"{seed}.knowledge"
+        file = f"wall_following-{seed}.knowledge"
         with Journal.read_only(tmp_path / "here" / file) as one, Journal.read_only(tmp_path / "there" / file) as other:
             assert one.events() == other.events()
 
 
 @pytest.mark.deep
-def test_run_seeds_reports_an_error_at_once(tmp_path: Path) -> None:
-    first, second = jobs(tmp_path)
-    failing = replace(first, worlds=("nowhere",))
-    others = [replace(second, seed=seed, knowledge=tmp_path / f"{seed}.knowledge") for seed in range(10, 30)]
-    done: list[int] = []
-    with pytest.raises(SettingsError, match=r"nowhere: .*worlds") as caught:
-        run_seeds([failing, *others], 1, done.append)
+def test_seed_job_with_an_error_ends_all_others(tmp_path: Path) -> None:
+    failing, *others = plan_in(tmp_path, 5, *range(10, 30)).waves[0]
+    task = TASK.model_copy(update={"exam": TASK.exam.model_copy(update={"worlds": ("nowhere",)})})
+    with Results(tmp_path).held(), pytest.raises(SettingsError, match=r"nowhere: .*worlds") as caught:
+        run_jobs([replace(failing, task=task), *others], 1)
     assert caught.value.__notes__ == ["wall_following, seed 5"]
-    assert done == []
-    assert len(list(tmp_path.glob("*.knowledge"))) < 10
+    assert not list(tmp_path.glob("*.knowledge"))

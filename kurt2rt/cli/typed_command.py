@@ -1,0 +1,65 @@
+"""Typed words of a command, for reports and records."""
+
+import shlex
+from collections.abc import Iterator, Mapping
+from dataclasses import MISSING, Field, fields
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+from typer.models import ArgumentInfo, OptionInfo
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_LEFT_OUT = {"jobs", "shard", "out", "exams", "as_json"}
+"""Options that decide no number."""
+
+
+def typed_command(command: str, options: "DataclassInstance", instead: Mapping[str, object] | None = None) -> str:
+    """Return a command as far as it decides the numbers, without paths of this machine.
+
+    Args:
+        command: its name.
+        options: its options, as `takes_options` makes them; those with their default are left out.
+        instead: values of fields that stand in place of the typed ones.
+    """
+    words = [f"kurt2rt {command}"]
+    for each in fields(options):
+        value = (instead or {}).get(each.name, getattr(options, each.name))
+        if each.name not in _LEFT_OUT and value != (None if each.default is MISSING else each.default):
+            words += _words(each, value)
+    return " ".join(words)
+
+
+def _words(field: "Field[Any]", value: object) -> Iterator[str]:
+    (info,) = get_args(field.type)[1:]
+    if isinstance(info, ArgumentInfo):
+        yield _text(value)
+        return
+    name = _name_of(info) or f"--{field.name.replace('_', '-')}"
+    if isinstance(value, bool):
+        yield name.split("/")[0 if value else 1]
+        return
+    values: list[object] = value if isinstance(value, list) else [value]
+    for each in values:
+        yield f"{name} {_text(each)}"
+
+
+def _name_of(info: OptionInfo) -> str:
+    """Return the name that an option was given; empty if it has that of its field.
+
+    Within Annotated the first name is where typer has the default of an option outside of it.
+    """
+    names = [each for each in (info.default, *(info.param_decls or ())) if isinstance(each, str)]
+    return names[0] if names else ""
+
+
+def _text(value: object) -> str:
+    """Return a value as it is typed; of a path only its last part, which is the same on all machines."""
+    if isinstance(value, Enum):
+        return str(value.value)
+    if isinstance(value, float):
+        return f"{value:g}"
+    text = str(value)
+    return shlex.quote(text if "=" in text else Path(text).name)

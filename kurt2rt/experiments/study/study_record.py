@@ -1,0 +1,100 @@
+"""Record of a study in its folder: the command, and all jobs with their provenance, done or not."""
+
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
+from typing import Annotated
+
+from pydantic import AfterValidator, ValidationError
+
+from hal.settings import Settings
+from kurt2rt.experiments.study.plan import StudyPlan
+from kurt2rt.experiments.study.provenance import Provenance, settings_hash
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.platform.durable_files import write_durably
+
+_FOLDER = "studies"
+
+
+def _stay_within(path: str) -> str:
+    """Refuse a path that leads out of the folder, because records come from other machines."""
+    if PurePosixPath(path).is_absolute() or ".." in PurePosixPath(path).parts:
+        raise ValueError("it leads out of the folder")
+    return path
+
+
+_Path = Annotated[str, AfterValidator(_stay_within)]
+
+
+class JobRecord(Settings):
+    """Job of a study, done or not."""
+
+    file: _Path
+    """Path of the result within the folder of results."""
+    knowledge: _Path | None
+    """Path of the knowledge within the folder of results; None: the job stores none."""
+    name: str
+    seed: int
+    made_of: Provenance
+
+
+class StudyRecord(Settings):
+    """Command and jobs of a study, of all its shards."""
+
+    command: str
+    """Typed words that decide the numbers, without paths of a machine."""
+    jobs: tuple[JobRecord, ...]
+
+    @property
+    def file(self) -> str:
+        """Path of the record within the folder of results."""
+        return f"{_FOLDER}/{settings_hash(self.command)}.json"
+
+    @property
+    def sources(self) -> list[str]:
+        """Hashes of the program's source, each once."""
+        return list(dict.fromkeys(job.made_of.source for job in self.jobs))
+
+    @property
+    def versions(self) -> list[str]:
+        """Versions of Python and of the computing packages, each set once."""
+        return list(dict.fromkeys(job.made_of.versions for job in self.jobs))
+
+    def missing(self, folder: Path) -> list[JobRecord]:
+        """Return the jobs that have no result in a folder."""
+        return [job for job in self.jobs if not (folder / job.file).exists()]
+
+
+def record_study(folder: Path, plan: StudyPlan, command: str) -> None:
+    """Store the record of the whole plan in a folder of results, in place of an earlier one of its command.
+
+    `command`: typed words that decide the numbers. Raises OSError.
+    """
+    jobs = (
+        JobRecord(file=job.file, knowledge=job.knowledge_name, name=job.name, seed=job.seed, made_of=job.made_of)
+        for wave in plan.waves
+        for job in wave
+    )
+    write_record(folder, StudyRecord(command=command, jobs=tuple(jobs)))
+
+
+def write_record(folder: Path, record: StudyRecord) -> None:
+    """Store a record in a folder of results, in place of an earlier one of its command. Raises OSError."""
+    write_durably(folder / record.file, record.model_dump_json(indent=1) + "\n")
+
+
+def read_records(folder: Path) -> list[StudyRecord]:
+    """Return the records in a folder of results. Raises StudyError for a damaged record, or a folder without any."""
+    records = list(_each_record(sorted((folder / _FOLDER).glob("*.json"))))
+    if not records:
+        raise StudyError("holds no study", where=folder, do="give the folder that a study was given with --out")
+    return records
+
+
+def _each_record(paths: Iterable[Path]) -> Iterable[StudyRecord]:
+    for path in paths:
+        try:
+            yield StudyRecord.model_validate_json(path.read_bytes())
+        except (ValidationError, OSError) as error:
+            raise StudyError(
+                "is no record of a study", where=path, do="run the study's command again, which writes it"
+            ) from error
