@@ -34,6 +34,8 @@ ROOMS: dict[str, frozenset[str]] = {
         "kurt2rt.service.open_robot": "* kurt2rt.service simbridge",
         "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.teacher.scripted",
+        "kurt2rt.gym": "hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.experiments.lockstep",
         "kurt2rt.checks": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
         " kurt2rt.channel kurt2rt.teacher kurt2rt.service kurt2rt.experiments",
         "kurt2rt.checks.doctor": "hal kurt2rt.platform",

@@ -35,10 +35,14 @@ class LockstepClock:
         """Return simulated time in s."""
         return self._now_s
 
-    async def wait_until(self, deadline_s: float) -> None:
-        """Let the world take one step and jump to the deadline."""
+    def step_until(self, deadline_s: float) -> None:
+        """Let the world take one step and jump to the deadline, in s, without an event loop."""
         self._step_world()
         self._now_s = max(self._now_s, deadline_s)
+
+    async def wait_until(self, deadline_s: float) -> None:
+        """Let the world take one step and jump to the deadline."""
+        self.step_until(deadline_s)
         self._steps += 1
         if self._steps % self._steps_per_checkpoint == 0:
             await checkpoint()

@@ -1,0 +1,96 @@
+"""Episodes end at a collision, stuck, stopped, off course or at the end of their time."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import gymnasium
+import pytest
+
+from hal.guard_reason import GuardReason
+from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.gym.agent_task import load_agent_task
+from kurt2rt.gym.endings import Ending
+from kurt2rt.gym.episode import AgentEpisode
+from tests.experiments.helpers import ROBOT, STAGE
+from tests.gym.helpers import environment, follow_teacher, press_on
+
+
+@contextmanager
+def episode(*ends_at: Ending, ticks: int = 30_000) -> Iterator[AgentEpisode]:
+    simulation = STAGE.open("a", 1, "exam")
+    try:
+        task = load_agent_task("wall_following")
+        yield AgentEpisode(simulation, ROBOT, task, ExamSetup("a", 1), ends_at=ends_at, ticks=ticks)
+    finally:
+        simulation.close()
+
+
+def test_episode_that_collides_is_terminated() -> None:
+    with environment() as env:
+        env.reset(seed=1)
+        last = press_on(env, "flee", 200)
+        assert (last.terminated, last.truncated, last.info["ending"]) == (True, False, "collision")
+        assert last.info["collisions"] == 1
+        assert last.reward == -1.0
+        with pytest.raises(gymnasium.error.ResetNeeded):
+            env.step(0)
+
+
+def test_episode_may_go_on_after_a_collision() -> None:
+    with environment(ends_at=("stuck",)) as env:
+        env.reset(seed=1)
+        last = press_on(env, "flee", 100)
+        assert not last.terminated
+        assert last.info["collisions"] >= 1
+        assert last.info["guard"] == (GuardReason.FRONT_BUMPER.value,)
+
+
+def test_episode_of_a_standing_robot_ends_stuck() -> None:
+    with environment() as env:
+        env.reset(seed=1)
+        last = press_on(env, "stand", 400)
+        assert (last.terminated, last.info["ending"]) == (True, "stuck")
+        assert last.info["time_s"] == pytest.approx(30.0, abs=0.1)
+
+
+def test_episode_at_the_end_of_its_time_is_truncated() -> None:
+    with environment(duration_s=1.0) as env:
+        drive = follow_teacher(env, 100, seed=1)
+        assert len(drive) == 10
+        assert (drive[-1].terminated, drive[-1].truncated, drive[-1].info["ending"]) == (False, True, "time")
+
+
+def test_episode_without_a_street_ahead_is_truncated() -> None:
+    with environment("straight_on") as env:
+        last = follow_teacher(env, 200, seed=1)[-1]
+        assert (last.terminated, last.truncated, last.info["ending"]) == (False, True, "off course")
+        assert last.info["progress"] == 1.0
+
+
+def test_episode_ends_at_an_emergency_stop() -> None:
+    with episode() as drive:
+        drive.drive("forward", 10)
+        drive.simulation.robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
+        record, ending = drive.drive("forward", 10)
+        assert ending is Ending.STOPPED
+        assert record.guard_result.latched
+
+
+def test_episode_time_ends_it_in_the_tick_of_a_collision() -> None:
+    with episode(Ending.COLLISION) as drive:
+        while drive.drive("flee", 1)[1] is None:
+            pass
+        collided_after = drive.driven_ticks
+    with episode(ticks=collided_after) as drive:
+        assert drive.drive("flee", collided_after)[1] is Ending.TIME
+
+
+def test_guard_stops_an_agent_that_pushes_on() -> None:
+    with episode() as drive:
+        while not drive.simulation.touching:
+            drive.drive("flee", 1)
+        drive.drive("flee", 50)
+        pressed = [drive.drive("flee", 1)[0] for _ in range(20)]
+        held = [record.guard_result for record in pressed if GuardReason.FRONT_BUMPER in record.guard_result.reasons]
+        assert held
+        assert all(max(result.wheel_speeds) <= 0.0 for result in held)
