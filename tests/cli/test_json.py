@@ -41,6 +41,7 @@ REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
     ("broken",),
+    ("certify",),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
 }
 
