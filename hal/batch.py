@@ -101,6 +101,17 @@ class Turn(NamedTuple):
 Action = FixedSpeeds | WallDistance | Turn
 
 
+class StuckRule(NamedTuple):
+    """Rule by which a robot is stuck: all its positions of a window are near the newest one."""
+
+    every_ticks: int
+    """Ticks from one position to the next; the first tick counts."""
+    positions: int
+    """Positions in a window."""
+    least_m: float
+    """Distance that ends being stuck."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveSettings:
     """Settings that all robots of a batch share."""
@@ -109,6 +120,8 @@ class DriveSettings:
     """Actions that the batch knows, by name."""
     minimum_ticks: int
     """Ticks before another action may replace the driving one."""
+    stuck: StuckRule | None = None
+    """Rule that ends the drive of a robot; None: none."""
 
 
 class Stretch(NamedTuple):
@@ -125,6 +138,27 @@ class Stretch(NamedTuple):
     """Collisions so far."""
 
 
+class Tally(NamedTuple):
+    """Counts of one robot's whole drive so far; ticks are counted from 1."""
+
+    ticks: int
+    unknown_ticks: int
+    """Ticks in which it stood and asked."""
+    questions: int
+    """Times that it began to ask."""
+    first_question: int
+    """Tick of the first question; 0: none."""
+    collisions: int
+    first_collision: int
+    """Tick of the first collision; 0: none."""
+    stuck: bool
+    """True if the rule of the settings ended the drive."""
+    travelled_m: float
+    """Distance over the positions of every tenth tick, from the tenth on."""
+    pose: Pose
+    """Pose after the last tick."""
+
+
 class Batch(Protocol):
     """Robots that drive at once, each in a world of its own."""
 
@@ -134,7 +168,7 @@ class Batch(Protocol):
         ...
 
     def drive(self, robots: Sequence[int], ticks: int) -> None:
-        """Let these robots drive so many ticks on; robots that leave the batch stop early."""
+        """Let these robots drive so many ticks on; robots that leave the batch or are stuck stop early."""
         ...
 
     def reason_to_leave(self, robot: int) -> str:
@@ -146,6 +180,10 @@ class Batch(Protocol):
 
     def stretch(self, robot: int) -> Stretch:
         """Return the course of a robot over the newest call of `drive`."""
+        ...
+
+    def tally(self, robot: int) -> Tally:
+        """Return the counts of a robot's drive so far."""
         ...
 
     def state_hash(self, robot: int, laps: float) -> str:

@@ -53,6 +53,7 @@ LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "doubt": lambda words: [*words[:2], "--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
     "broken": lambda _: ["broken", "--help"],  # a short run is tests/experiments/broken
+    "certify": lambda words: ["certify", *words[1:2], "--help"],  # a short run is tests/cli/test_certify.py
     "transfer": lambda _: ["transfer", "--help"],  # a short run is tests/cli/test_transfer.py
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: shortened_lesson(words),

@@ -43,6 +43,7 @@ _PANELS = {
         "surprise": "Measure how surprised taught robots are: on known ground, and after something changed.",
         "transfer": "Measure how many presses a robot that was taught at home needs to be right in a new world.",
         "doubt": "Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.",
+        "certify": "Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.",
         "broken": "Break each infra-red sensor in turn, and measure whether the robot notices and collides.",
         "results": "Look at the results of studies, and put together those of several machines.",
         "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.batch import STANDS, DriveSettings, Mind, Stretch
+from hal.batch import STANDS, DriveSettings, Mind, Stretch, Tally
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.contacts import ContactBody
@@ -73,15 +73,16 @@ class RobotBatch:
         self._driven = 0
 
     def drive(self, robots: Sequence[int], ticks: int) -> None:
-        """Let these robots drive so many ticks on, at most the longest stretch; robots that leave stop early.
+        """Let these robots drive so many ticks on, at most the longest stretch.
 
-        Raises ValueError for a longer stretch, and for a robot that left the batch before.
+        Robots that leave the batch or are stuck stop early. Raises ValueError for a longer stretch, and for a robot
+        that stopped before.
         """
         if not 0 < ticks <= STRETCH:
             raise ValueError(f"a stretch of {ticks} ticks: give 1 to {STRETCH}")
         for r in robots:
-            if self._robots[r]["left"]:
-                raise ValueError(f"robot {r} has left the batch")
+            if self._robots[r]["left"] or self._robots[r]["stuck"]:
+                raise ValueError(f"robot {r} has left the batch, or is stuck")
             self._draw_noise(r, ticks)
             self._robots[r]["at"] = self._caught_up[r] = 0
         self._driven = ticks
@@ -125,6 +126,21 @@ class RobotBatch:
             np.where(rlas == STANDS, STANDS, rlas - self._first_rows[robot]).tolist(),
             record["track_distance"][:end].tolist(),
             record["track_collisions"][:end].tolist(),
+        )
+
+    def tally(self, robot: int) -> Tally:
+        """Return the counts of a robot's drive so far."""
+        record = self._robots[robot]
+        return Tally(
+            ticks=int(record["tick"]),
+            unknown_ticks=int(record["unknown_ticks"]),
+            questions=int(record["questions"]),
+            first_question=int(record["first_question"]),
+            collisions=int(record["collisions"]),
+            first_collision=int(record["first_collision"]),
+            stuck=bool(record["stuck"]),
+            travelled_m=float(record["travelled_m"]),
+            pose=Pose(*(float(record[name]) for name in Pose._fields)),
         )
 
     def state_hash(self, robot: int, laps: float) -> str:

@@ -7,6 +7,7 @@ from simbridge.batch.parts import Integers, Knowledge, Laws, Robot, Robots, Worl
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure
 from simbridge.batch.sight import gather, has_moved, may_touch
+from simbridge.batch.tally import count_tick
 
 STAYS, FROZEN, BROKEN, CROWDED = range(4)
 """Reasons that a robot leaves the batch; 0: it stays."""
@@ -16,11 +17,11 @@ STAYS, FROZEN, BROKEN, CROWDED = range(4)
 def drive(active: Integers, ticks: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
     """Drive the robots of the indexes `active` to the end of a stretch of so many ticks.
 
-    A robot ends sooner that leaves the batch, or that waits for the physics engine.
+    A robot ends sooner that leaves the batch, is stuck, or waits for the physics engine.
     """
     for place in range(active.shape[0]):
         robot = robots[active[place]]
-        while robot.at < ticks and robot.left == STAYS:
+        while robot.at < ticks and robot.left == STAYS and not robot.stuck:
             begin_tick(robot, world, laws)
             if robot.waits:
                 break
@@ -67,8 +68,10 @@ def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) ->
     elif looks_broken(robot, laws.watch):
         robot.left = BROKEN
     else:
+        asked = robot.tick > 1 and robot.action < 0
         wanted = decide(robot, k, laws.mind, knowledge)
         drive_guarded(robot, wanted, now_s, laws.guard)
+        count_tick(robot, asked, laws.stuck)
         robot.at += 1
 
 

@@ -26,6 +26,8 @@ MOST_VALUES = 64
 """Most recent features: numpy adds the squares of more than twice as many in another order."""
 SEEN = 15
 """Sensors that policies look at."""
+MOST_KEPT = 256
+"""Most positions that the rule of being stuck keeps."""
 SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 """Random numbers that lie ahead of a robot at the begin of a stretch: of slip, of its sensors."""
 
@@ -157,6 +159,23 @@ class Robot:
     """Distances in m that a policy looks at."""
     situation: Annotated[Floats, (MOST_VALUES,)]
     """Weighted situation."""
+
+    # Counts of the whole drive (hal.batch.Tally)
+    unknown_ticks: int
+    questions: int
+    first_question: int
+    first_collision: int
+    mark_x_m: float
+    """Position from which the next part of the distance is measured."""
+    mark_y_m: float
+    travelled_m: float
+    stuck: int
+    """1 if the robot is stuck, which ends its drive."""
+    kept: int
+    """Positions that were kept for the rule of being stuck."""
+    kept_x_m: Annotated[Floats, (MOST_KEPT,)]
+    """Ring of the newest ones."""
+    kept_y_m: Annotated[Floats, (MOST_KEPT,)]
 
     # Course of the newest stretch
     track_x_m: Annotated[Floats, (STRETCH,)]
@@ -318,6 +337,15 @@ class Knowledge(NamedTuple):
     features: Features
 
 
+class StuckLaw(NamedTuple):
+    """Rule of being stuck (hal.batch.StuckRule)."""
+
+    every_ticks: int
+    positions: int
+    """Positions in a window; 0: there is no rule."""
+    least_m: float
+
+
 class Laws(NamedTuple):
     """All numbers that the robots share."""
 
@@ -328,3 +356,4 @@ class Laws(NamedTuple):
     watch: WatchLaw
     guard: GuardLaw
     mind: MindLaw
+    stuck: StuckLaw

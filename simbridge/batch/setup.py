@@ -31,6 +31,7 @@ from simbridge.batch.parts import (
     Robots,
     SensorLaw,
     Sizes,
+    StuckLaw,
     WatchLaw,
     World,
     empty_robots,
@@ -83,6 +84,7 @@ def build_laws(robot: RobotSettings, one: SimulatedRobot, minds: Sequence[Mind],
             rear_bits=bumper_bits(robot, BumperEnd.REAR),
         ),
         mind=_mind_law(robot, minds, settings),
+        stuck=StuckLaw(1, 0, 0.0) if settings.stuck is None else StuckLaw(*settings.stuck),
     )
 
 

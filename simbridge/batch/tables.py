@@ -12,7 +12,7 @@ from hal.batch import DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings, SpeedMode
 from simbridge.batch.minds import CIRCLE, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
-from simbridge.batch.parts import MOST_VALUES, Features, Knowledge
+from simbridge.batch.parts import MOST_KEPT, MOST_VALUES, Features, Knowledge
 from simbridge.simulated_robot import SimulatedRobot
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT}
@@ -34,6 +34,11 @@ def require_known(
         raise BatchRefusedError(f"speed mode {robot.can.speed_mode}: the batch knows SPEED_CM", do=_ON_THE_BUS)
     if any(each.time_s for each in simulated):
         raise BatchRefusedError("a robot has driven already", do="open a fresh simulation")
+    if settings.stuck is not None and settings.stuck.positions > MOST_KEPT:
+        raise BatchRefusedError(
+            f"being stuck is judged by {settings.stuck.positions} positions (a batch keeps {MOST_KEPT} at most)",
+            do=_ON_THE_BUS,
+        )
     policies = {mind.policy for mind in minds if isinstance(mind, PolicyMind)}
     for policy in policies:
         if type(policy) not in _POLICIES:

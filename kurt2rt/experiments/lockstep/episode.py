@@ -8,20 +8,33 @@ from collections.abc import Callable, Sequence
 from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
+from hal.batch import StuckRule
 from hal.simulation import Pose, Position, Simulation
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
 
+_LOOK_S = 0.5
+"""Time between two positions of the stuck detector."""
+
+
+def build_stuck_rule(window_s: float, period_s: float, *, least_m: float) -> StuckRule:
+    """Return the rule by which a robot that stays within `least_m`, in m, for `window_s`, in s, is stuck.
+
+    `period_s`: of a tick, in s.
+    """
+    return StuckRule(round(_LOOK_S / period_s), max(2, round(window_s / _LOOK_S) + 1), least_m)
+
 
 class StuckDetector:
     """Detector of a robot that stays about where it is, also if it goes round in circles."""
 
     def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:
-        self._stride = round(0.5 / period_s)
-        self._positions: deque[Position] = deque(maxlen=max(2, round(window_s / 0.5) + 1))
-        self._least_m = least_m
+        rule = build_stuck_rule(window_s, period_s, least_m=least_m)
+        self._stride = rule.every_ticks
+        self._positions: deque[Position] = deque(maxlen=rule.positions)
+        self._least_m2 = rule.least_m * rule.least_m
         self._ticks = 0
 
     def none_since_window(self, position: Position) -> bool:
@@ -43,8 +56,11 @@ class StuckDetector:
         """Enter a position, and return whether the robot stayed near it for a whole window."""
         self._positions.append(position)
         full = len(self._positions) == self._positions.maxlen
+        # Squares are rounded alike in compiled code (simbridge.batch.tally); a hypotenuse is not.
         return full and all(
-            math.hypot(position.x_m - old.x_m, position.y_m - old.y_m) < self._least_m for old in self._positions
+            (position.x_m - old.x_m) * (position.x_m - old.x_m) + (position.y_m - old.y_m) * (position.y_m - old.y_m)
+            < self._least_m2
+            for old in self._positions
         )
 
     def restart(self) -> None:

@@ -9,8 +9,8 @@ from enum import StrEnum
 from hal.errors import UserError
 from kurt2rt.experiments.lockstep.exam import ExamResult
 
-_WITNESS_SHARE = 0.01
-_LEAST_WITNESSES = 3
+WITNESS_SHARE = 0.01
+LEAST_WITNESSES = 3
 
 
 class ExamLoop(StrEnum):
@@ -43,7 +43,7 @@ def choose_drivers(loop: ExamLoop, robots: int, worlds: Sequence[str]) -> list[E
     if loop is ExamLoop.BUS:
         return [ON_BUS] * robots
     exams = [(robot, world) for robot in range(robots) for world in worlds]
-    wanted = min(len(exams), max(_LEAST_WITNESSES, math.ceil(_WITNESS_SHARE * len(exams))))
+    wanted = min(len(exams), max(LEAST_WITNESSES, math.ceil(WITNESS_SHARE * len(exams))))
     chosen = random.Random(f"witnesses of {robots} robots").sample(exams, wanted)
     return [ExamDriver(loop, frozenset(world for other, world in chosen if other == robot)) for robot in range(robots)]
 

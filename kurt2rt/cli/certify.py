@@ -1,0 +1,214 @@
+"""`kurt2rt certify`."""
+
+import shlex
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Changes,
+    Jobs,
+    RobotName,
+    TaskOfTheFile,
+    changes_of,
+    results_option,
+)
+from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.platform.text_table import print_whole
+
+if TYPE_CHECKING:
+    from kurt2rt.experiments.certify.outcome import RunOutcome
+
+_FOLDER = Path("results/certify")
+_SECONDS = "exam.duration_s"
+_GENERATED = {"wall_following": ("rooms-SEED",)}
+"""Generated worlds of a task without --world, besides those of its exam."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt certify`."""
+
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+    runs: Annotated[
+        int, typer.Option(min=1, max=1_000_000, metavar="N", help="Number of runs; each is another robot.")
+    ] = 1000
+    seconds: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS", min=1.0, max=100_000.0, help="Length of a run. Default: that of the task's exam."
+        ),
+    ] = None
+    world: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME|PATH",
+            help="World to drive in; may be given again: each run draws one of them. SEED in the name stands for the "
+            "run's number: rooms-SEED is another room for each run. Default: those of the task's exam, of "
+            "wall_following rooms-SEED as well.",
+            show_default=False,
+        ),
+    ] = None
+    first: Annotated[
+        int,
+        typer.Option(
+            "--first-seed", min=0, metavar="N", help="Seed of the first run; each further run has the next one."
+        ),
+    ] = 20_000
+    pictures: Annotated[
+        int, typer.Option(min=0, max=100, metavar="N", help="Number of worst runs to draw, at most.")
+    ] = 6
+    exams: Annotated[
+        ExamLoop,
+        typer.Option(
+            help="Loop that drives the runs. batch: compiled, with equal results; 1 % of the runs, at least three, "
+            "are driven on the CAN loop too and must agree. bus: the CAN loop alone, some 100 times slower."
+        ),
+    ] = ExamLoop.BATCH
+    task: TaskOfTheFile = None
+    changes: Changes = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
+    robot_settings: RobotName = "kurt2"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def certify(options: _Options) -> None:
+    """Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.
+
+    Each run is a drive of another simulated robot without a teacher: gains and
+    turns of its sensors, their noise, the slip of its wheels, its start and its
+    world follow from the run's number. Prints probabilities and rates with
+    their 95 % intervals and leaves report.html with pictures of the worst runs.
+
+    Any run can be seen again on the simulated CAN bus: its number is its seed.
+
+    For example:
+
+        kurt2rt certify results/demo/wall_following-0.knowledge
+        kurt2rt certify mine.knowledge --runs 10000 --world rooms-SEED
+        kurt2rt exam mine.knowledge --seed 20017 --world rooms-20017
+
+    Results are kept in --out with hashes of what made them; a run that was
+    interrupted goes on where it was. Tasks that the batch does not know, such
+    as streets, are driven on the CAN loop.
+    """
+    _certify(options)
+
+
+def _certify(options: _Options) -> None:
+    # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.certify.again import drive_again
+    from kurt2rt.experiments.certify.figures import draw_worst
+    from kurt2rt.experiments.certify.plan import Extent, find_refusal, make_plan, read_certificate
+    from kurt2rt.experiments.certify.report import write_report
+    from kurt2rt.experiments.certify.run import SEED
+    from kurt2rt.experiments.certify.summary import summarise, worst_runs
+    from kurt2rt.experiments.certify.tables import all_tables
+    from kurt2rt.experiments.study.jobs import JobParts
+    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.study.table import as_rich
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    robot, task, results = load_robot(options.robot_settings), _task(options), Results(options.out)
+    factory = Kurt2SimulationFactory(robot)
+    places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
+    parts = JobParts(factory=factory, robot=robot, results=results)
+    factory.require_worlds(places[0].replace(SEED, "0"))
+    loop = _loop(options, find_refusal(task, options.knowledge, places[0], parts))
+    extent = Extent(options.first, options.runs, places, loop)
+    plan = make_plan(task, options.knowledge, extent, parts)
+    report = options.out / "report.html"
+    missing_s = missing_time_s(plan, results)
+    with results.held(), one_bar(missing_s + options.pictures * task.exam.duration_s) as bar:
+        run_missing(plan, results, options.jobs, bar.update)
+        certificate = read_certificate(plan, results)
+        worst = worst_runs(certificate.outcomes, options.pictures)
+        commands = [_exam_command(options, each) for each in worst]
+        exams = drive_again(
+            plan, worst, options.jobs, lambda each: bar.update(each._replace(done_s=missing_s + each.done_s))
+        )
+        bar.say("figures and report")
+        pictures = list(draw_worst(exams, commands, factory, options.out))
+        tables = list(all_tables(certificate, worst))
+        write_report(certificate, tables, pictures, _command(options), report)
+    if not options.as_json:
+        print_whole(console_of(), *map(as_rich, tables), *commands, f"report  {report}")
+        return
+    print_json(
+        {
+            "knowledge": options.knowledge,
+            "task": task.name,
+            "seconds": task.exam.duration_s,
+            "places": list(summarise(certificate)),
+            "compared": certificate.compared,
+            "on_bus": sorted(certificate.on_bus),
+            "worst": [{**each.model_dump(), "command": word} for each, word in zip(worst, commands, strict=True)],
+            "report": report,
+        }
+    )
+
+
+def _task(options: _Options) -> TaskSettings:
+    """Return the task of the knowledge with the changes of the options.
+
+    Raises KnowledgeError, SettingsError, and typer.BadParameter for a task above the basic level.
+    """
+    changes = changes_of(options.changes)
+    if options.seconds is not None:
+        changes = {**changes, _SECONDS: f"{options.seconds:g}"}
+    task = load_task(task_of_file(options.knowledge, options.task), changes=changes)
+    if task.mid is not None:
+        raise typer.BadParameter(
+            f"task {task.name} has a mid level, whose routes and places are no worlds to draw from; use kurt2rt lesson "
+            "--seeds",
+            param_hint="KNOWLEDGE",
+        )
+    return task
+
+
+def _loop(options: _Options, refusal: str) -> ExamLoop:
+    """Return the loop that drives the runs, and say why if it is slow; `refusal`: of the batch, empty for none."""
+    from simbridge.batch.compiled import IS_COMPILED
+
+    if options.exams is ExamLoop.BATCH and refusal:
+        typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
+        return ExamLoop.BUS
+    if options.exams is ExamLoop.BATCH and not IS_COMPILED:
+        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
+    return options.exams
+
+
+def _exam_command(options: _Options, run: "RunOutcome") -> str:
+    """Return the command that drives a run again."""
+    words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.number), "--world", run.world]
+    return shlex.join([*words, *_changed_words(options)])
+
+
+def _command(options: _Options) -> str:
+    """Return the command as far as it decides the numbers, without paths of this machine."""
+    words = ["kurt2rt", "certify", options.knowledge.name, "--runs", str(options.runs)]
+    words += ["--first-seed", str(options.first)]
+    words += [word for name in options.world or () for word in ("--world", Path(name).name)]
+    words += ["--exams", options.exams.value] if options.exams is not ExamLoop.BATCH else []
+    return shlex.join([*words, *_changed_words(options)])
+
+
+def _changed_words(options: _Options) -> list[str]:
+    """Return the options that change the task or the robot, as `kurt2rt exam` takes them."""
+    changes = [*(options.changes or ()), *([f"{_SECONDS}={options.seconds:g}"] if options.seconds is not None else [])]
+    words = [word for change in changes for word in ("--set", change)]
+    words += ["--task", options.task] if options.task is not None else []
+    return words + (["--robot-settings", options.robot_settings] if options.robot_settings != "kurt2" else [])

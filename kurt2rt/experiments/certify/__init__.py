@@ -1,0 +1,1 @@
+"""Certificate of a taught robot: the probability of collisions, of getting stuck and of questions."""

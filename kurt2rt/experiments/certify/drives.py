@@ -1,0 +1,152 @@
+"""Drives of a certificate: many at once in a batch, or one on the CAN loop, with equal outcomes."""
+
+import math
+import random
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from behaviors.metrics.task_metric import TaskMetric
+from hal.batch import Batch, BatchFactory, FollowedSimulation, Tally
+from hal.robot_settings import RobotSettings
+from hal.simulation import Position, SimulationFactory
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.experiments.certify.outcome import RunOutcome
+from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds, require_known
+from kurt2rt.experiments.lockstep.episode import build_stuck_rule
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.study.pool import Progress
+
+_STRETCH_TICKS = 500
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Taught robot that is certified."""
+
+    robot: RobotSettings
+    task: TaskSettings
+    events: Sequence[TeachingEvent]
+    """Its lessons."""
+
+
+def drive_in_batch(
+    factory: BatchFactory, subject: Subject, runs: Sequence[Run], tell: Progress
+) -> list[RunOutcome | None]:
+    """Drive all runs at once and return their outcomes in order; None for a run that belongs on the CAN loop.
+
+    `tell`: gets the simulated seconds of all runs so far.
+
+    Raises:
+        BatchRefusedError: the batch does not know the task or an action.
+        SettingsError: task and world do not fit.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+    """
+    period_s = subject.robot.can.cycle_s
+    with opened_batch(factory, subject, runs) as batch:
+        ticks, active = round(subject.task.exam.duration_s / period_s), list(range(len(runs)))
+        for begin in range(0, ticks, _STRETCH_TICKS):
+            stretch = min(_STRETCH_TICKS, ticks - begin)
+            if active:
+                batch.drive(active, stretch)
+            active = [r for r in active if not (batch.tally(r).stuck or batch.reason_to_leave(r))]
+            tell((begin + stretch) * period_s * len(runs))
+        outcomes: list[RunOutcome | None] = []
+        for r, run in enumerate(runs):
+            outcomes.append(None if batch.reason_to_leave(r) else _outcome_of(run, batch.tally(r)))
+        return outcomes
+
+
+def _outcome_of(run: Run, tally: Tally) -> RunOutcome:
+    counts = tally._asdict()
+    counts["end"] = tuple(counts.pop("pose"))
+    return RunOutcome(number=run.number, world=run.world, **counts)
+
+
+@contextmanager
+def opened_batch(factory: BatchFactory, subject: Subject, runs: Sequence[Run]) -> Iterator[Batch]:
+    """Yield a batch of the robots of all runs, at their starts. Raises as `drive_in_batch`."""
+    robot, task = subject.robot, subject.task
+    setups = [ExamSetup(run.world, run.number) for run in runs]
+    require_known(task, setups)
+    with _opened(factory, task, setups) as simulations:
+        minds = build_minds(simulations, robot, task, [(subject.events, setup) for setup in setups])
+        exam = task.exam
+        rule = build_stuck_rule(exam.stuck_after_s, robot.can.cycle_s, least_m=exam.stuck_within_m)
+        yield factory.open_batch(simulations, minds, replace(build_drive_settings(robot, task), stuck=rule))
+
+
+@contextmanager
+def _opened(
+    factory: BatchFactory, task: TaskSettings, setups: Sequence[ExamSetup]
+) -> Iterator[list[FollowedSimulation]]:
+    """Yield an open simulation for each setup, with the robot at its start; close them all."""
+    simulations: list[FollowedSimulation] = []
+    try:
+        for setup in setups:
+            simulation = factory.open(setup.world, setup.seed, "exam")
+            simulations.append(simulation)
+            if task.exam.start == "in_sight":
+                chance = random.Random(setup.chance_seed)
+                task.course.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
+                simulation.reposition(chance, in_sight=True)
+        yield simulations
+    finally:
+        for simulation in simulations:
+            simulation.close()
+
+
+async def drive_on_bus(
+    factory: SimulationFactory, subject: Subject, run: Run, tell: Progress
+) -> tuple[RunOutcome, ExamResult]:
+    """Drive a run on the CAN loop; return its outcome, and the exam's result with the trail.
+
+    `tell`: gets the simulated seconds so far.
+
+    Raises:
+        SettingsError: task and world do not fit.
+        LessonLostError: the robot refused a behaviour.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+    """
+    with closing(factory.open(run.world, run.number, "exam")) as simulation:
+        ticks = unknown_ticks = first_question = first_collision = 0
+
+        def count(record: TickRecord, _metric: TaskMetric) -> None:
+            nonlocal ticks, unknown_ticks, first_question, first_collision
+            ticks = record.tick
+            if record.decision.asking:
+                unknown_ticks += 1
+                first_question = first_question or ticks
+            if simulation.collisions:
+                first_collision = first_collision or ticks
+
+        setup = ExamSetup(run.world, run.number, on_tick=count)
+        exam = await examine(simulation, subject.robot, subject.task, subject.events, setup, tell)
+        outcome = RunOutcome(
+            number=run.number,
+            world=run.world,
+            ticks=ticks,
+            unknown_ticks=unknown_ticks,
+            questions=len(exam.unknown_positions),
+            first_question=first_question,
+            collisions=exam.collisions,
+            first_collision=first_collision,
+            stuck=exam.stuck,
+            alarm=exam.alarm,
+            travelled_m=_length_m(exam.trail),
+            end=(*simulation.pose,),
+        )
+        return outcome, exam
+
+
+def _length_m(trail: Sequence[Position]) -> float:
+    """Return the length of a trail in m, rounded as the batch rounds it (simbridge.batch.tally)."""
+    length_m = 0.0
+    for old, new in pairwise(trail):
+        dx, dy = new.x_m - old.x_m, new.y_m - old.y_m
+        length_m += math.sqrt(dx * dx + dy * dy)
+    return length_m

@@ -1,0 +1,165 @@
+"""Jobs of a certificate: blocks of runs in a batch, and witnesses that the CAN loop drives as well."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import anyio
+
+from hal.batch import BatchFactory
+from hal.batch_refusal import BatchRefusedError
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus
+from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
+from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, ExamLoop
+from kurt2rt.experiments.study.pool import Progress
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+BATCH_GAIN = 100.0
+"""A run in the batch counts as so many times less robot time in the progress than one on the CAN loop."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveJob(ABC):
+    """Runs of one knowledge file."""
+
+    factory: SimulationFactory
+    robot: RobotSettings
+    task: TaskSettings
+    knowledge: Path
+
+    def subject(self) -> Subject:
+        """Return the taught robot. Raises KnowledgeError."""
+        return Subject(self.robot, self.task, read_lessons(self.knowledge, self.robot, self.task))
+
+    def drive_in_batch(self, subject: Subject, runs: Sequence[Run], tell: Progress) -> list[RunOutcome | None]:
+        """Drive runs in a batch; `tell` gets their progress in s.
+
+        Raises BatchRefusedError, and all that `drives.drive_in_batch` raises.
+        """
+        if not isinstance(self.factory, BatchFactory):
+            raise BatchRefusedError("this simulation has no batch", do="give --exams bus")
+        return drive_in_batch(self.factory, subject, runs, lambda done_s: tell(done_s / BATCH_GAIN))
+
+    def drive_on_bus(self, subject: Subject, run: Run, tell: Progress) -> tuple[RunOutcome, ExamResult]:
+        """Drive a run on the CAN loop; `tell` gets its progress in s. Raises all that `drives.drive_on_bus` raises."""
+        return anyio.run(drive_on_bus, self.factory, subject, run, tell)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _StoredJob(DriveJob):
+    """Job with a stored result."""
+
+    outcome: ClassVar[type[Settings]]
+    made_of: Provenance
+    results: Results
+
+    @property
+    @abstractmethod
+    def file(self) -> str:
+        """Path of the result within the folder of results."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BlockJob(_StoredJob):
+    """Runs that one process drives at once."""
+
+    outcome = BlockOutcome
+    runs: tuple[Run, ...]
+    loop: ExamLoop
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"runs {self.runs[0].number} to {self.runs[-1].number}"
+
+    @property
+    def file(self) -> str:
+        """Path of the result within the folder of results."""
+        return f"results/runs-{self.runs[0].number}-{self.runs[-1].number}.json"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Simulated time on the CAN loop in s; that in a batch counts less."""
+        whole_s = len(self.runs) * self.task.exam.duration_s
+        return whole_s if self.loop is ExamLoop.BUS else whole_s / BATCH_GAIN
+
+    def run(self, tell: Progress) -> None:
+        """Drive all runs and store their outcomes; those that leave the batch are driven on the CAN loop.
+
+        `tell`: gets the progress in s. Raises KnowledgeError, BatchRefusedError, SettingsError, OSError.
+        """
+        subject = self.subject()
+        driven: list[RunOutcome | None] = [None] * len(self.runs)
+        if self.loop is ExamLoop.BATCH:
+            driven = self.drive_in_batch(subject, self.runs, tell)
+        left = [run for run, outcome in zip(self.runs, driven, strict=True) if outcome is None]
+        finished = {each.number: each for each in (*driven, *self._drive_all_on_bus(subject, left, tell)) if each}
+        outcomes = tuple(finished[run.number] for run in self.runs)
+        on_bus = tuple(run.number for run in left)
+        self.results.write(self, BlockOutcome(made_of=self.made_of, runs=outcomes, on_bus=on_bus))
+
+    def _drive_all_on_bus(self, subject: Subject, runs: Sequence[Run], tell: Progress) -> list[RunOutcome]:
+        progress = ProgressSum(tell)
+        whole_s = self.task.exam.duration_s
+
+        def report(done_s: float) -> None:
+            progress.report(self.name, done_s, whole_s)
+
+        return [self.drive_on_bus(subject, run, report)[0] for run in runs]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WitnessJob(_StoredJob):
+    """Run that is driven in a batch and on the CAN loop, which must agree."""
+
+    outcome = WitnessOutcome
+    witness: Run
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"run {self.witness.number} on the CAN loop"
+
+    @property
+    def file(self) -> str:
+        """Path of the result within the folder of results."""
+        return f"results/witness-{self.witness.number}.json"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Simulated time on the CAN loop in s."""
+        return self.task.exam.duration_s
+
+    def run(self, tell: Progress) -> None:
+        """Drive the run twice, compare, and store the outcome; `tell` gets the progress in s.
+
+        Raises BatchDiffersError where the outcomes differ; else as `BlockJob.run`.
+        """
+        subject = self.subject()
+        (in_batch,) = self.drive_in_batch(subject, [self.witness], lambda _: None)
+        on_bus, _ = self.drive_on_bus(subject, self.witness, tell)
+        if in_batch is not None:
+            require_equal(in_batch, on_bus)
+        outcome = WitnessOutcome(made_of=self.made_of, run=on_bus, compared=in_batch is not None)
+        self.results.write(self, outcome)
+
+
+def require_equal(batch: RunOutcome, bus: RunOutcome) -> None:
+    """Check that a run in the batch had the outcome of the CAN loop. Raises BatchDiffersError."""
+    if differing := batch.differing(bus):
+        raise BatchDiffersError(
+            f"the batch and the CAN loop differ in {', '.join(differing)}; all results of the batch are refused",
+            where=f"run {bus.number} in world {bus.world}",
+            do="report it, and give --exams bus and a new folder with --out",
+        )

@@ -1,0 +1,55 @@
+"""Stored outcomes of a certificate."""
+
+from hal.settings import Settings
+from kurt2rt.experiments.study.provenance import Provenance
+
+
+class RunOutcome(Settings):
+    """Counts of one run; ticks are counted from 1."""
+
+    number: int
+    world: str
+    ticks: int
+    """Ticks until the end, or until the robot was stuck or stopped."""
+    unknown_ticks: int
+    """Ticks in which it stood in an unknown situation."""
+    questions: int
+    """Times that it began to stand there."""
+    first_question: int
+    """Tick of the first question; 0: none."""
+    collisions: int
+    first_collision: int
+    """Tick of the first collision; 0: none."""
+    stuck: bool
+    alarm: str = ""
+    """Reason of the guard's latched stop, which ends the run; empty without one."""
+    travelled_m: float
+    end: tuple[float, float, float]
+    """Pose after the last tick: x, y in m, heading in rad."""
+
+    @property
+    def clean(self) -> bool:
+        """True without a collision, a question, an alarm and being stuck."""
+        return not (self.collisions or self.questions or self.alarm or self.stuck)
+
+    def differing(self, other: "RunOutcome") -> list[str]:
+        """Return the names of the fields that differ."""
+        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
+
+
+class BlockOutcome(Settings):
+    """Outcomes of the runs of one job, in order."""
+
+    made_of: Provenance
+    runs: tuple[RunOutcome, ...]
+    on_bus: tuple[int, ...] = ()
+    """Numbers of the runs that the CAN loop drove because they left the batch, or because the batch is not used."""
+
+
+class WitnessOutcome(Settings):
+    """Run that the batch and the CAN loop drove, with equal results."""
+
+    made_of: Provenance
+    run: RunOutcome
+    compared: bool
+    """False if the run left the batch, so that there was nothing to compare."""

@@ -1,0 +1,142 @@
+"""Certificate of a robot in the real simulator: batch and CAN loop agree, and a difference refuses all."""
+
+import json
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.certify.again import drive_again
+from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus
+from kurt2rt.experiments.certify.figures import draw_worst
+from kurt2rt.experiments.certify.jobs import WitnessJob
+from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, make_plan, read_certificate
+from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.certify.summary import worst_runs
+from kurt2rt.experiments.certify.tables import all_tables
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, ExamLoop
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.study.results import Results
+from simbridge.batch.compiled import IS_COMPILED
+from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+
+SECONDS = 12.0 if IS_COMPILED else 2.0
+EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=ExamLoop.BATCH)
+
+
+def ignore(_done_s: float) -> None:
+    """Take no progress."""
+
+
+def plan_in(folder: Path, taught: Taught, extent: Extent = EXTENT, task: TaskSettings | None = None) -> CertifyPlan:
+    """Return a plan with results in a folder."""
+    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
+    return make_plan(task or short_task(exam_s=SECONDS), taught.knowledge, extent, parts)
+
+
+@pytest.fixture(scope="module")
+def made(taught: Taught, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Certificate]:
+    """Return the folder of a certificate, and the certificate."""
+    folder = tmp_path_factory.mktemp("certify")
+    plan, results = plan_in(folder, taught), Results(folder)
+    with results.held():
+        run_missing(plan, results, 1, lambda _: None)
+        assert results.missing([*plan.witnesses, *plan.blocks]) == []
+    return folder, read_certificate(plan, results)
+
+
+@pytest.mark.parametrize("run", [Run(1, "b"), Run(2, "rooms-SEED"), Run(3, "a"), Run(20_005, "c")])
+def test_outcome_in_the_batch_is_that_of_the_bus(taught: Taught, run: Run) -> None:
+    subject = Subject(ROBOT, short_task(exam_s=SECONDS, stuck_after_s=SECONDS / 2), taught.events)
+    (in_batch,) = drive_in_batch(STAGE, subject, [run], ignore)
+    on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
+    assert in_batch is not None
+    assert in_batch.differing(on_bus) == []
+
+
+def test_start_in_sight_is_that_of_the_bus() -> None:
+    task = load_task("circle", changes={"exam.duration_s": "2", "exam.start": "in_sight"})
+    subject, run = Subject(ROBOT, task, ()), Run(4, "one_object")
+    on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
+    assert drive_in_batch(STAGE, subject, [run], ignore) == [on_bus]
+
+
+def test_certificate_has_all_runs_and_equal_witnesses(made: tuple[Path, Certificate]) -> None:
+    _, certificate = made
+    assert [each.number for each in certificate.outcomes] == [20_000, 20_001, 20_002, 20_003]
+    assert certificate.compared == 3
+    assert certificate.on_bus == frozenset()
+    assert all(0 < each.ticks <= round(SECONDS * 100) for each in certificate.outcomes)
+
+
+def test_worst_runs_are_driven_again_and_drawn(made: tuple[Path, Certificate], tmp_path: Path) -> None:
+    _, certificate = made
+    worst = worst_runs(certificate.outcomes, 1)
+    exams = drive_again(certificate.plan, worst, 1, lambda _: None)
+    assert [(each.seed, each.collisions) for each in exams] == [(each.number, each.collisions) for each in worst]
+    pictures = list(draw_worst(exams, ["kurt2rt exam"] * len(exams), STAGE, tmp_path))
+    assert [each.path for each in pictures] == [tmp_path / f"run-{each.number}.png" for each in worst]
+    assert all(each.path.stat().st_size > 10_000 for each in pictures)
+
+
+def test_tables_have_a_row_for_each_place_and_for_all(made: tuple[Path, Certificate]) -> None:
+    _, certificate = made
+    probabilities, rates = list(all_tables(certificate, []))
+    assert [row[0] for row in probabilities.rows] == [row[0] for row in rates.rows]
+    assert probabilities.rows[-1][:2] == ("all", "4")
+    assert "3 runs were driven on the CAN loop too, with equal results." in probabilities.note
+
+
+def test_witness_with_another_outcome_refuses_all(made: tuple[Path, Certificate], tmp_path: Path) -> None:
+    folder, certificate = made
+    for path in folder.rglob("*.json"):
+        copy = tmp_path / path.relative_to(folder)
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        stored = json.loads(path.read_text(encoding="utf-8"))
+        for each in stored.get("runs", ()):
+            each["collisions"] += 1
+        copy.write_text(json.dumps(stored), encoding="utf-8")
+    with pytest.raises(BatchDiffersError, match=r"run 2000\d in world .* differ in collisions"):
+        read_certificate(certificate.plan, Results(tmp_path))
+
+
+def test_witness_job_stores_no_run_that_differs(
+    taught: Taught, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = plan_in(tmp_path, taught)
+    whole = WitnessJob.drive_in_batch
+
+    def wrong(job: WitnessJob, *more: object) -> object:
+        (found,) = whole(job, *more)  # type: ignore[arg-type]
+        assert found is not None
+        return [found.model_copy(update={"travelled_m": found.travelled_m + 1e-9})]
+
+    monkeypatch.setattr(WitnessJob, "drive_in_batch", wrong)
+    with pytest.raises(BatchDiffersError, match="travelled_m"):
+        plan.witnesses[0].run(ignore)
+    assert list(tmp_path.rglob("*.json")) == []
+
+
+def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate], taught: Taught) -> None:
+    folder, certificate = made
+    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=ExamLoop.BUS))
+    results = Results(folder / "bus")
+    with results.held():
+        run_missing(plan, results, 1, lambda _: None)
+    on_bus = read_certificate(plan, results)
+    assert on_bus.outcomes == certificate.outcomes[:2]
+    assert (on_bus.compared, on_bus.on_bus) == (0, frozenset({20_000, 20_001}))
+    assert "All runs were driven on the CAN loop." in next(all_tables(on_bus, [])).note
+
+
+def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path) -> None:
+    from kurt2rt.knowledge.journal.loading import open_knowledge
+
+    empty = tmp_path / "empty.knowledge"
+    open_knowledge(empty, ROBOT, taught.task).close()
+    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(tmp_path))
+    with pytest.raises(SettingsError, match="holds no lesson"):
+        make_plan(short_task(), empty, EXTENT, parts)

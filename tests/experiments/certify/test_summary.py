@@ -1,0 +1,49 @@
+"""Probabilities and rates of a certificate, from outcomes by hand."""
+
+import pytest
+
+from kurt2rt.experiments.certify.summary import summarise_runs, worst_runs
+from kurt2rt.experiments.lockstep.report import wilson_interval
+from kurt2rt.experiments.study.intervals import poisson_interval
+from tests.experiments.certify.outcomes import outcome
+
+ASKS = outcome(3, questions=4, first_question=3000, unknown_ticks=600)
+STUCK = outcome(4, stuck=True, ticks=3000)
+COLLIDES = outcome(5, collisions=2, first_collision=100)
+RUNS = [outcome(1), outcome(2), ASKS, STUCK, COLLIDES]
+
+
+def test_shares_are_of_runs_with_wilson_intervals() -> None:
+    summary = summarise_runs("a", RUNS, 0.01)
+    assert summary.collided == (1, 0.2, *wilson_interval(1, 5))
+    assert (summary.stuck.events, summary.asked.events, summary.stopped.events, summary.clean.events) == (1, 1, 0, 2)
+
+
+def test_rates_count_time_until_the_end_of_runs() -> None:
+    summary = summarise_runs("a", RUNS, 0.01)
+    hours = 270 / 3600
+    assert summary.hours == pytest.approx(hours)
+    assert summary.collisions_per_hour.value == pytest.approx(2 / hours)
+    assert summary.questions_per_hour.value == pytest.approx(4 / hours)
+    assert summary.unknown_share == pytest.approx(600 / 27000)
+    assert summary.m_per_minute == pytest.approx(60 / 4.5)
+
+
+def test_first_question_rate_ends_the_time_of_a_run_at_it() -> None:
+    first = summarise_runs("a", RUNS, 0.01).first_questions_per_hour
+    hours = 240 / 3600
+    assert first == pytest.approx((1 / hours, *(each / hours for each in poisson_interval(1))))
+
+
+def test_interval_of_many_runs_needs_no_bootstrap_over_each() -> None:
+    runs = [outcome(n, collisions=int(n % 10 == 0), first_collision=1) for n in range(2000)]
+    rate = summarise_runs("a", runs, 0.01).collisions_per_hour
+    assert rate.value == pytest.approx(6.0)
+    assert 5.0 < rate.low < 6.0 < rate.high < 7.0
+
+
+def test_worst_runs_are_ordered_and_leave_out_clean_ones() -> None:
+    worse = outcome(9, collisions=7, first_collision=5)
+    assert [each.number for each in worst_runs([*RUNS, worse], 10)] == [9, 5, 4, 3]
+    assert worst_runs(RUNS, 1) == [COLLIDES]
+    assert worst_runs(RUNS[:2], 5) == []
