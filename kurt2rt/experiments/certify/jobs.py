@@ -61,6 +61,7 @@ class _StoredJob(DriveJob):
     """Job with a stored result."""
 
     outcome: ClassVar[type[Settings]]
+    replaces_others: ClassVar[bool] = False
     made_of: Provenance
     results: Results
 
@@ -68,6 +69,16 @@ class _StoredJob(DriveJob):
     @abstractmethod
     def file(self) -> str:
         """Path of the result within the folder of results."""
+
+    @property
+    @abstractmethod
+    def seed(self) -> int:
+        """Number of the first run."""
+
+    @property
+    def knowledge_name(self) -> str | None:
+        """None: the job stores no knowledge."""
+        return None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +93,11 @@ class BlockJob(_StoredJob):
     def name(self) -> str:
         """Name in progress displays."""
         return f"runs {self.runs[0].number} to {self.runs[-1].number}"
+
+    @property
+    def seed(self) -> int:
+        """Number of the first run."""
+        return self.runs[0].number
 
     @property
     def file(self) -> str:
@@ -130,6 +146,11 @@ class WitnessJob(_StoredJob):
     def name(self) -> str:
         """Name in progress displays."""
         return f"run {self.witness.number} on the CAN loop"
+
+    @property
+    def seed(self) -> int:
+        """Number of the run."""
+        return self.witness.number
 
     @property
     def file(self) -> str:
