@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol, runtime_checkable
 
-from hal.simulation import Pose, Position, Simulation, SimulationFactory
+from hal.simulation import Pose, Simulation, SimulationFactory
 
 STANDS = -1
 """Index of the action of a robot that stands and asks."""
@@ -200,10 +200,6 @@ class FollowedSimulation(Simulation, Protocol):
 
         The simulation can be stepped no more.
         """
-        ...
-
-    def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
-        """Return the distance in m from each position to the nearest wall or obstacle."""
         ...
 
 

@@ -5,6 +5,7 @@ and `SimulatedWorld` is the part that a teacher may see and change. A real robot
 """
 
 import random
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
@@ -106,9 +107,8 @@ class Simulation(Protocol):
         """World from above."""
         ...
 
-    @property
-    def nearest_m(self) -> float:
-        """Distance in m from the robot's centre to the nearest wall or obstacle."""
+    def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
+        """Return the distance in m from each position to the nearest wall or obstacle."""
         ...
 
     @property

@@ -82,12 +82,6 @@ class Kurt2Simulation:
         return FreePoses(self.simulated_robot.world, self._settings)
 
     @property
-    def nearest_m(self) -> float:
-        """Distance in m from the robot's centre to the nearest wall or obstacle."""
-        pose = self.simulated_robot.pose
-        return self._nearest.distance_m((pose.x_m, pose.y_m))
-
-    @property
     def collisions(self) -> int:
         """Contacts with walls or obstacles so far."""
         return self.simulated_robot.collisions

@@ -16,17 +16,10 @@ class Clearance:
         self._world = world
         self._survey()
 
-    def distance_m(self, position: Point) -> float:
-        """Return the distance in m to the nearest face; 0 inside a solid."""
-        world = self._world.settings
-        if world is not self._surveyed:
-            self._survey()
-        away_m = float(shapely.distance(self._faces, shapely.Point(position)))
-        posts_m = (math.dist(position, (post.x_m, post.y_m)) - post.radius_m for post in world.round_obstacles)
-        return max(0.0, min([away_m, *posts_m]))
-
     def distances_m(self, positions: Sequence[Point]) -> list[float]:
         """Return the distance in m from each position to the nearest face; 0 inside a solid."""
+        if not positions:
+            return []
         world = self._world.settings
         if world is not self._surveyed:
             self._survey()

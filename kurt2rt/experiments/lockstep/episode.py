@@ -37,11 +37,11 @@ class StuckDetector:
         self._least_m2 = rule.least_m * rule.least_m
         self._ticks = 0
 
-    def none_since_window(self, position: Position) -> bool:
+    def none_since_window(self, pose: Pose) -> bool:
         """Return whether the robot stayed within `least_m` for a whole window; call it in every tick."""
         due = self._ticks % self._stride == 0
         self._ticks += 1
-        return due and self._looks_stuck(position)
+        return due and self._looks_stuck(Position(pose.x_m, pose.y_m))
 
     def ticks_until_stuck(self, poses: Sequence[Pose]) -> int | None:
         """Return the number of ticks in a row, at these poses, after which the robot is stuck; None if it is not."""
@@ -179,7 +179,7 @@ class Episode(ABC):
         if waiting:
             self._stuck.restart()
             return False
-        return self._stuck.none_since_window(self.simulation.position)
+        return self._stuck.none_since_window(self.simulation.pose)
 
     def rescue(self) -> None:
         """Put the robot at the nearest start pose, or on its route."""

@@ -183,8 +183,8 @@ class ExamRun(Episode):
         Raises LessonLostError if the robot refused a behaviour.
         """
         require_carried_out(record, self.task)
-        new_collisions = self.simulation.collisions - len(self._collision_positions)
-        self._collision_positions.extend([self.simulation.position] * new_collisions)
+        if self.simulation.collisions > len(self._collision_positions):
+            self._collision_positions.append(self.simulation.position)
         self._action_changes += record.decision.action != self._action
         self._action = record.decision.action
         self.measure()

@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from hal.simulation import Position
+from hal.simulation import Pose, Position
 from kurt2rt.experiments.lockstep.episode import StuckDetector
 
 PERIOD_S = 0.01
@@ -11,7 +11,7 @@ PERIOD_S = 0.01
 def stuck_after_s(way: StuckDetector, path: list[Position]) -> float | None:
     """Seconds into a drive until no way was made for a whole window."""
     for tick, position in enumerate(path):
-        if way.none_since_window(position):
+        if way.none_since_window(Pose(*position, 0.0)):
             return tick * PERIOD_S
     return None
 

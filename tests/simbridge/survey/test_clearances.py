@@ -1,4 +1,4 @@
-"""Clearances of many positions at once are those of each."""
+"""Clearances of many positions at once are those of each alone."""
 
 import random
 
@@ -16,7 +16,8 @@ def test_clearances_are_those_of_single_positions(world: str) -> None:
     clearance = Clearance(place)
     width_m, height_m = place.settings.size_m
     positions = [(chance.uniform(0, width_m), chance.uniform(0, height_m)) for _ in range(200)]
-    assert clearance.distances_m(positions) == [clearance.distance_m(position) for position in positions]
+    assert clearance.distances_m(positions) == [clearance.distances_m([position])[0] for position in positions]
+    assert clearance.distances_m([]) == []
     name = place.settings.names[0]
     place.move_wall(name, 0.05, 0.0)
-    assert clearance.distances_m(positions[:9]) == [clearance.distance_m(position) for position in positions[:9]]
+    assert clearance.distances_m(positions[:9]) == [clearance.distances_m([position])[0] for position in positions[:9]]
