@@ -15,6 +15,7 @@ from kurt2rt.cli.interrupt import end_at_interrupt
 _EXTRAS = {
     "contourpy": "simulation",
     "jinja2": "simulation",
+    "optuna": "search",
     "PIL": "simulation",
     "pymunk": "simulation",
     "scipy": "simulation",

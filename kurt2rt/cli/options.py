@@ -41,6 +41,15 @@ def teacher_option(default: str) -> Any:
     return _named("--teacher", "teachers", f"{_TEACHER} Default: {default}.")
 
 
+def search_argument() -> Any:
+    """Return the argument of `kurt2rt search`."""
+    return typer.Argument(
+        metavar=_NAME_OR_PATH,
+        help="Search: a name in config/searches, or the path of a YAML file.",
+        autocompletion=_names_in("searches"),
+    )
+
+
 DEFAULT_OF_THE_TASK = "the task's (teaching.default_teacher)"
 
 

@@ -45,13 +45,16 @@ def poisson_interval(events: int) -> tuple[float, float]:
     return float(low), float(gammainccinv(events + 1, _TAIL))
 
 
-def _bootstrapped(statistic: Callable[..., Any], *samples: Sequence[float]) -> tuple[float, float]:
-    """Return the 95 % percentile interval of `statistic(*samples, axis)` over robots, each with all its values."""
+def _bootstrapped(statistic: Callable[..., Any], *samples: Sequence[float], tail: float = _TAIL) -> tuple[float, float]:
+    """Return the percentile interval of `statistic(*samples, axis)` over robots, each with all its values.
+
+    `tail`: fraction outside of the interval at each end; of 95 % by default.
+    """
     values = [np.asarray(sample, dtype=np.float64) for sample in samples]
     robots = len(values[0])
     drawn = np.random.default_rng(_BOOTSTRAP_SEED).integers(0, robots, (_RESAMPLES, robots))
     statistics = statistic(*(sample[drawn] for sample in values), axis=-1)
-    low, high = np.quantile(statistics, (_TAIL, 1.0 - _TAIL))
+    low, high = np.quantile(statistics, (tail, 1.0 - tail))
     return float(low), float(high)
 
 
@@ -63,15 +66,19 @@ class RateDifference(NamedTuple):
     high: float
 
 
-def difference_of(changes: Sequence[float]) -> RateDifference:
+def difference_of(changes: Sequence[float], comparisons: int = 1) -> RateDifference:
     """Return the mean change of the same robots, with an interval bootstrapped over the robots.
 
     The interval of equal changes is a point, and infinite for one robot.
+
+    Args:
+        changes: one for each robot.
+        comparisons: number of comparisons whose intervals hold together with 95 % (Bonferroni); each one is wider.
     """
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:
         return RateDifference(value, -math.inf, math.inf)
-    low, high = _bootstrapped(np.mean, changes)
+    low, high = _bootstrapped(np.mean, changes, tail=_TAIL / comparisons)
     return RateDifference(value, min(low, value), max(high, value))
 
 

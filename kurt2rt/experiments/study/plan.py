@@ -1,6 +1,7 @@
 """Plan of a study: stored jobs in waves, of which the missing ones are run."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from kurt2rt.experiments.study.pool import Job, JobKilledError, PoolProgress, run_jobs
@@ -28,6 +29,18 @@ class StudyPlan(Protocol):
     def waves(self) -> Sequence[Sequence[StoredJob]]:
         """Jobs of each wave, in the order of the waves."""
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class JobWave:
+    """Jobs of which none needs another, as a plan."""
+
+    jobs: Sequence[StoredJob]
+
+    @property
+    def waves(self) -> tuple[Sequence[StoredJob], ...]:
+        """The one wave."""
+        return (self.jobs,)
 
 
 def missing_time_s(plan: StudyPlan, results: Results) -> float:

@@ -24,15 +24,39 @@ class SeedOutcome(SeedResult):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SeedJob(StudyJob):
-    """Training run and exams of one seed."""
+class CurriculumJob(StudyJob):
+    """Training run and exams of one robot."""
 
     outcome = SeedOutcome
+    driver: ExamDriver = ON_BUS
+    """Loop of the exams."""
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of the lesson, and in each world of the exam and of the teacher's own drive, in s."""
+        return self.task.teaching.duration_s + 2 * len(self.task.exam.worlds) * self.task.exam.duration_s
+
+    async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
+        """Teach the robot into the file `knowledge`, examine it and return the outcome.
+
+        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
+        """
+        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
+        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
+        exams = await run_exams(
+            factory, robot, task, events, task.exam.worlds, seed=seed, report=report, driver=self.driver
+        )
+        result = seed_result(CurriculumResult(lesson, exams))
+        return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeedJob(CurriculumJob):
+    """Training run and exams of one seed."""
+
     replaces_others: ClassVar[bool] = True
     label: str = ""
     """End of the names of result and knowledge, for a robot of a control; empty otherwise."""
-    driver: ExamDriver = ON_BUS
-    """Loop of the exams."""
 
     @property
     def name(self) -> str:
@@ -49,11 +73,6 @@ class SeedJob(StudyJob):
         """Path of the stored knowledge within the folder of results."""
         return f"{self.stem}.knowledge"
 
-    @property
-    def robot_time_s(self) -> float:
-        """Time of the lesson, and in each world of the exam and of the teacher's own drive, in s."""
-        return self.task.teaching.duration_s + 2 * len(self.task.exam.worlds) * self.task.exam.duration_s
-
     def run(self, on_progress: Progress) -> None:
         """Run the job, and store result and knowledge; an earlier knowledge file of the robot gets a new name.
 
@@ -61,19 +80,6 @@ class SeedJob(StudyJob):
         """
         archive_existing(self.knowledge)
         super(SeedJob, self).run(on_progress)
-
-    async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
-        """Teach the robot into the file `knowledge`, examine it and return the outcome.
-
-        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
-        """
-        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
-        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
-        exams = await run_exams(
-            factory, robot, task, events, task.exam.worlds, seed=seed, report=report, driver=self.driver
-        )
-        result = seed_result(CurriculumResult(lesson, exams))
-        return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
 
 
 DECIDING = (SeedJob,)

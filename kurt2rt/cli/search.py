@@ -1,0 +1,101 @@
+"""`kurt2rt search`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
+from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.platform.text_table import print_whole
+
+_FOLDER = Path("results/search")
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt search`."""
+
+    search: Annotated[str, search_argument()]
+    trials: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="Number of trials. Default: that of the file.", show_default=False),
+    ] = None
+    changes: Changes = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the search's name")] = None
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def search(options: _Options) -> None:
+    """Search settings of a task on search seeds, and check the best once on other seeds and worlds.
+
+    A file of config/searches names the keys of the task's file and their ranges,
+    the robots and worlds of the search and of the check, and the teacher. Each
+    trial teaches its robots one after the other and examines them. It ends early
+    when it cannot beat the median of the trials before it. A better trial passes
+    more exams, or as many with fewer presses.
+
+    The best trials are then compared once, robot by robot, with the shipped
+    settings. Search seeds are 0 to 999 and 3000 to 3999, those of a check are
+    others. Leaves found.yaml (changed keys, and where they came from) and
+    report.html in the output folder. --set holds for all trials and for the
+    shipped settings.
+
+    A search that was interrupted goes on where it was. The same file, trials and
+    versions give the same trials, with any number of processes.
+
+    For example:
+
+        kurt2rt search wall_following
+        kurt2rt search circle --trials 20 --jobs 2
+    """
+    # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
+    from kurt2rt.experiments.search.figures import draw_trials
+    from kurt2rt.experiments.search.found import write_found
+    from kurt2rt.experiments.search.journal import TrialJournal
+    from kurt2rt.experiments.search.plan import make_plan
+    from kurt2rt.experiments.search.report import write_report
+    from kurt2rt.experiments.search.settings import load_search
+    from kurt2rt.experiments.search.tables import all_tables, verdict_text
+    from kurt2rt.experiments.search.trials import run_trials, trials_time_s
+    from kurt2rt.experiments.study.jobs import JobParts
+    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.study.table import as_rich
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    settings, robot = load_search(options.search), load_robot()
+    trials = options.trials or settings.trials
+    results = Results(options.out or _FOLDER / settings.name)
+    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    plan = make_plan(settings, parts, changes=changes_of(options.changes))
+    command = typed_command("search", options)
+    require_unchecked(plan, trials)
+    trials_s = trials_time_s(plan, trials)
+    with results.held(), one_bar(trials_s + check_time_s(plan)) as bar:
+        journal = TrialJournal(plan)
+        run_trials(plan, journal, trials, options.jobs, bar.update)
+        record = begin_check(plan, journal, trials)
+        check = run_check(
+            plan, journal, record, options.jobs, lambda told: bar.update(told._replace(done_s=trials_s + told.done_s))
+        )
+        bar.say("figure and report")
+        tables = all_tables(plan, journal, check)
+        picture = draw_trials(plan, journal.trials[:trials], plan.folder / "trials.png")
+        found, report = plan.folder / "found.yaml", plan.folder / "report.html"
+        write_found(plan, check, command, found)
+        write_report(plan, check, tables, [picture], command, report)
+    if options.as_json:
+        better = None if check.found is None else check.found.label
+        told = {"tables": tables_of(tables), "better": better, "verdict": verdict_text(plan, check)}
+        print_json({**told, "found": found, "report": report})
+        return
+    print_whole(console_of(), *map(as_rich, tables), f"found   {found}", f"report  {report}")

@@ -1,0 +1,166 @@
+"""Check of the best trials on other robots and worlds, once, against the shipped settings on the same robots."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from optuna.trial import FrozenTrial
+from pydantic import ValidationError
+
+from hal.settings import Settings
+from kurt2rt.experiments.search.jobs import SHIPPED, SearchJob, label_of
+from kurt2rt.experiments.search.journal import TrialJournal, finished
+from kurt2rt.experiments.search.plan import SearchPlan
+from kurt2rt.experiments.search.score import RobotScore, effort, score_of
+from kurt2rt.experiments.search.settings import Objective
+from kurt2rt.experiments.search.space import Values
+from kurt2rt.experiments.study.intervals import RateDifference, difference_of
+from kurt2rt.experiments.study.plan import JobWave, missing_time_s, run_missing
+from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.platform.durable_files import write_durably
+
+_FILE = "check.json"
+
+
+class CheckRecord(Settings):
+    """Trials that are checked, written down before the check begins."""
+
+    trials: int
+    """Number of trials that the best ones were chosen among."""
+    candidates: tuple[int, ...]
+    """Numbers of the best trials, the best first."""
+    date: str
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedSettings:
+    """Settings of one trial, compared with the shipped ones on the same robots."""
+
+    label: str
+    values: Values
+    robots: tuple[RobotScore, ...]
+    passed: RateDifference
+    """Difference of the share of exams passed; positive is better."""
+    effort: RateDifference
+    """Difference of presses or RLAs of a robot; negative is better."""
+
+    @property
+    def is_better(self) -> bool:
+        """True if more exams are passed, or no fewer with less effort, by the whole interval."""
+        return self.passed.low > 0.0 or (self.passed.low >= 0.0 and self.effort.high < 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class CheckResult:
+    """Result of a check."""
+
+    record: CheckRecord
+    shipped: tuple[RobotScore, ...]
+    checked: tuple[CheckedSettings, ...]
+    objective: Objective
+
+    @property
+    def found(self) -> CheckedSettings | None:
+        """Settings that are better than the shipped ones; None if these stay."""
+        better = [each for each in self.checked if each.is_better]
+        return max(better, key=lambda each: score_of(each.robots, self.objective), default=None)
+
+
+def begin_check(plan: SearchPlan, journal: TrialJournal, trials: int) -> CheckRecord:
+    """Write down which of the first `trials` trials are checked; they never change. Raises StudyError, OSError."""
+    path = plan.folder / _FILE
+    if path.exists():
+        return read_record(path)
+    best = best_trials(journal.trials[:trials], plan.search.check.best, plan.space.shipped)
+    record = CheckRecord(trials=trials, candidates=tuple(trial.number for trial in best), date=utc_now())
+    write_durably(path, record.model_dump_json() + "\n")
+    return record
+
+
+def require_unchecked(plan: SearchPlan, trials: int) -> None:
+    """Refuse more trials after the check: a second one on the same seeds would choose by them. Raises StudyError."""
+    path = plan.folder / _FILE
+    if path.exists() and (record := read_record(path)).trials != trials:
+        raise StudyError(
+            f"was checked after {record.trials} trials (got --trials {trials}, allowed {record.trials})",
+            where=plan.folder,
+            do="give a new folder with --out, and a search with other seeds for its check",
+        )
+
+
+def read_record(path: Path) -> CheckRecord:
+    """Return the record of a check. Raises StudyError if the file is damaged."""
+    try:
+        return CheckRecord.model_validate_json(path.read_bytes())
+    except ValidationError as error:
+        raise StudyError("is no record of a check", where=path, do="give a new folder with --out") from error
+
+
+def best_trials(trials: Sequence[FrozenTrial], count: int, shipped: Values) -> list[FrozenTrial]:
+    """Return the trials with the highest scores, without the shipped settings; the earlier of equal ones first."""
+    others = [trial for trial in finished(trials) if trial.params != shipped]
+    return sorted(others, key=lambda trial: (-(trial.value or 0.0), trial.number))[:count]
+
+
+def check_time_s(plan: SearchPlan) -> float:
+    """Return the robot time of the whole check, in s."""
+    task = plan.space.task(plan.space.shipped)
+    sets = plan.search.check.best + 1
+    return sets * sum(job.robot_time_s for job in plan.jobs.check(task, SHIPPED, 0, sets))
+
+
+def run_check(
+    plan: SearchPlan,
+    journal: TrialJournal,
+    record: CheckRecord,
+    processes: int,
+    on_progress: Callable[[PoolProgress], None],
+) -> CheckResult:
+    """Teach and examine all robots of the check that have no result, and compare.
+
+    `on_progress` gets the robot time of the check.
+
+    Raises:
+        StudyError: a process was killed, or results of other settings are in the folder.
+        Exception: any error of a job.
+    """
+    results = plan.jobs.parts["results"]
+    sets = {SHIPPED: plan.space.shipped, **{label_of(each): journal.values(each) for each in record.candidates}}
+    jobs = {
+        label: plan.jobs.check(plan.space.task(values), label, place, len(sets))
+        for place, (label, values) in enumerate(sets.items())
+    }
+    wave = JobWave(tuple(job for of_label in jobs.values() for job in of_label))
+    done_s = sum(job.robot_time_s for job in wave.jobs) - missing_time_s(wave, results)
+    run_missing(wave, results, processes, lambda told: on_progress(told._replace(done_s=done_s + told.done_s)))
+
+    def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
+        return tuple(job.score(results) for job in of_label)
+
+    shipped, objective = scores(jobs[SHIPPED]), plan.search.objective
+    checked = tuple(
+        compare(label, sets[label], scores(jobs[label]), shipped, objective, len(record.candidates))
+        for label in map(label_of, record.candidates)
+    )
+    return CheckResult(record, shipped, checked, objective)
+
+
+def compare(
+    label: str,
+    values: Values,
+    robots: tuple[RobotScore, ...],
+    shipped: Sequence[RobotScore],
+    objective: Objective,
+    comparisons: int,
+) -> CheckedSettings:
+    """Return the comparison with the shipped settings, robot by robot; the intervals of all hold together with 95 %."""
+    pairs = list(zip(robots, shipped, strict=True))
+    return CheckedSettings(
+        label,
+        values,
+        robots,
+        difference_of([own.passed_share - other.passed_share for own, other in pairs], comparisons),
+        difference_of([float(effort(own, objective) - effort(other, objective)) for own, other in pairs], comparisons),
+    )

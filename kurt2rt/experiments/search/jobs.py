@@ -1,0 +1,85 @@
+"""Jobs of a search: one robot of a trial, or of the check."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.exam_driver import ExamDriver, choose_drivers
+from kurt2rt.experiments.search.score import RobotScore, robot_score
+from kurt2rt.experiments.search.settings import SEED, Robots, SearchSettings
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.seeds import CurriculumJob, SeedOutcome
+
+SHIPPED = "shipped"
+"""Label of the shipped settings."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchJob(CurriculumJob):
+    """Training run and exams of one robot with the settings of a trial; the knowledge is not stored."""
+
+    keeps_knowledge: ClassVar[bool] = False
+    part: str
+    """`trials` or `check`."""
+    label: str
+    """Trial by its number, or `SHIPPED`."""
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.part} {self.label}, seed {self.seed}"
+
+    @property
+    def stem(self) -> str:
+        """Path of the result, without the top folder and the ending."""
+        return f"{self.part}/{self.label}/{self.task.name}-{self.seed}"
+
+    def score(self, results: Results) -> RobotScore:
+        """Return the score of the stored result. Raises StudyError if it is missing or damaged."""
+        return robot_score(results.read(self, SeedOutcome))
+
+
+def label_of(trial: int) -> str:
+    """Return the label of a trial's jobs."""
+    return f"{trial:04d}"
+
+
+@dataclass(frozen=True, slots=True)
+class JobMaker:
+    """Maker of the jobs of one search."""
+
+    search: SearchSettings
+    parts: JobParts
+    fingerprints: Fingerprints
+
+    def trial(self, task: TaskSettings, trial: int) -> tuple[SearchJob, ...]:
+        """Return the jobs of a trial, in the order in which its robots are taught."""
+        robots, loop = self.search.search, self.search.exams
+        count = robots.seeds.count
+        own = choose_drivers(loop, count, robots.worlds)
+        if trial:  # 1 % of their exams are driven on the CAN bus too; of the first trial, which has all robots, three
+            drivers = choose_drivers(loop, self.search.trials * count, robots.worlds)
+            own = drivers[trial * count : (trial + 1) * count] or own
+        return self._jobs("trials", label_of(trial), task, robots, own)
+
+    def check(self, task: TaskSettings, label: str, place: int, of: int) -> tuple[SearchJob, ...]:
+        """Return the jobs of the check of one set of settings, which is number `place`, from 0, among `of` sets."""
+        robots = self.search.check
+        count = robots.seeds.count
+        drivers = choose_drivers(self.search.exams, of * count, robots.worlds)
+        return self._jobs("check", label, task, robots, drivers[place * count : (place + 1) * count])
+
+    def _jobs(
+        self, part: str, label: str, task: TaskSettings, robots: Robots, drivers: Sequence[ExamDriver]
+    ) -> tuple[SearchJob, ...]:
+        jobs = []
+        for seed, driver in zip(robots.seeds.seeds, drivers, strict=True):
+            worlds = robots.worlds_of(seed)
+            own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
+            here = ExamDriver(driver.loop, frozenset(each.replace(SEED, str(seed)) for each in driver.witnesses))
+            made = self.fingerprints.of(own, (task.teaching.world, *worlds))
+            jobs.append(SearchJob(part=part, label=label, task=own, seed=seed, driver=here, made_of=made, **self.parts))
+        return tuple(jobs)

@@ -1,0 +1,148 @@
+"""Trials: the same at every run, in any number of processes, and after any interruption."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+from optuna.trial import TrialState
+
+from kurt2rt.experiments.search import trials as trials_module
+from kurt2rt.experiments.search.journal import FILE, TrialJournal
+from kurt2rt.experiments.search.plan import SearchPlan
+from kurt2rt.experiments.search.trials import run_trials
+from kurt2rt.experiments.study.plan import StudyPlan, run_missing
+from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.results import StudyError
+from tests.experiments.search.tiny import tiny_plan
+
+Trial = tuple[dict[str, Any], TrialState, float | None, dict[int, float]]
+
+
+@contextmanager
+def opened(plan: SearchPlan) -> Iterator[TrialJournal]:
+    with plan.jobs.parts["results"].held():
+        yield TrialJournal(plan)
+
+
+def trials_of(journal: TrialJournal) -> list[Trial]:
+    return [(each.params, each.state, each.value, each.intermediate_values) for each in journal.trials]
+
+
+def run(plan: SearchPlan, trials: int = 3, progress: list[PoolProgress] | None = None) -> list[Trial]:
+    with opened(plan) as journal:
+        run_trials(plan, journal, trials, 1, (progress if progress is not None else []).append)
+        return trials_of(journal)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> list[Trial]:
+    return run(tiny_plan(tmp_path_factory.mktemp("whole")))
+
+
+def test_first_trial_has_the_shipped_settings(whole: list[Trial]) -> None:
+    first, *others = [params for params, *_ in whole]
+    assert first == {"learning.radius": 900.0, "learning.weights.0.weight": 1.5}
+    assert len({params["learning.radius"] for params in (first, *others)}) == 3
+    assert all(300.0 <= params["learning.radius"] <= 2000.0 for params in others)
+
+
+def test_trial_is_scored_by_all_its_robots(whole: list[Trial]) -> None:
+    for _, state, value, scores in whole:
+        assert state is TrialState.COMPLETE
+        assert list(scores) == [0, 1]
+        assert value == scores[1]
+
+
+def test_search_told_twice_changes_nothing(whole: list[Trial], tmp_path: Path) -> None:
+    plan, progress = tiny_plan(tmp_path), list[PoolProgress]()
+    assert run(plan, progress=progress) == whole
+    done_s = [each.done_s for each in progress]
+    assert done_s == sorted(done_s)
+    assert done_s[-1] == pytest.approx(3 * 2 * (2.0 + 2.0))
+    content = (plan.folder / FILE).read_bytes()
+    assert run(plan) == whole
+    assert (plan.folder / FILE).read_bytes() == content
+
+
+class _Stop:
+    left = 0
+
+
+@pytest.mark.parametrize("waves", range(4))
+def test_search_interrupted_between_robots_goes_on(
+    waves: int, whole: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stop = _Stop()
+    stop.left = waves
+
+    def stopping(plan: StudyPlan, *others: Any) -> None:
+        if not stop.left:
+            raise InterruptedError
+        stop.left -= 1
+        run_missing(plan, *others)
+
+    monkeypatch.setattr(trials_module, "run_missing", stopping)
+    with pytest.raises(InterruptedError):
+        run(tiny_plan(tmp_path))
+    stop.left = 100
+    assert run(tiny_plan(tmp_path)) == whole
+
+
+def test_journal_cut_at_any_line_goes_on_to_the_same(whole: list[Trial], tmp_path: Path) -> None:
+    plan = tiny_plan(tmp_path)
+    run(plan)
+    journal = plan.folder / FILE
+    lines = journal.read_bytes().splitlines(keepends=True)
+    for count in range(len(lines)):
+        journal.write_bytes(b"".join(lines[:count]) + lines[count][: len(lines[count]) // 2])
+        Path(f"{journal}.lock").symlink_to("gone")  # a killed process leaves it
+        assert run(plan) == whole
+
+
+@pytest.mark.parametrize(("other", "what"), [({"sampler_seed": 1}, "task"), ({"source": "new"}, "source")])
+def test_journal_of_another_make_is_refused(other: dict[str, Any], what: str, tmp_path: Path) -> None:
+    with opened(tiny_plan(tmp_path)):
+        pass
+    plan = tiny_plan(tmp_path, **other)
+    with pytest.raises(StudyError, match=rf"{FILE}: .*what differs: {what}\)"), opened(plan):
+        pass
+
+
+def test_damaged_journal_is_refused_in_one_line(tmp_path: Path) -> None:
+    plan = tiny_plan(tmp_path)
+    plan.folder.mkdir()
+    (plan.folder / FILE).write_text("no journal\nat all\n")
+    with pytest.raises(StudyError, match="is no journal of trials"), opened(plan):
+        pass
+
+
+def test_other_sampler_seed_has_other_trials(whole: list[Trial], tmp_path: Path) -> None:
+    plan = tiny_plan(tmp_path, sampler_seed=1)
+    with opened(plan) as journal:
+        for number in range(3):
+            journal.begin(number)
+        params = [each.params for each in journal.trials]
+    assert params[0] == whole[0][0]
+    assert params[1] != whole[1][0]
+
+
+def test_trial_that_cannot_beat_the_median_is_pruned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    plan = tiny_plan(tmp_path)
+    monkeypatch.setattr(TrialJournal, "median_score", lambda _self, first: 2.0 if first else -1.0)
+    with opened(plan) as journal:
+        run_trials(plan, journal, 3, 1, lambda _: None)
+        assert [each.state for each in journal.trials] == [TrialState.COMPLETE] * 2 + [TrialState.PRUNED]
+        assert list(journal.trials[2].intermediate_values) == [0]
+    assert len(list((plan.folder / "results/trials/0002").iterdir())) == 1
+
+
+def test_median_is_of_four_earlier_trials_at_least(tmp_path: Path) -> None:
+    with opened(tiny_plan(tmp_path)) as journal:
+        for number, score in enumerate((0.1, 0.4, 0.2, 0.3, 0.9)):
+            journal.begin(number)
+            journal.finish(number, score)
+        assert journal.median_score(3) == float("-inf")
+        assert journal.median_score(4) == pytest.approx(0.25)
+        assert journal.median_score(5) == pytest.approx(0.3)
