@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from hal.simulation import Position
+from hal.simulation import Pose
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
 from simbridge.batch.parts import Sizes, StuckLaw, empty_robots
 from simbridge.batch.tally import count_tick
@@ -57,7 +57,7 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
         x_m, y_m = x_m + step_m * math.cos(heading_rad), y_m + step_m * math.sin(heading_rad)
         robot.tick, robot.x_m, robot.y_m = tick, x_m, y_m
         count_tick(robot, False, StuckLaw(*RULE))
-        stuck = detector.none_since_window(Position(x_m, y_m))
+        stuck = detector.none_since_window(Pose(x_m, y_m, heading_rad))
         assert stuck == bool(robot.stuck)
         if stuck:
             found.append(tick)
