@@ -7,19 +7,32 @@ from pathlib import Path
 
 import pytest
 
+from hal.settings import shipped_names
+
 ROOT = Path(__file__).parents[1]
+
+
+def dry(folder: Path, *targets: str) -> str:
+    """Return the commands of `make` for these targets in a fresh clone."""
+    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
+        shutil.copy(ROOT / name, folder / name)
+    shutil.copytree(ROOT / "config" / "searches", folder / "config" / "searches")
+    # The make that runs the tests hands down its own options, such as printing each directory.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    words = ["make", "--dry-run", *targets]
+    done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=True)
+    return done.stdout
 
 
 @pytest.fixture
 def dry_run(tmp_path: Path) -> str:
-    """Return the commands of `make run` in a fresh clone."""
-    for name in ("Makefile", "pyproject.toml", "constraints.txt"):
-        shutil.copy(ROOT / name, tmp_path / name)
-    # The make that runs the tests hands down its own options, such as printing each directory.
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
-    words = ["make", "--dry-run", "run", "ARGS=--auto"]
-    done = subprocess.run(words, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
-    return done.stdout
+    return dry(tmp_path, "run", "ARGS=--auto")
+
+
+def test_make_studies_makes_each_shipped_search_again(tmp_path: Path) -> None:
+    line = dry(tmp_path, "studies").splitlines()[-1]
+    assert set(shipped_names("searches")) <= set(line.split(";")[0].split())
+    assert "kurt2rt search $name" in line
 
 
 def test_first_make_run_says_that_it_installs_before_it_does(dry_run: str) -> None:

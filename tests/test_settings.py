@@ -26,6 +26,7 @@ from kurt2rt.core.perception.definition import SituationDefinition, load_situati
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teacher_settings import TeacherProfile
+from kurt2rt.experiments.search.settings import SearchSettings
 from simbridge.wire.settings import WireSettings
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
@@ -41,6 +42,7 @@ SCHEMAS: dict[str, type[Settings]] = {
     "faults": FaultTable,
     "critics": CriticSettings,
     "mid_levels": MidSettings,
+    "searches": SearchSettings,
 }
 ROBOT = (CONFIG_DIR / "robots" / "kurt2.yaml").read_text()
 TASK = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()

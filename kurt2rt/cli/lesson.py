@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
 from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
@@ -93,14 +94,12 @@ def lesson(options: LessonOptions) -> None:
 
 def _require_batch(task: TaskSettings, options: LessonOptions) -> None:
     """Check before any lesson that a batch can drive the exams. Raises BatchRefusedError, typer.BadParameter."""
-    from simbridge.batch.compiled import IS_COMPILED
     from simbridge.wire.line import NO_WIRE
 
     if options.wire != NO_WIRE:
         raise typer.BadParameter("a batch has no wire: leave --wire out, or give --exams bus", param_hint="--exams")
     require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
-    if not IS_COMPILED:
-        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
+    say_if_interpreted()
 
 
 def _task_name(options: LessonOptions) -> str:

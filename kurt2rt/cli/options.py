@@ -44,7 +44,6 @@ def teacher_option(default: str) -> Any:
 def search_argument() -> Any:
     """Return the argument of `kurt2rt search`."""
     return typer.Argument(
-        metavar=_NAME_OR_PATH,
         help="Search: a name in config/searches, or the path of a YAML file.",
         autocompletion=_names_in("searches"),
     )

@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
 from kurt2rt.cli.progress import one_bar
@@ -58,6 +59,7 @@ def search(options: _Options) -> None:
         kurt2rt search circle --trials 20 --jobs 2
     """
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
     from kurt2rt.experiments.search.figures import draw_trials
     from kurt2rt.experiments.search.found import write_found
@@ -79,6 +81,8 @@ def search(options: _Options) -> None:
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
     command = typed_command("search", options)
     require_unchecked(plan, trials)
+    if settings.exams is ExamLoop.BATCH:
+        say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
     with results.held(), one_bar(trials_s + check_time_s(plan)) as bar:
         journal = TrialJournal(plan)

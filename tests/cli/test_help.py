@@ -69,6 +69,7 @@ def test_every_command_is_found() -> None:
             "certify",
             "broken",
             "results",
+            "search",
             "faults",
             "soak",
             "why",
@@ -110,7 +111,18 @@ def test_help_mentions_every_option_and_explains_it(
 
 
 def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
-    extras = ("matplotlib", "pymunk", "scipy", "jinja2", "shapely", "PIL", "contourpy", "starlette", "uvicorn")
+    extras = (
+        "matplotlib",
+        "pymunk",
+        "scipy",
+        "jinja2",
+        "shapely",
+        "PIL",
+        "contourpy",
+        "starlette",
+        "uvicorn",
+        "optuna",
+    )
     without = f"import sys; sys.modules.update(dict.fromkeys({extras})); sys.argv = ['kurt2rt', '--help']"
     command = [sys.executable, "-c", f"{without}; from kurt2rt.cli.main import main; main()"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)

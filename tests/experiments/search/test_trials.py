@@ -66,11 +66,19 @@ def test_search_told_twice_changes_nothing(whole: list[Trial], tmp_path: Path) -
     assert (plan.folder / FILE).read_bytes() == content
 
 
+@pytest.mark.deep
+def test_search_in_two_processes_has_the_same_trials(whole: list[Trial], tmp_path: Path) -> None:
+    plan = tiny_plan(tmp_path)
+    with opened(plan) as journal:
+        run_trials(plan, journal, 3, 2, lambda _: None)
+        assert trials_of(journal) == whole
+
+
 class _Stop:
     left = 0
 
 
-@pytest.mark.parametrize("waves", range(4))
+@pytest.mark.parametrize("waves", [1, 3])
 def test_search_interrupted_between_robots_goes_on(
     waves: int, whole: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
