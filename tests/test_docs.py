@@ -23,8 +23,8 @@ from hal.settings import Settings, load_settings
 from kurt2rt.core.perception.definition import SituationDefinition
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
-from kurt2rt.gym.registration import ENVIRONMENTS
 from kurt2rt.experiments.search.settings import SearchSettings
+from kurt2rt.gym.registration import ENVIRONMENTS
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.service.settings import ServiceSettings
 from simbridge.worlds.world_settings import WorldSettings
