@@ -57,10 +57,16 @@ def lesson(options: LessonOptions) -> None:
     press, a hold, a rewind, after drives by hand, with the lesson at another
     speed, by the superhuman teacher, and by one that answers only.
 
+    With --seeds results are kept in --out with hashes of what made them; a run
+    that was interrupted goes on where it was. A robot of a basic task that was
+    made otherwise is taught again, and its knowledge file gets a new name.
+    Several machines share the robots:
+
+        kurt2rt lesson --seeds 100-119 --shard 2/8 --out part-2
+
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
-    teacher. With --seeds results are kept in --out with hashes of what made
-    them; a run that was interrupted goes on where it was:
+    teacher:
 
         kurt2rt lesson --task route
         kurt2rt lesson --task route --seeds 0-9 --decisions 8 --decisions 12

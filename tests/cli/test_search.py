@@ -8,7 +8,6 @@ import pytest
 import yaml
 
 from hal.settings import load_settings
-from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.search.settings import SearchSettings
 from tests.cli.helpers import CommandLine, unknown_name
 from tests.experiments.search.tiny import SHORT, tiny_search
@@ -43,17 +42,6 @@ def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tm
     assert (told["better"] is None) == (found["changes"] == {})
     assert yaml.safe_load(Path("made/found.yaml").read_text()) == found
     assert "allowed 3" in kurt2rt.refused("search", tiny_search(tmp_path), *WORDS, "--trials", "4")
-
-
-def test_found_changes_are_taken_by_set(kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("kurt2rt.experiments.search.check.CheckedSettings.is_better", True)
-    said = kurt2rt("search", tiny_search(tmp_path), *WORDS, "--trials", "2")
-    assert said.exit_code == 0, said.err
-    found = yaml.safe_load(Path("made/found.yaml").read_text())
-    (checked,) = found["checked"]
-    task = load_task("wall_following", changes={key: json.dumps(value) for key, value in found["changes"].items()})
-    assert task.learning.radius == checked["values"]["learning.radius"] != 900.0
-    assert task.learning.weights[0].weight == checked["values"]["learning.weights.0.weight"]
 
 
 @pytest.mark.parametrize(

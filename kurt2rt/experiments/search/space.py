@@ -3,6 +3,7 @@
 import copy
 import json
 from collections.abc import Mapping
+from itertools import combinations, product
 from typing import Any
 
 from hal.settings import SettingsError
@@ -85,6 +86,7 @@ class TaskSpace:
         self.shipped: Values = {each.key: value_at(self._content, each.key) for each in search.space}
         for each in search.space:
             self._require_free(each)
+        self._require_fit()
 
     def changes(self, values: Values) -> dict[str, Any]:
         """Return what a trial changes in the task's file, by dotted key."""
@@ -113,6 +115,12 @@ class TaskSpace:
             raise SettingsError(
                 f"{key}: the teacher {self._profile.name} decides it", where="space", do="name another teacher or key"
             )
+
+    def _require_fit(self) -> None:
+        """Check the ends of each two ranges, so that no trial fails on values that do not fit each other."""
+        for first, second in combinations(self._search.space, 2):
+            for one, other in product((first.low, first.high), (second.low, second.high)):
+                self.task({first.key: rounded(first, one), second.key: rounded(second, other)})
 
 
 def rounded(dimension: Dimension, value: float) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 ROBOTS = 20
 """Number of robots for which targets are defined."""
-CHOSEN_ON = range(80)
+CHOSEN_ON = (range(80), range(3000, 4000))
 """Seeds that settings were searched on; results of such robots are not judged."""
 
 
@@ -13,8 +13,9 @@ def reasons_against_judging(seeds: Sequence[int]) -> Iterator[str]:
     robots = len(seeds)
     if robots < ROBOTS:
         yield f"{robots} robot{'' if robots == 1 else 's'} only; the numbers are asked of {ROBOTS}."
-    if known := sum(seed in CHOSEN_ON for seed in seeds):
-        yield (
-            f"{known} of the seeds are among {CHOSEN_ON[0]} to {CHOSEN_ON[-1]}, on which settings were chosen; "
-            "give others."
-        )
+    for chosen in CHOSEN_ON:
+        if known := sum(seed in chosen for seed in seeds):
+            yield (
+                f"{known} of the seeds are among {chosen[0]} to {chosen[-1]}, on which settings were chosen; "
+                "give others."
+            )

@@ -63,6 +63,13 @@ def test_key_that_does_not_fit_is_refused(key: str, low: float, high: float, tol
         space(tmp_path, {"key": key, "low": low, "high": high})
 
 
+def test_ranges_whose_ends_do_not_fit_each_other_are_refused(tmp_path: Path) -> None:
+    usual = {"key": "learning.doubt.usual_distance", "low": 0.05, "high": 0.2}
+    space(tmp_path, usual, {"key": "learning.doubt.rare_distance", "low": 0.21, "high": 0.9})
+    with pytest.raises(SettingsError, match="rare_distance must be above usual_distance"):
+        space(tmp_path, usual, {"key": "learning.doubt.rare_distance", "low": 0.11, "high": 0.9})
+
+
 def test_key_that_the_teacher_decides_is_refused(tmp_path: Path) -> None:
     asks = {"key": "learning.asks_beyond_share", "low": 0.3, "high": 1.0}
     space(tmp_path, asks)

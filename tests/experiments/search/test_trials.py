@@ -1,9 +1,10 @@
 """Trials: the same at every run, in any number of processes, and after any interruption."""
 
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from optuna.trial import TrialState
@@ -36,9 +37,31 @@ def run(plan: SearchPlan, trials: int = 3, progress: list[PoolProgress] | None =
         return trials_of(journal)
 
 
+class Whole(NamedTuple):
+    """A search that was never interrupted."""
+
+    folder: Path
+    trials: list[Trial]
+    progress: list[PoolProgress]
+
+
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> list[Trial]:
-    return run(tiny_plan(tmp_path_factory.mktemp("whole")))
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Whole:
+    folder, progress = tmp_path_factory.mktemp("whole"), list[PoolProgress]()
+    return Whole(folder, run(tiny_plan(folder), progress=progress), progress)
+
+
+@pytest.fixture
+def whole(finished: Whole) -> list[Trial]:
+    return finished.trials
+
+
+@pytest.fixture
+def copied(finished: Whole, tmp_path: Path) -> SearchPlan:
+    """Return the plan of a copy of the finished search."""
+    plan = tiny_plan(tmp_path)
+    shutil.copytree(finished.folder / "made", plan.folder)
+    return plan
 
 
 def test_first_trial_has_the_shipped_settings(whole: list[Trial]) -> None:
@@ -55,15 +78,16 @@ def test_trial_is_scored_by_all_its_robots(whole: list[Trial]) -> None:
         assert value == scores[1]
 
 
-def test_search_told_twice_changes_nothing(whole: list[Trial], tmp_path: Path) -> None:
-    plan, progress = tiny_plan(tmp_path), list[PoolProgress]()
-    assert run(plan, progress=progress) == whole
-    done_s = [each.done_s for each in progress]
+def test_progress_is_in_robot_time_of_all_trials(finished: Whole) -> None:
+    done_s = [each.done_s for each in finished.progress]
     assert done_s == sorted(done_s)
     assert done_s[-1] == pytest.approx(3 * 2 * (2.0 + 2.0))
-    content = (plan.folder / FILE).read_bytes()
-    assert run(plan) == whole
-    assert (plan.folder / FILE).read_bytes() == content
+
+
+def test_finished_search_is_left_alone(whole: list[Trial], copied: SearchPlan) -> None:
+    content = (copied.folder / FILE).read_bytes()
+    assert run(copied) == whole
+    assert (copied.folder / FILE).read_bytes() == content
 
 
 @pytest.mark.deep
@@ -98,15 +122,13 @@ def test_search_interrupted_between_robots_goes_on(
     assert run(tiny_plan(tmp_path)) == whole
 
 
-def test_journal_cut_at_any_line_goes_on_to_the_same(whole: list[Trial], tmp_path: Path) -> None:
-    plan = tiny_plan(tmp_path)
-    run(plan)
-    journal = plan.folder / FILE
+def test_journal_cut_at_any_line_goes_on_to_the_same(whole: list[Trial], copied: SearchPlan) -> None:
+    journal = copied.folder / FILE
     lines = journal.read_bytes().splitlines(keepends=True)
     for count in range(len(lines)):
         journal.write_bytes(b"".join(lines[:count]) + lines[count][: len(lines[count]) // 2])
         Path(f"{journal}.lock").symlink_to("gone")  # a killed process leaves it
-        assert run(plan) == whole
+        assert run(copied) == whole
 
 
 @pytest.mark.parametrize(("other", "what"), [({"sampler_seed": 1}, "task"), ({"source": "new"}, "source")])
