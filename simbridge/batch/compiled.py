@@ -61,5 +61,5 @@ def compiled(function: Callable[_P, _T]) -> Callable[_P, _T]:
         raise ValueError(f"{function.__module__} is not among the sources of the batch")
     if _numba is None:
         return function
-    fast: Callable[_P, _T] = _numba.njit(cache=_CACHES, error_model="numpy")(function)
+    fast: Callable[_P, _T] = _numba.njit(cache=_CACHES, error_model="numpy", forceinline=True, _nrt=False)(function)
     return fast

@@ -6,7 +6,7 @@ from behaviors.keep_distance import KeepDistanceNumbers, steer
 from behaviors.policies import circle, eight, fleeing, wall_following
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import Features, Floats, Integers, Knowledge, MindLaw, Robot
+from simbridge.batch.parts import Conditions, Features, Floats, Integers, Knowledge, MindLaw, Robot
 
 KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT = range(5)
 """Kinds of minds."""
@@ -95,24 +95,50 @@ def _least_square(row: int, conditions: Floats, situation: Floats) -> float:
 
 
 @compiled
-def nearest(first: int, end: int, guess: int, conditions: Floats, situation: Floats) -> tuple[int, float]:
+def nearest(first: int, end: int, guess: int, conditions: Conditions, situation: Floats) -> tuple[int, float]:
     """Return row and distance of the condition nearest to a situation among rows `first` to `end`; -1 without rows.
 
     `guess`: a row that is probably near, which spares most sums.
 
-    `conditions`: (rows, values), in counts. `situation`: (64,). Of equally near conditions the older one wins.
+    `situation`: (64,). Of equally near conditions the older one wins.
     """
-    best, least_square, least = -1, math.inf, math.inf
-    bound = _SLACK * exact_square(guess, conditions, situation) if first <= guess < end else math.inf
-    for row in range(first, end):
-        if _least_square(row, conditions, situation) > bound:
+    if first == end:
+        return -1, math.inf
+    if not first <= guess < end:
+        guess = first
+    square = exact_square(guess, conditions.values, situation)
+    best, least, bound = guess, math.sqrt(square), _SLACK * square
+    guess_away = least
+    for k in range(1, min(conditions.neighbours.shape[1], end - first)):
+        # By the triangle inequality this row and all further ones are farther away than the best.
+        if conditions.apart[guess, k] > _SLACK * (guess_away + least):
+            return best, least
+        row = conditions.neighbours[guess, k]
+        if _least_square(row, conditions.values, situation) > bound:
             continue
-        square = exact_square(row, conditions, situation)
-        if square < least_square:
-            distance = math.sqrt(square)
-            if distance < least:
-                best, least_square, least = row, square, distance
-                bound = min(bound, _SLACK * square)
+        square = exact_square(row, conditions.values, situation)
+        distance = math.sqrt(square)
+        if distance < least or (distance == least and row < best):
+            best, least = row, distance
+            bound = min(bound, _SLACK * square)
+    if conditions.neighbours.shape[1] < end - first:
+        return _nearest_of_all(first, end, bound, conditions.values, situation)
+    return best, least
+
+
+@compiled
+def _nearest_of_all(first: int, end: int, bound: float, values: Floats, situation: Floats) -> tuple[int, float]:
+    """Return row and distance of the nearest condition by comparing all rows, (rows, values), in counts.
+
+    `bound`: square of a distance in counts squared, within which there is a condition. `situation`: (64,).
+    """
+    best, least = -1, math.inf
+    for row in range(first, end):
+        if _least_square(row, values, situation) > bound:
+            continue
+        distance = math.sqrt(exact_square(row, values, situation))
+        if distance < least:
+            best, least = row, distance
     return best, least
 
 

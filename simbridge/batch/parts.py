@@ -323,13 +323,23 @@ class Features(NamedTuple):
     weights: Floats
 
 
+class Conditions(NamedTuple):
+    """Weighted conditions of all RLAs, and which of them are near each other."""
+
+    values: Floats
+    """In counts, (rows, values); the number of values is a multiple of eight."""
+    neighbours: Integers
+    """Rows of the same knowledge, the nearest first, which is the row itself; (rows, neighbours)."""
+    apart: Floats
+    """Their distances from the row in counts, (rows, neighbours); infinite beyond the last one."""
+
+
 class Knowledge(NamedTuple):
     """Taught RLAs of all knowledges of a batch, oldest first; withdrawn ones are left out."""
 
     first: Integers
     """First row of each knowledge, and the end of the last one, (knowledges + 1,)."""
-    conditions: Floats
-    """Weighted conditions, (rows, values)."""
+    conditions: Conditions
     radius: Floats
     answer: Integers
     """Row of the RLA that answers for the RLAs of one condition."""

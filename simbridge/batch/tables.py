@@ -1,6 +1,7 @@
 """Knowledge of a batch as arrays, and the refusal of what the batch does not know."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,10 +13,12 @@ from hal.batch import DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings, SpeedMode
 from simbridge.batch.minds import CIRCLE, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
-from simbridge.batch.parts import MOST_KEPT, MOST_VALUES, Features, Knowledge
+from simbridge.batch.parts import MOST_KEPT, MOST_VALUES, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.simulated_robot import SimulatedRobot
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT}
+_MOST_NEIGHBOURS = 128
+"""Neighbours of a condition that are kept, so that thousands of RLAs need no square of their number."""
 _NO_FEATURES = FeatureTable((), (), ())
 
 
@@ -91,13 +94,33 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
     place = {name: index for index, name in enumerate(actions)}
     knowledge = Knowledge(
         first=first,
-        conditions=conditions,
+        conditions=build_conditions(conditions, first),
         radius=np.array([radius for mind in tables for radius in mind.radii], dtype=np.float64),
         answer=answer,
         action=np.array([place[name] for mind in tables for name in mind.actions], dtype=np.int64),
         features=_features(features),
     )
     return knowledge, of
+
+
+def build_conditions(values: Floats, first: Integers) -> Conditions:
+    """Return conditions with their neighbours.
+
+    Args:
+        values: weighted conditions in counts, (rows, values).
+        first: first row of each knowledge, and the end of the last one, (knowledges + 1,).
+    """
+    most = min(_MOST_NEIGHBOURS, int(np.diff(first).max(initial=0)))
+    neighbours = np.zeros((len(values), most), dtype=np.int64)
+    apart = np.full((len(values), most), np.inf)
+    for begin, end in pairwise(first.tolist()):
+        for row in range(begin, end):
+            away = np.sqrt(((values[begin:end] - values[row]) ** 2).sum(axis=1))
+            away[row - begin] = -1.0  # before its equals
+            order = np.argsort(away, kind="stable")[:most]
+            neighbours[row, : len(order)] = order + begin
+            apart[row, : len(order)] = away[order]
+    return Conditions(values, neighbours, apart)
 
 
 def _features(table: FeatureTable) -> Features:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _BLOCK = 2048
+_NONE: NDArray[np.float64] = np.zeros(0)
 
 
 class Noise:
@@ -14,6 +15,8 @@ class Noise:
         self._generator = np.random.Generator(np.random.PCG64([seed, *stream.encode()]))
         self._block: list[float] = []
         self._used = 0
+        self._ahead: NDArray[np.float64] = _NONE
+        """Numbers that follow those of the block."""
         self._fractions: list[float] = []
         self.drawn = 0
         """Numbers drawn so far; with the seed the whole state of the stream."""
@@ -21,20 +24,23 @@ class Noise:
     def normal(self) -> float:
         """Return the next standard normal number, dimensionless."""
         if self._used == len(self._block):
-            self._block = self._generator.standard_normal(_BLOCK).tolist()
-            self._used = 0
+            ahead = self._ahead if len(self._ahead) else self._generator.standard_normal(_BLOCK)
+            self._block, self._used, self._ahead = ahead.tolist(), 0, _NONE
         self._used += 1
         self.drawn += 1
         return self._block[self._used - 1]
 
     def normals(self, count: int) -> NDArray[np.float64]:
         """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""
-        blocks = -(-(count - (len(self._block) - self._used)) // _BLOCK)
-        fresh = self._generator.standard_normal(_BLOCK * max(0, blocks))
-        numbers = np.concatenate((np.array(self._block[self._used :]), fresh))
-        self._block, self._used = numbers[count:].tolist(), 0
+        if self._used < len(self._block):
+            self._ahead = np.concatenate((self._block[self._used :], self._ahead))
+        self._block, self._used = [], 0
+        blocks = -(-(count - len(self._ahead)) // _BLOCK)
+        if blocks > 0:
+            self._ahead = np.concatenate((self._ahead, self._generator.standard_normal(_BLOCK * blocks)))
+        numbers, self._ahead = self._ahead[:count], self._ahead[count:]
         self.drawn += count
-        return numbers[:count]
+        return numbers
 
     def fraction(self) -> float:
         """Return the next uniform number from 0 up to 1, 1 excluded."""

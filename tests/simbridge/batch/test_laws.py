@@ -25,13 +25,14 @@ from simbridge.batch.parts import GuardLaw, World
 from simbridge.batch.safety import looks_broken, slewed
 from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
+from simbridge.batch.tables import build_conditions
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_robot import SimulatedRobot
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
 
-@given(rows=st.integers(1, 40), seed=st.integers(0, 2**32 - 1), twice=st.booleans())
+@given(rows=st.integers(1, 200), seed=st.integers(0, 2**32 - 1), twice=st.booleans())
 def test_nearest_equals_the_match_to_the_last_bit(rows: int, seed: int, twice: bool) -> None:
     chance = np.random.default_rng(seed)
     conditions = np.zeros((rows, 72))
@@ -46,11 +47,12 @@ def test_nearest_equals_the_match_to_the_last_bit(rows: int, seed: int, twice: b
     ahead = np.zeros(64)
     ahead[:36] = situation[:36]
     guess = int(chance.integers(-1, rows))
-    assert nearest(0, rows, guess, packed, ahead) == (int(distances.argmin()), float(distances.min()))
+    conditions_of = build_conditions(packed, np.array([0, rows]))
+    assert nearest(0, rows, guess, conditions_of, ahead) == (int(distances.argmin()), float(distances.min()))
 
 
 def test_nearest_of_no_condition_is_none() -> None:
-    assert nearest(3, 3, 3, np.zeros((3, 40)), np.zeros(64)) == (-1, math.inf)
+    assert nearest(3, 3, 3, build_conditions(np.zeros((3, 40)), np.array([0, 3])), np.zeros(64)) == (-1, math.inf)
 
 
 def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
