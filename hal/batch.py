@@ -167,8 +167,11 @@ class Batch(Protocol):
         """Names of the actions, by index."""
         ...
 
-    def drive(self, robots: Sequence[int], ticks: int) -> None:
-        """Let these robots drive so many ticks on; robots that leave the batch or are stuck stop early."""
+    def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
+        """Let these robots drive so many ticks on, and return those that can go on.
+
+        Robots that leave the batch or are stuck stop early.
+        """
         ...
 
     def reason_to_leave(self, robot: int) -> str:
@@ -203,12 +206,26 @@ class FollowedSimulation(Simulation, Protocol):
         ...
 
 
+class Start(NamedTuple):
+    """World and seed of a simulation."""
+
+    world: str
+    seed: int
+
+
 @runtime_checkable
 class BatchFactory(SimulationFactory, Protocol):
     """Opens simulations, and batches of their robots."""
 
     def open(self, world: str, seed: int, purpose: str) -> FollowedSimulation:
         """Open a simulation (hal.simulation.SimulationFactory)."""
+        ...
+
+    def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:
+        """Open a simulation for each start, as `open` does; a world that several share is loaded once.
+
+        The caller closes them. Raises SettingsError for an unknown world; then none stays open.
+        """
         ...
 
     def open_batch(

@@ -3,6 +3,7 @@
 import hashlib
 import struct
 from collections.abc import Sequence
+from functools import cached_property
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -52,7 +53,8 @@ class SimulatedRobot:
         self.infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self.infrared_noise, build)
         self.bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = CollisionCounter(cycle_s)
-        self._progress = WallProgress(self.world)
+        self._placed: Pose = world.start_poses[0].pose
+        """Pose of the last placement, from which the progress along walls counts."""
         self._followed: Pose | None = None
         """Pose in a batch; None for a robot that drives itself."""
         self._passed: list[Pose] = []
@@ -91,13 +93,22 @@ class SimulatedRobot:
         self._cycles += len(poses)
         self._followed = poses[-1]
 
+    @cached_property
+    def _progress(self) -> WallProgress:
+        # Made when it is asked for: its survey takes as long as all else of a robot in a batch, which needs none.
+        progress = WallProgress(self.world)
+        progress.reset(self._placed)
+        return progress
+
     def place(self, pose: Pose) -> None:
         """Move the robot to a pose: wheels still, sensors settled, no lap or collision counted."""
         self.wheels.halt()
         self.body.place(pose)
         self._collisions.end_episode()
         self._pressed = 0
-        self._progress.reset(pose)
+        self._placed = pose
+        if "_progress" in self.__dict__:
+            self._progress.reset(pose)
         self.infrared.measure_all(pose)
         self.controller.update_readings(range(len(self.infrared.counts)), self.infrared.counts)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind
+from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
@@ -23,6 +23,7 @@ from simbridge.survey.drawing import draw_robot, draw_world
 from simbridge.survey.free_poses import FreePoses
 from simbridge.wire.line import NO_WIRE, open_line, require_wire
 from simbridge.worlds.world_loading import load_world
+from simbridge.worlds.world_settings import WorldSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,13 +40,14 @@ class Kurt2Simulation:
         purpose: str,
         wire: str = NO_WIRE,
         driver: type[Kurt2] = Kurt2,
+        loaded: WorldSettings | None = None,
     ) -> None:
         """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
 
         `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
-        `driver`: drives the simulated robot over its bus.
+        `driver`: drives the simulated robot over its bus. `loaded`: settings of the world; None: they are loaded.
         """
-        self._world = load_world(world, settings)
+        self._world = loaded or load_world(world, settings)
         self._cycle_s = settings.can.cycle_s
         chance = random.Random(f"{purpose} in world {world}, seed {seed}")
         noise_seed = chance.getrandbits(32)
@@ -173,6 +175,22 @@ class Kurt2SimulationFactory:
         Raises SettingsError for an unknown world or wire.
         """
         return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
+
+    def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:
+        """Open a simulation for each start; a world that several share is loaded once (hal.batch.BatchFactory).
+
+        Raises SettingsError for an unknown world or wire.
+        """
+        worlds = {world: load_world(world, self.settings) for world in dict.fromkeys(start.world for start in starts)}
+        opened: list[FollowedSimulation] = []
+        try:
+            for world, seed in starts:
+                opened.append(Kurt2Simulation(self.settings, world, seed, purpose, self.wire, loaded=worlds[world]))
+        except BaseException:
+            for each in opened:
+                each.close()
+            raise
+        return opened
 
     def open_batch(
         self, simulations: Sequence[FollowedSimulation], minds: Sequence[Mind], settings: DriveSettings

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from hal.batch import STANDS, DriveSettings, Mind, Stretch, Tally
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
-from simbridge.batch.contacts import ContactBody
+from simbridge.batch.contacts import ContactBody, SetPoints
 from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting
 from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.setup import build_laws, build_robots
@@ -62,9 +62,9 @@ class RobotBatch:
         # The bodies in the engine draw their slip themselves, when they catch up.
         self._streams = [(copy.deepcopy(each.slip_noise), each.infrared_noise) for each in simulated]
         self._bodies = [ContactBody(each) for each in simulated]
-        self._behind: list[list[NDArray[np.int16]]] = [[] for _ in simulated]
-        """Set points (ticks, 2) in cm/s of the stretches that each body in the engine lags behind."""
-        self._caught_up = [0] * len(simulated)
+        self._set_points = SetPoints()
+        """Those of the earlier stretches that each body in the engine lags behind."""
+        self._caught_up = np.zeros(len(simulated), dtype=np.int64)
         """Ticks of the present stretch that it has driven."""
         self._gap_cycles = CollisionCounter(robot.can.cycle_s).gap_cycles
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
@@ -72,44 +72,53 @@ class RobotBatch:
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
         self._driven = 0
 
-    def drive(self, robots: Sequence[int], ticks: int) -> None:
-        """Let these robots drive so many ticks on, at most the longest stretch.
+    def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
+        """Let these robots drive so many ticks on, at most the longest stretch, and return those that can go on.
 
         Robots that leave the batch or are stuck stop early. Raises ValueError for a longer stretch, and for a robot
         that stopped before.
         """
         if not 0 < ticks <= STRETCH:
             raise ValueError(f"a stretch of {ticks} ticks: give 1 to {STRETCH}")
+        if stopped := set(robots) - set(self._going_on(robots)):
+            raise ValueError(f"robot {min(stopped)} has left the batch, or is stuck")
         for r in robots:
-            if self._robots[r]["left"] or self._robots[r]["stuck"]:
-                raise ValueError(f"robot {r} has left the batch, or is stuck")
             self._draw_noise(r, ticks)
-            self._robots[r]["at"] = self._caught_up[r] = 0
+        chosen = np.array(robots, dtype=np.int64)
+        self._robots["at"][chosen] = self._caught_up[chosen] = 0
         self._driven = ticks
-        active = list(robots)
-        while active:
-            drive(np.array(active, dtype=np.int64), ticks, self._robots, self._world, self._laws, self._knowledge)
-            active = [r for r in active if self._robots[r]["waits"]]
-            for r in active:
+        active = chosen
+        while len(active):
+            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge)
+            active = active[self._robots["waits"][active] != 0]
+            for r in active.tolist():
                 self._move_in_engine(r)
-        for r in robots:
-            self._behind[r].append(self._told(r, ticks))
+        self._keep_set_points(chosen, ticks)
+        return self._going_on(robots)
+
+    def _going_on(self, robots: Sequence[int]) -> list[int]:
+        """Return those of the robots that neither left the batch nor are stuck."""
+        ended = (self._robots["left"] != 0) | (self._robots["stuck"] != 0)
+        return [r for r in robots if not ended[r]]
 
     def _move_in_engine(self, r: int) -> None:
         """Let the engine move the body of a robot that waits for it, and finish the robot's tick."""
         record = self._robots[r]
         end = int(record["at"]) + 1
-        behind = [each for stretch in (*self._behind[r], self._told(r, end)) for each in stretch.tolist()]
+        behind = self._set_points.take(r)
+        behind += zip(
+            record["track_left_cm_s"][self._caught_up[r] : end].tolist(),
+            record["track_right_cm_s"][self._caught_up[r] : end].tolist(),
+            strict=True,
+        )
         self._bodies[r].move(record, behind, self._gap_cycles)
-        self._behind[r].clear()
         self._caught_up[r] = end
         finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
 
-    def _told(self, r: int, end: int) -> NDArray[np.int16]:
-        """Return the set points of the present stretch that the body in the engine lags behind, up to a tick."""
-        record, begin = self._robots[r], self._caught_up[r]
-        sides = [record[f"track_{side}_cm_s"][begin:end] for side in ("left", "right")]
-        return np.stack(sides, axis=1).astype(np.int16)
+    def _keep_set_points(self, chosen: NDArray[np.int64], ticks: int) -> None:
+        """Keep the set points of the present stretch for the bodies in the engine that lag behind."""
+        sides = [self._robots[f"track_{side}_cm_s"][chosen, :ticks] for side in ("left", "right")]
+        self._set_points.add(chosen, np.stack(sides, axis=2).astype(np.int16), self._caught_up[chosen])
 
     def reason_to_leave(self, robot: int) -> str:
         """Return why a robot cannot be driven in the batch any further; empty if it can."""

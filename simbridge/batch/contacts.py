@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hal.batch_refusal import BatchRefusedError
 from simbridge.simulated_robot import SimulatedRobot
@@ -56,3 +57,31 @@ class ContactBody:
     def _step(self, left_cm_s: int, right_cm_s: int) -> None:
         self._wheels.turn(left_cm_s / 100.0, right_cm_s / 100.0)
         self._body.move(self._wheels.left_m_s, self._wheels.right_m_s)
+
+
+class SetPoints:
+    """Set points of a batch, stretch by stretch, until the body of a robot catches up with them."""
+
+    def __init__(self) -> None:
+        self._stretches: list[tuple[dict[int, int], NDArray[np.int16], NDArray[np.int64]]] = []
+        self._taken: dict[int, int] = {}
+        """Stretches that each robot has caught up with."""
+
+    def add(self, robots: NDArray[np.int64], told_cm_s: NDArray[np.int16], driven: NDArray[np.int64]) -> None:
+        """Add a stretch.
+
+        Args:
+            robots: of the stretch, (n,).
+            told_cm_s: their set points in cm/s, left and right, (n, ticks, 2).
+            driven: ticks of the stretch that the body of each robot has driven already, (n,).
+        """
+        self._stretches.append(({r: place for place, r in enumerate(robots.tolist())}, told_cm_s, driven))
+
+    def take(self, robot: int) -> list[tuple[int, int]]:
+        """Return the set points in cm/s that the body of a robot has not driven yet; they are not returned again."""
+        begin, self._taken[robot] = self._taken.get(robot, 0), len(self._stretches)
+        behind: list[tuple[int, int]] = []
+        for places, told_cm_s, driven in self._stretches[begin:]:
+            place = places[robot]
+            behind += map(tuple, told_cm_s[place, driven[place] :].tolist())
+        return behind

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from behaviors.metrics.task_metric import TaskMetric
-from hal.batch import Batch, BatchFactory, FollowedSimulation, Tally
+from hal.batch import Batch, BatchFactory, FollowedSimulation, Start, Tally
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
@@ -52,8 +52,7 @@ def drive_in_batch(
         for begin in range(0, ticks, _STRETCH_TICKS):
             stretch = min(_STRETCH_TICKS, ticks - begin)
             if active:
-                batch.drive(active, stretch)
-            active = [r for r in active if not (batch.tally(r).stuck or batch.reason_to_leave(r))]
+                active = batch.drive(active, stretch)
             tell((begin + stretch) * period_s * len(runs))
         outcomes: list[RunOutcome | None] = []
         for r, run in enumerate(runs):
@@ -85,12 +84,10 @@ def _opened(
     factory: BatchFactory, task: TaskSettings, setups: Sequence[ExamSetup]
 ) -> Iterator[list[FollowedSimulation]]:
     """Yield an open simulation for each setup, with the robot at its start; close them all."""
-    simulations: list[FollowedSimulation] = []
+    simulations = factory.open_all([Start(setup.world, setup.seed) for setup in setups], "exam")
     try:
-        for setup in setups:
-            simulation = factory.open(setup.world, setup.seed, "exam")
-            simulations.append(simulation)
-            if task.exam.start == "in_sight":
+        if task.exam.start == "in_sight":
+            for simulation, setup in zip(simulations, setups, strict=True):
                 chance = random.Random(setup.chance_seed)
                 task.course.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
                 simulation.reposition(chance, in_sight=True)
@@ -114,15 +111,18 @@ async def drive_on_bus(
     """
     with closing(factory.open(run.world, run.number, "exam")) as simulation:
         ticks = unknown_ticks = first_question = first_collision = 0
+        stopped = ""
 
         def count(record: TickRecord, _metric: TaskMetric) -> None:
-            nonlocal ticks, unknown_ticks, first_question, first_collision
+            nonlocal ticks, unknown_ticks, first_question, first_collision, stopped
             ticks = record.tick
             if record.decision.asking:
                 unknown_ticks += 1
                 first_question = first_question or ticks
             if simulation.collisions:
                 first_collision = first_collision or ticks
+            if stop := record.standing.stop:
+                stopped = stopped or f"{stop.reason.value} {stop.name}".strip()
 
         setup = ExamSetup(run.world, run.number, on_tick=count)
         exam = await examine(simulation, subject.robot, subject.task, subject.events, setup, tell)
@@ -135,8 +135,8 @@ async def drive_on_bus(
             first_question=first_question,
             collisions=exam.collisions,
             first_collision=first_collision,
-            stuck=exam.stuck,
-            alarm=exam.alarm,
+            stuck=exam.stuck and not stopped,
+            stopped=exam.alarm or stopped,
             travelled_m=_length_m(exam.trail),
             end=(*simulation.pose,),
         )

@@ -21,16 +21,17 @@ class RunOutcome(Settings):
     first_collision: int
     """Tick of the first collision; 0: none."""
     stuck: bool
-    alarm: str = ""
-    """Reason of the guard's latched stop, which ends the run; empty without one."""
+    """True if it stayed in place for too long without being stopped; this ends the run."""
+    stopped: str = ""
+    """Watch that stopped it until a teacher comes: for a broken sensor, or the guard's; empty without a stop."""
     travelled_m: float
     end: tuple[float, float, float]
     """Pose after the last tick: x, y in m, heading in rad."""
 
     @property
     def clean(self) -> bool:
-        """True without a collision, a question, an alarm and being stuck."""
-        return not (self.collisions or self.questions or self.alarm or self.stuck)
+        """True without a collision, a question, a stop and being stuck."""
+        return not (self.collisions or self.questions or self.stopped or self.stuck)
 
     def differing(self, other: "RunOutcome") -> list[str]:
         """Return the names of the fields that differ."""

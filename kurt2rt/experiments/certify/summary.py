@@ -37,7 +37,7 @@ class PlaceSummary:
     stuck: Share
     asked: Share
     stopped: Share
-    """Stopped by a latch of the guard, such as that of a sensor that looks broken."""
+    """Stopped by a watch, such as that of a sensor that looks broken."""
     clean: Share
     """None of these."""
     collisions_per_hour: Rate
@@ -80,7 +80,7 @@ def summarise_runs(place: str, runs: Sequence[RunOutcome], period_s: float) -> P
         collided=share(lambda run: run.collisions > 0),
         stuck=share(lambda run: run.stuck),
         asked=asked,
-        stopped=share(lambda run: bool(run.alarm)),
+        stopped=share(lambda run: bool(run.stopped)),
         clean=share(lambda run: run.clean),
         collisions_per_hour=_clustered([each.collisions for each in runs], hours),
         first_questions_per_hour=Rate(asked.events / until_asked, fewest / until_asked, most / until_asked),
@@ -97,7 +97,7 @@ def worst_runs(outcomes: Sequence[RunOutcome], count: int) -> list[RunOutcome]:
     """
 
     def badness(run: RunOutcome) -> tuple[float, ...]:
-        ended = bool(run.alarm) or run.stuck
+        ended = bool(run.stopped) or run.stuck
         return -run.collisions, not ended, run.ticks, run.first_question or math.inf, run.number
 
     return sorted((each for each in outcomes if not each.clean), key=badness)[:count]

@@ -77,7 +77,7 @@ def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
                 label_of(each.world),
                 str(each.collisions),
                 *map(format_tick, (each.first_collision, each.first_question, each.ticks if each.stuck else 0)),
-                each.alarm,
+                each.stopped,
             )
             for each in worst
         ),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise, starmap
 
 from behaviors.metrics.task_metric import StretchMetric, TaskMetric
-from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Stretch
+from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Stretch
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
 from kurt2rt.core.rla.events import TeachingEvent
@@ -62,10 +62,8 @@ def examine_in_batch(
 @contextmanager
 def _opened(factory: BatchFactory, exams: Sequence[BatchExam]) -> Iterator[list[FollowedSimulation]]:
     """Yield an open simulation for each exam; close them all."""
-    simulations: list[FollowedSimulation] = []
+    simulations = factory.open_all([Start(exam.setup.world, exam.setup.seed) for exam in exams], "exam")
     try:
-        for exam in exams:
-            simulations.append(factory.open(exam.setup.world, exam.setup.seed, "exam"))
         yield simulations
     finally:
         for simulation in simulations:
