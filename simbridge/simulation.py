@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind
+from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
@@ -128,12 +129,17 @@ class Kurt2Simulation:
 
     def rescue(self) -> None:
         """Put the robot, standing, at the nearest start pose."""
+        self.put(self.nearest_start)
+
+    @property
+    def nearest_start(self) -> Pose:
+        """Start pose that is nearest to the robot, in m and rad."""
         here = self.simulated_robot.pose
 
         def squared_distance(pose: Pose) -> float:
             return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
 
-        self.simulated_robot.place(min(self._starts, key=squared_distance))
+        return min(self._starts, key=squared_distance)
 
     def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Put the robot, standing, at a random start pose, or at any free pose `in_sight` of an obstacle.
@@ -141,7 +147,11 @@ class Kurt2Simulation:
         `close`: so close to it that the robot cannot turn on the spot. Raises hal.settings.SettingsError if no free
         pose is found.
         """
-        self.simulated_robot.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
+        self.put(self.draw_pose(chance, in_sight=in_sight, close=close))
+
+    def draw_pose(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> Pose:
+        """Return a random start pose, or a free pose `in_sight` of an obstacle, in m and rad (`reposition`)."""
+        return self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts)
 
     def put(self, pose: Pose) -> None:
         """Put the robot, standing, at this pose."""
@@ -194,6 +204,17 @@ class Kurt2SimulationFactory:
             raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
         robots = [each.simulated_robot for each in simulations if isinstance(each, Kurt2Simulation)]
         return RobotBatch(self.settings, robots, minds, settings)
+
+    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
+        """Open a simulation whose robot is taught in a batch (hal.batch_lesson.LessonFactory).
+
+        Raises BatchRefusedError for what the batch does not know, SettingsError for an unknown world.
+        """
+        from simbridge.batch.lesson_simulation import LessonSimulation
+
+        if self.wire != NO_WIRE:
+            raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
+        return LessonSimulation(self.settings, world, seed, purpose, settings)
 
     def require_worlds(self, *worlds: str) -> None:
         """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""

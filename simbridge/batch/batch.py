@@ -102,6 +102,10 @@ class RobotBatch:
         self._bodies[r].move(record, behind, self._gap_cycles)
         self._behind[r].clear()
         self._caught_up[r] = end
+        self._finish(r)
+
+    def _finish(self, r: int) -> None:
+        """Finish the tick of a robot whose body the engine has moved."""
         finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
 
     def _told(self, r: int, end: int) -> NDArray[np.int16]:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hal.batch_refusal import BatchRefusedError
+from hal.simulation import Pose
 from simbridge.simulated_robot import SimulatedRobot
 
 REMEMBERED_TICKS = 5
@@ -42,7 +43,7 @@ class ContactBody:
         record["x_m"], record["y_m"], record["heading_rad"] = body.pose
         record["vx_m_s"], record["vy_m_s"], record["yaw_rad_s"] = body.velocity
         record["left_slip"], record["right_slip"] = body.slip
-        record["bumpers"] = 0
+        record["bumpers"], record["touching"] = 0, body.touching
         remembers = int(record["engine_ticks"])
         if body.touching:
             record["bumpers"] = self._bumpers.pressed(body.contacts())
@@ -52,6 +53,13 @@ class ContactBody:
         else:
             record["free_cycles"] += 1
             record["engine_ticks"] = max(0, remembers - 1)
+
+    def put(self, pose: Pose, behind: Sequence[tuple[int, int]]) -> None:
+        """Put the body at a pose in m and rad, wheels still, after the ticks that it lags behind (`move`)."""
+        for left_cm_s, right_cm_s in behind:
+            self._step(left_cm_s, right_cm_s)
+        self._body.place(pose)
+        self._wheels.halt()
 
     def _step(self, left_cm_s: int, right_cm_s: int) -> None:
         self._wheels.turn(left_cm_s / 100.0, right_cm_s / 100.0)

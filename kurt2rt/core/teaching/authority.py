@@ -148,6 +148,16 @@ class ControlAuthority:
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
     @property
+    def held_action(self) -> str:
+        """Action that the teacher holds; empty if none is held."""
+        return "" if self.held_press is None else self._behaviour_name
+
+    @property
+    def held_until(self) -> int:
+        """Tick in which the lease of the held action is over."""
+        return self._behaviour_until
+
+    @property
     def driving_press(self) -> tuple[str, int] | None:
         """Teacher and press id of the manual drive; None if no speeds are driven by hand."""
         if self._speeds is None or self.teacher is None:

@@ -5,6 +5,7 @@ import random
 from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Sequence
+from copy import copy
 from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
@@ -51,6 +52,12 @@ class StuckDetector:
         """Begin a new window."""
         self._positions.clear()
         self._ticks = 0
+
+    def copy(self) -> "StuckDetector":
+        """Return a detector in the same state, to try out ticks that may be taken back."""
+        twin = copy(self)
+        twin._positions = self._positions.copy()
+        return twin
 
 
 class Episode(ABC):

@@ -9,7 +9,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
+from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.press_times import FixedTimes
 
 
@@ -79,6 +79,13 @@ class ScriptedTeacher(BasicTeacher):
         if self.phase is Phase.SUPERVISED or not self._corrects or not view.driving:
             return None
         return self._correct(view, ticks)
+
+    def skip(self, ahead: Ahead) -> int:
+        """Let the ticks pass before a question, and in phase 2 before an action that is not the right one."""
+        if self._ticks_asked or self._ticks_wrong or self._delete_after:
+            return 0
+        answers_only = self.phase is Phase.SUPERVISED or not self._corrects
+        return ahead.until_question if answers_only else ahead.until_difference
 
     def _correct(self, view: TeacherView, ticks: int) -> Command | None:
         right = self._policy.choose(view.infrared_counts, view.behaviour)

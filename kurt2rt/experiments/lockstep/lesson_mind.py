@@ -1,0 +1,163 @@
+"""Mind of a robot that is taught in a batch: the runtime's own parts, which act between two compiled stretches.
+
+They see each tick as kurt2rt.core.tick shows it to them. Ticks without a command are read from the log, later.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.batch_lesson import LessonCause, LessonMode, LessonRobot, TaughtRlas
+from kurt2rt.core.event_store import EventStore
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.teaching.commands import Command, CommandResult, Resume, Stream
+from kurt2rt.core.teaching.system_events import SystemEvent
+from kurt2rt.runtime import Runtime
+
+
+class LessonMind:
+    """Commands, lessons and counts of a robot in a batch; `robot` drives by the RLAs that they make."""
+
+    def __init__(self, runtime: Runtime, robot: LessonRobot, recent: LoggedDecisions, store: EventStore) -> None:
+        """Connect the runtime, whose handler reads `recent`; the robot's log has no tick yet."""
+        self._runtime, self._robot, self._recent, self._store = runtime, robot, recent, store
+        self._handler = runtime.handler
+        self._width = len(runtime.definition.features)
+        self._conditions: dict[int, NDArray[np.float64]] = {}
+        """Weighted recent features of each RLA that was created."""
+        self._known = 0
+        """Newest tick that was counted."""
+        self._decided = 0
+        """Newest tick before whose decision the handler was called."""
+        self._events: list[TeachingEvent] = []
+        """Lessons of the newest tick with commands, until that tick is counted."""
+        self._held: tuple[int | None, str] = (None, "")
+        self._mode = LessonMode()
+
+    def is_due(self, tick: int) -> bool:
+        """Return whether a tick has commands, or may have a lesson of a held action, so that `take` must be called."""
+        return not self._runtime.inbox.is_empty or self.next_due(tick) <= tick
+
+    def next_due(self, tick: int) -> float:
+        """Return the next tick, from `tick` on, that is due without a command; infinite without one."""
+        authority = self._handler.authority
+        if authority.held_press is None:
+            return np.inf
+        return min(self._handler.holds.next_tick(tick), max(tick, authority.held_until))
+
+    def take(self, tick: int) -> list[CommandResult]:
+        """Carry out the commands of a tick that was sensed, and the lessons of a held action; return the results."""
+        self.count(tick - 1)
+        results: list[CommandResult] = []
+        situation = Situation(self._recent.situation(tick), history_frozen=False)
+        for command in self._runtime.inbox.pop_all():
+            if isinstance(command, Stream):
+                self._handler.handle_stream(command, tick)
+                continue
+            assert not isinstance(command, SystemEvent)
+            results.append(self._handle(command, situation, tick))
+        self._events.extend(self._handler.teach_driven(tick))
+        self._before_decision(tick)
+        self._handler.authority.expire(tick)
+        for event in self._events:
+            self._store.submit(event)
+        if self._events:
+            self._robot.set_rlas(self._taught_rlas())
+        self._order(tick)
+        return results
+
+    def count(self, tick: int) -> None:
+        """Let the counts of uses, ends of RLAs and questions reach a tick of the log."""
+        if tick <= self._known:
+            return
+        first, self._known = self._known + 1, tick
+        self._follow_standstills(tick)
+        self._recent.newest = tick
+        self._count_rlas(first, tick)
+        self._count_questions(first, tick)
+
+    def _handle(self, command: Command, situation: Situation, tick: int) -> CommandResult:
+        assert not isinstance(command, Stream)
+        new = not self._handler.was_handled(command.command_id)
+        result, events = self._handler.handle(command, situation, tick)
+        self._events.extend(events)
+        if new and result.accepted and isinstance(command, Resume):
+            self._robot.trust_sensors()
+        return result
+
+    def _order(self, tick: int) -> None:
+        """Give the robot the orders of the handler as they are now."""
+        handler, authority = self._handler, self._handler.authority
+        action = authority.held_action if authority.is_manual(tick) else ""
+        held = (authority.held_press, action)
+        if held != self._held:
+            self._held = held
+            self._robot.restart_held()
+        share = handler.lesson_speed.share if handler.slows_actions else 1.0
+        mode = LessonMode(handler.active_stop is not None, action, share)
+        if mode != self._mode:
+            self._mode = mode
+            self._robot.set_mode(mode)
+
+    def _taught_rlas(self) -> TaughtRlas:
+        system, width = self._runtime.level.system, self._width
+        rlas = system.rlas
+        for rla in rlas:
+            if rla.rla_id not in self._conditions:
+                weighted = np.array(rla.condition, dtype=np.float64) * system.weights
+                self._conditions[rla.rla_id] = weighted[:width]
+        return TaughtRlas(
+            [rla.rla_id for rla in rlas],
+            [self._conditions[rla.rla_id] for rla in rlas],
+            [system.radius_of(rla) for rla in rlas],
+            [rla.action for rla in rlas],
+        )
+
+    def _before_decision(self, tick: int) -> None:
+        drove = tick > 1 and self._robot.log.actions[tick - 1] >= 0
+        self._handler.before_decision(tick, was_driving=bool(drove))
+        self._decided = tick
+
+    def _follow_standstills(self, until: int) -> None:
+        """Show the handler each tick, up to `until`, before which the robot began to drive or to stand."""
+        first = self._decided + 1
+        if first > until:
+            return
+        drove = self._robot.log.actions[max(0, first - 2) : until] >= 0
+        changes = np.flatnonzero(drove[1:] != drove[:-1]) + max(0, first - 2) + 2
+        for tick in sorted({first, *changes.tolist()}):
+            self._recent.newest = tick - 1
+            self._before_decision(tick)
+        self._decided = until
+
+    def _count_rlas(self, first: int, last: int) -> None:
+        """Count uses, transitions and ends of RLAs, as in each tick."""
+        log, runtime = self._robot.log, self._runtime
+        driving = log.rlas[first - 1 : last + 1]
+        at_full_speed = np.where(log.slow[first - 1 : last + 1], 0, driving)
+        changed = (driving[1:] != driving[:-1]) | (at_full_speed[1:] != at_full_speed[:-1])
+        changed[:2] = True  # the lessons of the first tick act on the second
+        for place in np.flatnonzero(changed).tolist():
+            tick = first + place
+            expected = int(at_full_speed[place + 1]) or None
+            runtime.expectations.follow(tick, expected, self._recent.situation(tick), "")
+            runtime.statistics.count(int(driving[place + 1]) or None)
+            if place == 0:
+                self._apply_events()
+
+    def _apply_events(self) -> None:
+        for event in self._events:
+            invalidated = self._runtime.expectations.on_event(event)
+            if invalidated is not None:
+                self._runtime.statistics.drop_follow_ups(invalidated)
+        self._events.clear()
+
+    def _count_questions(self, first: int, last: int) -> None:
+        """Tell the handler of each question's first and last tick, and of the tick after it."""
+        asks = self._robot.log.causes[first : last + 1] == LessonCause.UNKNOWN
+        edges = np.flatnonzero(asks[1:] != asks[:-1])
+        for place in sorted({0, len(asks) - 1, *edges.tolist(), *(edges + 1).tolist()}):
+            self._handler.on_decision(first + place, asks=bool(asks[place]))
+
+
