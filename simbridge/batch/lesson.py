@@ -182,5 +182,3 @@ class CompiledLesson(RobotBatch):
         self._saved[0] = self._robots[0]
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
             saved[:] = array
-
-

@@ -113,9 +113,7 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
 
 
 @compiled
-def _decide(
-    robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Orders, log: LessonLog
-) -> None:
+def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Orders, log: LessonLog) -> None:
     """Decide the tick that was sensed, and send CONTROL."""
     learner.numbers[SENSED] = 0
     tick, cause = robot.tick, _choose(robot, laws, table, orders)

@@ -81,9 +81,7 @@ class ExpectationTracker:
             following.restart()
         return following.update(commanded, mid.vector, driving=driving and counts) or surprise
 
-    def follow(
-        self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str
-    ) -> Surprise | None:
+    def follow(self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str) -> Surprise | None:
         """Learn at the basic level from one tick; ticks in which the same RLA drives on may be left out.
 
         Args:

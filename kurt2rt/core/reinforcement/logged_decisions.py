@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from hal.batch_lesson import LessonCause, LessonLog
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
-_TEACHABLE = (LessonCause.RLA, LessonCause.HELD, LessonCause.UNKNOWN, LessonCause.TEACHER)
+_TEACHABLE = frozenset(map(int, LessonCause)) - {int(LessonCause.STOPPED)}
 """Causes of ticks that a held action may become a lesson about: in a batch a teacher drives by holding an action."""
 
 
@@ -40,7 +40,7 @@ class LoggedDecisions(DecisionHistory):
 
     def teachable(self, tick: int) -> bool:
         """Return whether a held action may become a lesson about a stored tick."""
-        return self._log.causes[tick] in _TEACHABLE
+        return self._log.causes.item(tick) in _TEACHABLE
 
     def touched(self, tick: int) -> bool:  # noqa: ARG002 - lessons of scripted teachers
         """Return False: a robot that a scripted teacher teaches does not ask at a bumper."""

@@ -7,6 +7,7 @@ Where it gives a command, the robot goes back to that tick, and its own runtime 
 import math
 from collections.abc import Callable
 from contextlib import closing
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -22,6 +23,7 @@ from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
@@ -32,6 +34,7 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 
+_UNKNOWN = int(LessonCause.UNKNOWN)
 _STRETCH_TICKS = 200
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
 
@@ -120,16 +123,16 @@ def _drive_settings(settings: RobotSettings, task: TaskSettings, plan: LessonPla
 class _Ahead:
     """Ticks of the log that the teacher has not seen yet (kurt2rt.teacher.scripted.basic_teacher.Ahead)."""
 
-    def __init__(self, questions: NDArray[np.int64], differences: NDArray[np.int64], last: int) -> None:
-        """Know the ticks up to `last`; `questions` and `differences`: ticks of them, ascending, each (n,)."""
-        self._questions, self._differences, self._last = questions, differences, last
+    def __init__(self, questions: NDArray[np.intp], differences: NDArray[np.intp], changes: NDArray[np.intp]) -> None:
+        """Know the ticks of questions and so on, ascending, each (n,)."""
+        self._questions, self._differences, self._changes = questions, differences, changes
         self._tick = 0
         self.ticks = 0
         """Number of known ticks."""
 
-    def after(self, tick: int) -> "_Ahead":
-        """Look from the tick after `tick` on."""
-        self._tick, self.ticks = tick, self._last - tick
+    def after(self, tick: int, until: int) -> "_Ahead":
+        """Look from the tick after `tick` on, up to `until`."""
+        self._tick, self.ticks = tick, until - tick
         return self
 
     @property
@@ -142,9 +145,14 @@ class _Ahead:
         """Number of ticks before the first in which it asks or does another action than the policy's."""
         return self._until(self._differences)
 
-    def _until(self, ticks: NDArray[np.int64]) -> int:
+    @property
+    def until_change(self) -> int:
+        """Number of ticks before the first with another action, or another right action, than in the tick before."""
+        return self._until(self._changes)
+
+    def _until(self, ticks: NDArray[np.intp]) -> int:
         place = ticks.searchsorted(self._tick, side="right")
-        return int(ticks[place]) - 1 - self._tick if place < len(ticks) else self.ticks
+        return min(ticks.item(place) - 1 - self._tick, self.ticks) if place < len(ticks) else self.ticks
 
 
 class BatchTrainingRun(TrainingRun):
@@ -163,9 +171,12 @@ class BatchTrainingRun(TrainingRun):
     ) -> None:
         super().__init__(robot, runtime, plan, seed=seed, session=session, on_progress=on_progress)
         self._robot, self._mind = robot, mind
+        self._actions = robot.actions
         # Asked once, because it reads all members of the protocol.
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._over = False
+        self._messages: list[tuple[int, HoldAction]] = []
+        """Messages of a hold that goes on in the present stretch, with their ticks."""
 
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
@@ -178,13 +189,14 @@ class BatchTrainingRun(TrainingRun):
     def _drive_stretch(self) -> bool:
         """Drive to the next command, or as far as is known; return whether the robot stays in the batch."""
         robot, begin = self._robot, self.ticks
-        if self._mind.is_due(begin + 1) or robot.waits:
+        due = self._mind.is_due(begin + 1)
+        if due or robot.waits:
             robot.sense()
             if robot.reason_to_leave:
                 return False
-            if self._mind.is_due(begin + 1):
-                results = self._mind.take(begin + 1)
-                self._refused += require_accepted(results, begin + 1, self.task, self._teacher.may_be_refused)
+        if due:
+            results = self._mind.take(begin + 1)
+            self._refused += require_accepted(results, begin + 1, self.task, self._teacher.may_be_refused)
         reached = robot.drive(self._stretch_end(begin))
         if reached == begin:
             return not robot.reason_to_leave
@@ -194,18 +206,26 @@ class BatchTrainingRun(TrainingRun):
             return False
         if cut < reached or cut == stuck or self._repositions_at(cut):
             robot.go_back(cut)
-        self._pass(begin, cut, robot.keep())
+        poses = robot.keep()
+        if self._mind.holds:
+            self._hold_on(begin + 1 + due, cut)
+        self._pass(begin, cut, poses)
         return True
+
+    def _hold_on(self, first: int, cut: int) -> None:
+        """Carry out the messages of a hold up to a tick; a later one is sent."""
+        if self._messages and self._messages[-1][0] > cut:
+            self.send(self._messages.pop()[1])
+        self._mind.hold_on(first, cut, self._messages)
+        self._messages.clear()
 
     def _stretch_end(self, begin: int) -> int:
         """Return the tick up to which the robot may drive at once after tick `begin`."""
         ends = [begin + _STRETCH_TICKS, self._planned_ticks, *self._phase_starts_after(begin)]
         if self._reposition_every:
             ends.append((begin // self._reposition_every + 1) * self._reposition_every)
-        due, arrives = self._mind.next_due(begin + 2), self._teacher.command_due
-        if due < math.inf:
-            ends.append(int(due) - 1)
-        if arrives is not None:
+        arrives = self._teacher.command_due
+        if arrives is not None and not self._mind.holds:
             ends.append(max(begin + 1, arrives))
         return min(ends)
 
@@ -225,17 +245,21 @@ class BatchTrainingRun(TrainingRun):
         if self.runtime.handler.active_stop is not None:
             return None
         log = self._robot.log
-        asks = log.causes[begin + 1 : end + 1] == LessonCause.UNKNOWN
+        asks = log.causes[begin + 1 : end + 1] == _UNKNOWN
         edges = [0, *(np.flatnonzero(asks[1:] != asks[:-1]) + 1).tolist(), end - begin]
         for first, after in pairwise(edges):
             if first < after and asks[first]:
                 detector.restart()
                 continue
-            poses = [Pose(*each) for each in log.poses[begin + 1 + first : begin + 1 + after].tolist()]
-            stuck = detector.ticks_until_stuck(poses)
+            stuck = detector.ticks_until_stuck(after - first, partial(self._position, begin + 1 + first))
             if stuck is not None:
                 return begin + first + stuck
         return None
+
+    def _position(self, first: int, place: int) -> Position:
+        """Return the position in the tick that is `place` ticks after the `first`."""
+        x_m, y_m, _ = self._robot.log.poses[first + place].tolist()
+        return Position(x_m, y_m)
 
     def _ask_teacher(self, begin: int, last: int) -> int:
         """Show the ticks up to `last` to the teacher, and return the tick of the first command, or `last`."""
@@ -243,39 +267,46 @@ class BatchTrainingRun(TrainingRun):
             self._begin_phase(self._phase_starts[begin + 1])
         log, teacher = self._robot.log, self._teacher
         rows = slice(begin + 1, last + 1)
-        asks = log.causes[rows] == LessonCause.UNKNOWN
-        differs = asks | ((log.actions[rows] >= 0) & (log.actions[rows] != log.right[rows]))
-        ahead = _Ahead(np.flatnonzero(asks) + begin + 1, np.flatnonzero(differs) + begin + 1, last)
-        tick = begin
-        while tick < last:
-            tick += teacher.skip(ahead.after(tick))
-            if tick == last:
+        asks = log.causes[rows] == _UNKNOWN
+        actions, right = log.actions[begin : last + 1], log.right[begin : last + 1]
+        differs = asks | ((actions[1:] >= 0) & (actions[1:] != right[1:]))
+        # A question has no action, and a robot without an action asks or was stopped.
+        changes = (actions[1:] != actions[:-1]) | (right[1:] != right[:-1])
+        ahead = _Ahead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
+        held_to = self._mind.held_to
+        tick, until = begin, last if held_to is None else min(last, held_to)
+        while tick < until:
+            tick += teacher.skip(ahead.after(tick, until))
+            if tick == until:
                 break
             tick += 1
             command = teacher.answer(self._view(tick))
-            if command is not None:
+            if command is None:
+                continue
+            if not isinstance(command, HoldAction) or not self._mind.renews(command):
                 self._send_lesson(command, tick)
                 break
+            self._workload.count(tick, command)
+            self._messages.append((tick + 1, command))
+            until = min(last, self._mind.held_to_by(command, tick + 1))
         return tick
 
     def _view(self, tick: int) -> TeacherView:
         """Return the teacher's view of a tick."""
         log = self._robot.log
-        action = int(log.actions[tick])
+        action = log.actions.item(tick)
         return TeacherView(
-            asking=log.causes[tick] == LessonCause.UNKNOWN,
+            asking=log.causes.item(tick) == _UNKNOWN,
             driving=action >= 0,
-            action=self._robot.actions[action] if action >= 0 else None,
+            action=self._actions[action] if action >= 0 else None,
             infrared_counts=tuple(log.counts[tick].tolist()),
-            behaviour="",
-            rla_id=int(log.rlas[tick]) or None,
             tick=tick,
-            touching=bool(log.touching[tick]),
+            touching=log.touching.item(tick),
         )
 
     def _pass(self, begin: int, cut: int, poses: list[Pose]) -> None:
         """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
-        asks = self._robot.log.causes[begin + 1 : cut + 1] == LessonCause.UNKNOWN
+        asks = self._robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
         self.ticks = cut
         self.unknown_ticks += int(asks.sum())
         begins = np.flatnonzero(asks & ~np.concatenate(([self.asking], asks[:-1])))
@@ -288,8 +319,9 @@ class BatchTrainingRun(TrainingRun):
         self._look_after(cut)
         if cut % self.trail_stride == 0:
             self.trail.append(self.simulation.position)
-        for tick in range(begin - begin % self.ticks_per_second + self.ticks_per_second, cut + 1, self.ticks_per_second):
-            self._note_second(tick)
+        for second in range(begin // self.ticks_per_second + 1, cut // self.ticks_per_second + 1):
+            tick = second * self.ticks_per_second
+            self._note_second(tick, self._mind.rlas_after(tick))
             self._on_progress(tick * self.period_s)
         most = self._plan.most_presses
         self._over = most is not None and len(self._workload.press_ticks) > most

@@ -37,7 +37,10 @@ _ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
 
 
 def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
-    """Check that a batch knows course and levels of a task; `by_policy`: its policy drives. Raises BatchRefusedError."""
+    """Check that a batch knows course and levels of a task. Raises BatchRefusedError.
+
+    `by_policy`: whether the policy drives, without the levels.
+    """
     if task.course.kind not in _COURSES:
         raise refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
     if task.mid is not None and not by_policy:

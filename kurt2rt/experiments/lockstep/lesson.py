@@ -216,7 +216,7 @@ class TrainingRun(Episode):
 
     def on_second(self, record: TickRecord) -> None:
         """Record the growth of the RLA system and the agreement of the critic."""
-        self._note_second(record.tick)
+        self._note_second(record.tick, len(self.runtime.level.system))
         super().on_second(record)
 
     def result(self) -> TrainingResult:
@@ -262,8 +262,9 @@ class TrainingRun(Episode):
             autonomous_values=runtime.reinforcement.autonomous_values() if autonomous else None,
         )
 
-    def _note_second(self, tick: int) -> None:
-        self._growth.append(len(self.runtime.level.system))
+    def _note_second(self, tick: int, rlas: int) -> None:
+        """Record the number of RLAs after a tick at the end of a second, and the critic's agreement."""
+        self._growth.append(rlas)
         if tick % (_AGREEMENT_EVERY_S * self.ticks_per_second) == 0:
             self._agreements.append(None if self._agreement is None else self._agreement.share)
 

@@ -81,6 +81,11 @@ class Ahead(Protocol):
         """Number of ticks before the first in which it asks or does another action than the policy's."""
         ...
 
+    @property
+    def until_change(self) -> int:
+        """Number of ticks before the first with another action, or another right action, than in the tick before."""
+        ...
+
 
 class BasicTeacher(ABC):
     """Scripted teacher of the basic level: it sees states, and gives the commands that a person can give."""
