@@ -49,7 +49,7 @@ class LessonLog(NamedTuple):
     rlas: NDArray[np.int32]
     """RLA that drives; 0 for none."""
     slow: NDArray[np.bool_]
-    """Whether the wheels were slowed by a slow lesson."""
+    """Whether the wheels turned slower, because the lesson is slow."""
     touching: NDArray[np.bool_]
     collisions: NDArray[np.int32]
     """Collisions so far."""

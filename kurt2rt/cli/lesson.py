@@ -20,11 +20,13 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import SUPERHUMAN, load_teacher
+from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop, choose_drivers
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop, choose_drivers
+from kurt2rt.experiments.lockstep.lesson_driver import choose_lesson_drivers
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
 from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
@@ -69,12 +71,14 @@ def lesson(options: LessonOptions) -> None:
     name = _task_name(options)
     setup = _setup(name, options)
     task = setup.task
-    if options.seeds is None and options.exams is not ExamLoop.BUS:
+    if options.seeds is None and options.exams is not DriveLoop.BUS:
         raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
+    if options.seeds is None and options.lessons is not DriveLoop.BUS:
+        raise typer.BadParameter("a batch is for many robots: give --seeds as well", param_hint="--lessons")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
-    if options.exams is ExamLoop.BATCH:
-        _require_batch(task, options)
+    if DriveLoop.BATCH in (options.exams, options.lessons):
+        _require_batch(setup, options)
     if runs_errands(task):
         errands(setup, options)
     elif not teaches_route(task):
@@ -86,14 +90,20 @@ def lesson(options: LessonOptions) -> None:
         many_routes(setup, options, _command(name, options))
 
 
-def _require_batch(task: TaskSettings, options: LessonOptions) -> None:
-    """Check before any lesson that a batch can drive the exams. Raises BatchRefusedError, typer.BadParameter."""
+def _require_batch(setup: LessonSetup, options: LessonOptions) -> None:
+    """Check before any lesson that a batch can drive what it shall. Raises BatchRefusedError, typer.BadParameter."""
     from simbridge.batch.compiled import IS_COMPILED
     from simbridge.wire.line import NO_WIRE
 
+    task, of_exams = setup.task, options.exams is DriveLoop.BATCH
+    hint = "--exams" if of_exams else "--lessons"
     if options.wire != NO_WIRE:
-        raise typer.BadParameter("a batch has no wire: leave --wire out, or give --exams bus", param_hint="--exams")
-    require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
+        raise typer.BadParameter(f"a batch has no wire: leave --wire out, or give {hint} bus", param_hint=hint)
+    if of_exams:
+        require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
+    if options.lessons is DriveLoop.BATCH:
+        for each in _taught_tasks(task, options).values():
+            require_known_lesson(setup.robot, each)
     if not IS_COMPILED:
         typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
 
@@ -150,7 +160,7 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
-    tasks = compared_tasks(setup.task) if options.controls else {"": setup.task}
+    tasks = _taught_tasks(setup.task, options)
     work = []
     for place, task in enumerate(tasks.values()):
         for seed in options.all_seeds:
@@ -158,7 +168,11 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
             archive_existing(file)
             work.append(SeedJob(setup.factory, setup.robot, task, task.exam.worlds, seed, file))
     drivers = choose_drivers(options.exams, len(work), setup.task.exam.worlds)
-    work = [replace(job, driver=driver) for job, driver in zip(work, drivers, strict=True)]
+    lesson_drivers = choose_lesson_drivers(options.lessons, len(work))
+    work = [
+        replace(job, driver=driver, lesson_driver=lesson_driver)
+        for job, driver, lesson_driver in zip(work, drivers, lesson_drivers, strict=True)
+    ]
     columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))
@@ -166,6 +180,11 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     each = len(options.all_seeds)
     by_teacher = {label: results[each * place : each * (place + 1)] for place, label in enumerate(tasks)}
     _show_seeds(by_teacher, setup.task, options)
+
+
+def _taught_tasks(task: TaskSettings, options: LessonOptions) -> Mapping[str, TaskSettings]:
+    """Return the task as each teacher teaches it, by the teacher's label."""
+    return compared_tasks(task) if options.controls else {"": task}
 
 
 def _show_seeds(

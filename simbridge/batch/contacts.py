@@ -1,5 +1,6 @@
 """Bodies of a batch at walls: there the physics engine moves the body, as it does on the CAN bus."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,6 +9,9 @@ from hal.batch_refusal import BatchRefusedError
 from hal.simulation import Pose
 from simbridge.simulated_robot import SimulatedRobot
 
+_FAR_M = 1.5
+"""Distance from which on the boxes that the engine keeps around a body at two poses have nothing in common: half a
+metre for the body, and a tenth of a second of its way."""
 REMEMBERED_TICKS = 5
 """Ticks without a touch after which the engine has forgotten a contact; it keeps one for three steps."""
 
@@ -54,10 +58,25 @@ class ContactBody:
             record["free_cycles"] += 1
             record["engine_ticks"] = max(0, remembers - 1)
 
-    def put(self, pose: Pose, behind: Sequence[tuple[int, int]]) -> None:
-        """Put the body at a pose in m and rad, wheels still, after the ticks that it lags behind (`move`)."""
-        for left_cm_s, right_cm_s in behind:
-            self._step(left_cm_s, right_cm_s)
+    def put(self, record: np.record, pose: Pose, behind: Sequence[tuple[int, int]]) -> None:
+        """Put the body at a pose in m and rad, wheels still.
+
+        Far away from all that it met, the engine's answer depends on the new place alone, so the ticks that the body
+        lags behind are left out.
+
+        Args:
+            record: of the robot, still at its old pose.
+            pose: new pose.
+            behind: set points of the ticks that the body lags behind, left and right, in cm/s.
+        """
+        here = record["x_m"], record["y_m"]
+        if record["engine_ticks"] or math.dist(here, pose[:2]) < _FAR_M:
+            for left_cm_s, right_cm_s in behind:
+                self._step(left_cm_s, right_cm_s)
+        else:
+            for left_cm_s, right_cm_s in behind[:1]:  # an engine that never stepped has no time of its last step
+                self._step(left_cm_s, right_cm_s)
+            self._body.skip(max(0, len(behind) - 1), (record["left_slip"], record["right_slip"]))
         self._body.place(pose)
         self._wheels.halt()
 

@@ -14,7 +14,7 @@ from simbridge.batch.parts import STRETCH
 from simbridge.batch.safety import forget_contradictions
 from simbridge.batch.tables import build_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
-from simbridge.simulation import Kurt2Simulation
+from simbridge.simulated_robot import SimulatedRobot
 
 MOST_TICKS = STRETCH // 2
 """Most ticks after a `keep`: half of the random numbers that lie ahead are used up at most before more are drawn."""
@@ -24,14 +24,14 @@ _MOST_RLAS = 4096
 class CompiledLesson(RobotBatch):
     """Robot that is taught: its state, its course and its RLAs in arrays."""
 
-    def __init__(self, robot: RobotSettings, simulation: Kurt2Simulation, settings: LessonDriveSettings) -> None:
-        """Copy the state of a fresh simulation, which follows this robot from then on.
+    def __init__(self, robot: RobotSettings, simulated: SimulatedRobot, settings: LessonDriveSettings) -> None:
+        """Copy the state of a simulated robot that has not driven yet, which follows this robot from then on.
 
         Raises BatchRefusedError for what the batch does not know.
         """
         drive = DriveSettings(actions=settings.actions, minimum_ticks=settings.minimum_ticks)
-        super().__init__(robot, [simulation.simulated_robot], [PolicyMind(settings.policy)], drive)
-        self._simulation = simulation
+        super().__init__(robot, [simulated], [PolicyMind(settings.policy)], drive)
+        self._simulated = simulated
         width, rows, sensors = len(settings.features.kinds), settings.ticks + 1, len(robot.infrared.sensors)
         self._minimum_ticks = settings.minimum_ticks
         self._width = width
@@ -74,7 +74,7 @@ class CompiledLesson(RobotBatch):
         return bool(self._robots[0]["waits"])
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
-        """Replace the RLAs; the next decision may take another action at once (hal.batch_lesson.LessonRobot)."""
+        """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
         table, count = self._table, len(rlas.rla_ids)
         if count > _MOST_RLAS:
             raise BatchRefusedError(f"{count} RLAs: a lesson in a batch has at most {_MOST_RLAS}", do="use the CAN bus")
@@ -153,7 +153,7 @@ class CompiledLesson(RobotBatch):
         record, end = self._robots[0], int(self._robots[0]["at"])
         poses = [Pose(*each) for each in self.log.poses[self._kept + 1 : self.tick + 1].tolist()]
         if poses:
-            self._simulation.follow(poses)
+            self._simulated.follow(poses)
         self._behind[0].append(self._told(0, end))
         for side in ("left", "right"):  # of a tick that waits
             record[f"track_{side}_cm_s"][0] = record[f"track_{side}_cm_s"][end]
@@ -167,12 +167,12 @@ class CompiledLesson(RobotBatch):
         """Put the robot, standing, at this pose; only after `keep`, and not while it waits for the engine."""
         assert not self.waits
         record = self._robots[0]
+        self._bodies[0].put(record, pose, [each for stretch in self._behind[0] for each in stretch.tolist()])
+        self._behind[0].clear()
         record["x_m"], record["y_m"], record["heading_rad"] = pose
         record["free_cycles"] = self._gap_cycles + 1
         put_down(record, self._world, self._laws)
-        self._bodies[0].put(pose, [each for stretch in self._behind[0] for each in stretch.tolist()])
-        self._behind[0].clear()
-        self._simulation.simulated_robot.carry(pose)
+        self._simulated.carry(pose)
         self._keep_state()
 
     def _finish(self, r: int) -> None:  # noqa: ARG002 - there is one robot

@@ -18,16 +18,17 @@ from hal.batch import TabledPolicy
 from hal.batch_lesson import LessonCause, LessonDriveSettings, LessonFactory, LessonRobot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
-from kurt2rt.experiments.lockstep.lesson import TrainingResult, TrainingRun
+from kurt2rt.experiments.lockstep.lesson import TrainingRun
+from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
@@ -39,20 +40,6 @@ _STRETCH_TICKS = 200
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
 
 
-class MemoryStore:
-    """Event store of a lesson that may have to be given again on the CAN bus."""
-
-    saving_error: str | None = None
-
-    def __init__(self) -> None:
-        self.events: list[TeachingEvent] = []
-        """Lessons so far, oldest first."""
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Add a lesson."""
-        self.events.append(event)
-
-
 def teach_in_batch(
     factory: LessonFactory,
     settings: RobotSettings,
@@ -60,8 +47,8 @@ def teach_in_batch(
     *,
     seed: int,
     on_progress: Callable[[float], None],
-) -> tuple[TrainingResult, list[TeachingEvent]] | None:
-    """Teach an untaught robot as `teach` does; return the result and the lessons, None if it belongs on the CAN bus.
+) -> GivenLesson | None:
+    """Teach an untaught robot as `teach` does; return the lesson, None if it belongs on the CAN bus.
 
     Args:
         factory: opens the simulation.
@@ -75,7 +62,7 @@ def teach_in_batch(
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
     """
-    plan, store = plan_of(task), MemoryStore()
+    plan, store = plan_of(task), InMemoryEventStore()
     lesson = _drive_settings(settings, task, plan)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
         recent = LoggedDecisions(robot.log, lesson.average_steps)
@@ -83,7 +70,7 @@ def teach_in_batch(
         mind = LessonMind(runtime, robot, recent, store)
         session = f"{plan.purpose}-{seed}-after-0"
         run = BatchTrainingRun(robot, mind, runtime, plan, seed=seed, session=session, on_progress=on_progress)
-        return (run.result(), store.events) if run.drive_stretches() else None
+        return GivenLesson(run.result(), store.events) if run.drive_stretches() else None
 
 
 def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:

@@ -11,6 +11,7 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver
+from kurt2rt.experiments.lockstep.lesson_driver import LESSON_ON_BUS, LessonDriver
 from kurt2rt.experiments.study.pool import JobKilledError, Progress, run_jobs
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 
@@ -27,6 +28,8 @@ class SeedJob:
     knowledge: Path
     driver: ExamDriver = ON_BUS
     """Loop of the exams."""
+    lesson_driver: LessonDriver = LESSON_ON_BUS
+    """Loop of the lesson."""
 
     @property
     def name(self) -> str:
@@ -47,7 +50,13 @@ class SeedJob:
 
         async def run() -> CurriculumResult:
             lesson, events = await run_lesson(
-                self.factory, self.settings, self.task, self.knowledge, seed=self.seed, report=report
+                self.factory,
+                self.settings,
+                self.task,
+                self.knowledge,
+                seed=self.seed,
+                report=report,
+                driver=self.lesson_driver,
             )
             exams = await run_exams(
                 self.factory,

@@ -4,7 +4,7 @@ from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtR
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.lesson import CompiledLesson
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 
 
 class LessonSimulation(Kurt2Simulation):
@@ -15,7 +15,7 @@ class LessonSimulation(Kurt2Simulation):
     ) -> None:
         """Open the simulation of `seed` and `purpose`. Raises BatchRefusedError for what the batch does not know."""
         super().__init__(settings, world, seed, purpose)
-        self._lesson = CompiledLesson(settings, self, lesson)
+        self._lesson = CompiledLesson(settings, self.simulated_robot, lesson)
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -33,7 +33,7 @@ class LessonSimulation(Kurt2Simulation):
         return self._lesson.reason_to_leave(0)
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
-        """Replace the RLAs; the next decision may take another action at once."""
+        """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
         self._lesson.set_rlas(rlas)
 
     def set_mode(self, mode: LessonMode) -> None:
