@@ -49,7 +49,7 @@ class LessonLog(NamedTuple):
     rlas: NDArray[np.int32]
     """RLA that drives; 0 for none."""
     slow: NDArray[np.bool_]
-    """Whether the wheels turned slower, because the lesson is slow."""
+    """True where a slow lesson slowed the wheels."""
     touching: NDArray[np.bool_]
     collisions: NDArray[np.int32]
     """Collisions so far."""

@@ -5,8 +5,8 @@ Where it gives a command, the robot goes back to that tick, and its own runtime 
 """
 
 import math
-from collections.abc import Callable
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
 from functools import partial
 from itertools import pairwise
 
@@ -32,7 +32,6 @@ from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
-from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 
 _UNKNOWN = int(LessonCause.UNKNOWN)
@@ -62,6 +61,23 @@ def teach_in_batch(
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
     """
+    with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress) as run:
+        return run.given() if run.drive_stretches() else None
+
+
+@contextmanager
+def open_batch_lesson(
+    factory: LessonFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> Iterator["BatchTrainingRun"]:
+    """Yield a lesson that has not begun, with its robot; close the robot's simulation (`teach_in_batch`).
+
+    Raises BatchRefusedError, hal.settings.SettingsError.
+    """
     plan, store = plan_of(task), InMemoryEventStore()
     lesson = _drive_settings(settings, task, plan)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
@@ -69,8 +85,7 @@ def teach_in_batch(
         runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
         mind = LessonMind(runtime, robot, recent, store)
         session = f"{plan.purpose}-{seed}-after-0"
-        run = BatchTrainingRun(robot, mind, runtime, plan, seed=seed, session=session, on_progress=on_progress)
-        return GivenLesson(run.result(), store.events) if run.drive_stretches() else None
+        yield BatchTrainingRun(robot, mind, plan, seed=seed, session=session, on_progress=on_progress)
 
 
 def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
@@ -149,21 +164,24 @@ class BatchTrainingRun(TrainingRun):
         self,
         robot: LessonRobot,
         mind: LessonMind,
-        runtime: Runtime,
         plan: LessonPlan,
         *,
         seed: int,
         session: str,
         on_progress: Callable[[float], None],
     ) -> None:
-        super().__init__(robot, runtime, plan, seed=seed, session=session, on_progress=on_progress)
-        self._robot, self._mind = robot, mind
+        super().__init__(robot, mind.runtime, plan, seed=seed, session=session, on_progress=on_progress)
+        self.robot, self._mind = robot, mind
         self._actions = robot.actions
         # Asked once, because it reads all members of the protocol.
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._over = False
         self._messages: list[tuple[int, HoldAction]] = []
         """Messages of a hold that goes on in the present stretch, with their ticks."""
+
+    def given(self) -> GivenLesson:
+        """Return the lesson so far."""
+        return GivenLesson(self.result(), self._mind.events)
 
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
@@ -175,7 +193,7 @@ class BatchTrainingRun(TrainingRun):
 
     def _drive_stretch(self) -> bool:
         """Drive to the next command, or as far as is known; return whether the robot stays in the batch."""
-        robot, begin = self._robot, self.ticks
+        robot, begin = self.robot, self.ticks
         due = self._mind.is_due(begin + 1)
         if due or robot.waits:
             robot.sense()
@@ -231,7 +249,7 @@ class BatchTrainingRun(TrainingRun):
         """Let a detector see the ticks from `begin` + 1 to `end`; return the tick in which it finds the robot stuck."""
         if self.runtime.handler.active_stop is not None:
             return None
-        log = self._robot.log
+        log = self.robot.log
         asks = log.causes[begin + 1 : end + 1] == _UNKNOWN
         edges = [0, *(np.flatnonzero(asks[1:] != asks[:-1]) + 1).tolist(), end - begin]
         for first, after in pairwise(edges):
@@ -245,14 +263,14 @@ class BatchTrainingRun(TrainingRun):
 
     def _position(self, first: int, place: int) -> Position:
         """Return the position in the tick that is `place` ticks after the `first`."""
-        x_m, y_m, _ = self._robot.log.poses[first + place].tolist()
+        x_m, y_m, _ = self.robot.log.poses[first + place].tolist()
         return Position(x_m, y_m)
 
     def _ask_teacher(self, begin: int, last: int) -> int:
         """Show the ticks up to `last` to the teacher, and return the tick of the first command, or `last`."""
         if begin + 1 in self._phase_starts:
             self._begin_phase(self._phase_starts[begin + 1])
-        log, teacher = self._robot.log, self._teacher
+        log, teacher = self.robot.log, self._teacher
         rows = slice(begin + 1, last + 1)
         asks = log.causes[rows] == _UNKNOWN
         actions, right = log.actions[begin : last + 1], log.right[begin : last + 1]
@@ -280,7 +298,7 @@ class BatchTrainingRun(TrainingRun):
 
     def _view(self, tick: int) -> TeacherView:
         """Return the teacher's view of a tick."""
-        log = self._robot.log
+        log = self.robot.log
         action = log.actions.item(tick)
         return TeacherView(
             asking=log.causes.item(tick) == _UNKNOWN,
@@ -293,7 +311,7 @@ class BatchTrainingRun(TrainingRun):
 
     def _pass(self, begin: int, cut: int, poses: list[Pose]) -> None:
         """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
-        asks = self._robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
+        asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
         self.ticks = cut
         self.unknown_ticks += int(asks.sum())
         begins = np.flatnonzero(asks & ~np.concatenate(([self.asking], asks[:-1])))

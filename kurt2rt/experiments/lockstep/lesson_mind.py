@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.batch_lesson import LessonCause, LessonMode, LessonRobot, TaughtRlas
-from kurt2rt.core.event_store import EventStore
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
@@ -24,9 +24,12 @@ _UNKNOWN = int(LessonCause.UNKNOWN)
 class LessonMind:
     """Commands, lessons and counts of a robot in a batch; `robot` drives by the RLAs that they make."""
 
-    def __init__(self, runtime: Runtime, robot: LessonRobot, recent: LoggedDecisions, store: EventStore) -> None:
+    def __init__(
+        self, runtime: Runtime, robot: LessonRobot, recent: LoggedDecisions, store: InMemoryEventStore
+    ) -> None:
         """Connect the runtime, whose handler reads `recent`; the robot's log has no tick yet."""
-        self._runtime, self._robot, self._recent, self._store = runtime, robot, recent, store
+        self.runtime = runtime
+        self._robot, self._recent, self._store = robot, recent, store
         self._handler = runtime.handler
         self._width = len(runtime.definition.features)
         self._conditions: dict[int, NDArray[np.float64]] = {}
@@ -42,9 +45,14 @@ class LessonMind:
         self._held: tuple[int | None, str] = (None, "")
         self._mode = LessonMode()
 
+    @property
+    def events(self) -> list[TeachingEvent]:
+        """Lessons so far, oldest first."""
+        return self._store.events
+
     def is_due(self, tick: int) -> bool:
         """Return whether a tick has commands, or a lesson or the end of a hold may be due: `take` must be called."""
-        return not self._runtime.inbox.is_empty or (
+        return not self.runtime.inbox.is_empty or (
             self.held_to is not None and (self._handler.holds.next_tick(tick) <= tick or tick > self.held_to)
         )
 
@@ -67,7 +75,7 @@ class LessonMind:
         self.count(tick - 1)
         results: list[CommandResult] = []
         situation = Situation(self._recent.situation(tick), history_frozen=False)
-        for command in self._runtime.inbox.pop_all():
+        for command in self.runtime.inbox.pop_all():
             if isinstance(command, Stream):
                 self._handler.handle_stream(command, tick)
                 continue
@@ -130,7 +138,7 @@ class LessonMind:
     def _teach(self, events: Iterable[TeachingEvent], tick: int) -> None:
         for event in events:
             self._events.append((tick, event))
-            self._sizes.append((tick, len(self._runtime.level.system)))
+            self._sizes.append((tick, len(self.runtime.level.system)))
             self._store.submit(event)
 
     def _order(self, tick: int) -> None:
@@ -148,7 +156,7 @@ class LessonMind:
             self._robot.set_mode(mode)
 
     def _taught_rlas(self) -> TaughtRlas:
-        system, width = self._runtime.level.system, self._width
+        system, width = self.runtime.level.system, self._width
         rlas = system.rlas
         for rla in rlas:
             if rla.rla_id not in self._conditions:
@@ -180,7 +188,7 @@ class LessonMind:
 
     def _count_rlas(self, first: int, last: int) -> None:
         """Count uses, transitions and ends of RLAs, as in each tick."""
-        log, runtime = self._robot.log, self._runtime
+        log, runtime = self._robot.log, self.runtime
         driving = log.rlas[first - 1 : last + 1]
         at_full_speed = np.where(log.slow[first - 1 : last + 1], 0, driving)
         changed = (driving[1:] != driving[:-1]) | (at_full_speed[1:] != at_full_speed[:-1])
@@ -197,9 +205,9 @@ class LessonMind:
 
     def _drop_counts(self, event: TeachingEvent) -> None:
         """Drop what was expected of the RLA whose action a lesson changed."""
-        invalidated = self._runtime.expectations.on_event(event)
+        invalidated = self.runtime.expectations.on_event(event)
         if invalidated is not None:
-            self._runtime.statistics.drop_follow_ups(invalidated)
+            self.runtime.statistics.drop_follow_ups(invalidated)
 
     def _count_questions(self, first: int, last: int) -> None:
         """Tell the handler of each question's first and last tick, and of the tick after it."""

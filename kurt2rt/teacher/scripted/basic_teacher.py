@@ -68,8 +68,10 @@ def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 
 class Ahead(Protocol):
     """Next ticks of a robot that drives on without its teacher."""
 
-    ticks: int
-    """Number of known ticks."""
+    @property
+    def ticks(self) -> int:
+        """Number of known ticks."""
+        ...
 
     @property
     def until_question(self) -> int:
