@@ -80,8 +80,8 @@ async def _measure_teacher(fixture: BenchFixture, task: TaskSettings, lengths: B
             BenchGoal("ratio", reference.ratio, TIMES_THE_BUS, at_least=True),
             BenchGoal("equal", equal, compared, at_least=True),
         ),
-        f"{lengths.lessons} lessons of {lengths.lesson_s:g} s on core {core}: {1e6 / tick.median_us:,.0f} robot ticks a "
-        f"second; {equal} of {compared} lessons equal to the bus, {in_batch.count(None)} left the batch",
+        f"{lengths.lessons} lessons of {lengths.lesson_s:g} s on core {core}: {1e6 / tick.median_us:,.0f} robot ticks "
+        f"a second; {equal} of {compared} lessons equal to the bus, {in_batch.count(None)} left the batch",
     )
 
 
