@@ -80,6 +80,8 @@ class RuntimeOptions:
     """Rules by which broken sensors are noticed; those of before for recordings of before."""
     asks_at_bumper: bool = True
     """Ask if an RLA pushes on toward what a bumper touches; False for recordings of before this question."""
+    recent: DecisionHistory | None = None
+    """History of recent decisions; an empty one by default, which the tick writes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -203,7 +205,8 @@ class _Assembly:
         return DoubtMeter(self._system, settings, ahead, actions_ahead(repertoire), memory)
 
     def _restored_reinforcement(self) -> Reinforcement:
-        recent, checkpoint = DecisionHistory(self.definition.dimensions), self._options.checkpoint
+        recent, checkpoint = self._options.recent, self._options.checkpoint
+        recent = DecisionHistory(self.definition.dimensions) if recent is None else recent
         reinforcement = Reinforcement(self._system, recent, self._task.reinforcement, self._period_s)
         # Counters, expectations and delays are restored by their owners; pass only values here.
         values = checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={}, answer_delays={})

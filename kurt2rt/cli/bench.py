@@ -46,7 +46,8 @@ def bench(
     channel   over UDP: from a press to the wheels, also on the teacher's page;
               what it costs the loop that a teacher is there; lessons until
               answered
-    batch     exams of many robots at once (extra fast); with the CAN bus
+    batch     exams of many robots at once, and lessons, in compiled loops (extra
+              fast); with the CAN bus
 
     The ratio says how many times longer the reference took in the same run.
     The goals are meant for an idle machine; a benchmark informs, and ends with

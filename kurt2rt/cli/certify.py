@@ -22,7 +22,7 @@ from kurt2rt.cli.options import (
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
@@ -69,12 +69,12 @@ class _Options:
         int, typer.Option(min=0, max=100, metavar="N", help="Number of worst runs to draw, at most.")
     ] = 6
     exams: Annotated[
-        ExamLoop,
+        DriveLoop,
         typer.Option(
             help="Loop that drives the runs. batch: compiled, with equal results; 1 % of the runs, at least three, "
             "are driven on the CAN loop too and must agree. bus: the CAN loop alone, some 100 times slower."
         ),
-    ] = ExamLoop.BATCH
+    ] = DriveLoop.BATCH
     task: TaskOfTheFile = None
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
@@ -179,14 +179,14 @@ def _task(options: _Options) -> TaskSettings:
     return task
 
 
-def _loop(options: _Options, refusal: str) -> ExamLoop:
+def _loop(options: _Options, refusal: str) -> DriveLoop:
     """Return the loop that drives the runs, and say why if it is slow; `refusal`: of the batch, empty for none."""
     from simbridge.batch.compiled import IS_COMPILED
 
-    if options.exams is ExamLoop.BATCH and refusal:
+    if options.exams is DriveLoop.BATCH and refusal:
         typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
-        return ExamLoop.BUS
-    if options.exams is ExamLoop.BATCH and not IS_COMPILED:
+        return DriveLoop.BUS
+    if options.exams is DriveLoop.BATCH and not IS_COMPILED:
         typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
     return options.exams
 
@@ -202,7 +202,7 @@ def _command(options: _Options) -> str:
     words = ["kurt2rt", "certify", options.knowledge.name, "--runs", str(options.runs)]
     words += ["--first-seed", str(options.first)]
     words += [word for name in options.world or () for word in ("--world", Path(name).name)]
-    words += ["--exams", options.exams.value] if options.exams is not ExamLoop.BATCH else []
+    words += ["--exams", options.exams.value] if options.exams is not DriveLoop.BATCH else []
     return shlex.join([*words, *_changed_words(options)])
 
 

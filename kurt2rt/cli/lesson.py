@@ -20,11 +20,12 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
@@ -79,14 +80,16 @@ def lesson(options: LessonOptions) -> None:
     """
     setup = _setup(_task_name(options), options)
     task = setup.task
-    if options.seeds is None and options.exams is not ExamLoop.BUS:
+    if options.seeds is None and options.exams is not DriveLoop.BUS:
         raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
     if options.seeds is None and options.shard is not None:
         raise typer.BadParameter("a shard is a part of many robots: give --seeds as well", param_hint="--shard")
+    if options.seeds is None and options.lessons is not DriveLoop.BUS:
+        raise typer.BadParameter("a batch is for many robots: give --seeds as well", param_hint="--lessons")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
-    if options.exams is ExamLoop.BATCH:
-        _require_batch(task, options)
+    if DriveLoop.BATCH in (options.exams, options.lessons):
+        _require_batch(setup, options)
     if runs_errands(task):
         errands(setup, options)
     elif not teaches_route(task):
@@ -98,13 +101,19 @@ def lesson(options: LessonOptions) -> None:
         many_routes(setup, options)
 
 
-def _require_batch(task: TaskSettings, options: LessonOptions) -> None:
-    """Check before any lesson that a batch can drive the exams. Raises BatchRefusedError, typer.BadParameter."""
+def _require_batch(setup: LessonSetup, options: LessonOptions) -> None:
+    """Check before any lesson that a batch can drive what it shall. Raises BatchRefusedError, typer.BadParameter."""
     from simbridge.wire.line import NO_WIRE
 
+    task, of_exams = setup.task, options.exams is DriveLoop.BATCH
+    hint = "--exams" if of_exams else "--lessons"
     if options.wire != NO_WIRE:
-        raise typer.BadParameter("a batch has no wire: leave --wire out, or give --exams bus", param_hint="--exams")
-    require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
+        raise typer.BadParameter(f"a batch has no wire: leave --wire out, or give {hint} bus", param_hint=hint)
+    if of_exams:
+        require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
+    if options.lessons is DriveLoop.BATCH:
+        for each in _taught_tasks(task, options).values():
+            require_known_lesson(setup.robot, each)
     say_if_interpreted()
 
 
@@ -162,10 +171,10 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
-    tasks = compared_tasks(setup.task) if options.controls else {"": setup.task}
+    tasks = _taught_tasks(setup.task, options)
     results = Results(out)
     parts = JobParts(factory=setup.factory, robot=setup.robot, results=results)
-    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, exams=options.exams)
+    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, exams=options.exams, lessons=options.lessons)
     forget_lost_robots(plan, results)
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
@@ -175,6 +184,11 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
         run_missing(plan, results, options.jobs, bar.update)
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
+
+
+def _taught_tasks(task: TaskSettings, options: LessonOptions) -> Mapping[str, TaskSettings]:
+    """Return the task as each teacher teaches it, by the teacher's label."""
+    return compared_tasks(task) if options.controls else {"": task}
 
 
 def _show_seeds(by_teacher: Mapping[str, Sequence[SeedResult]], task: TaskSettings, options: LessonOptions) -> None:

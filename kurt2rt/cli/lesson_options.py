@@ -25,7 +25,7 @@ from kurt2rt.cli.options import (
 from kurt2rt.cli.shards import ShardOption
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 
 DEFAULT_TASK = "wall_following"
 LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
@@ -58,12 +58,20 @@ class LessonOptions:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     exams: Annotated[
-        ExamLoop,
+        DriveLoop,
         typer.Option(
             help="With --seeds: what drives the exams. batch: compiled loops with equal results, some 30 times faster "
             "(extra fast); 1 % of the exams, at least three, are driven on the bus too and must agree."
         ),
-    ] = ExamLoop.BUS
+    ] = DriveLoop.BUS
+    lessons: Annotated[
+        DriveLoop,
+        typer.Option(
+            help="With --seeds: what drives the lessons of a basic task. batch: compiled stretches between the "
+            "teacher's commands, with equal results, some 10 times faster (extra fast); 1 % of the lessons, at least "
+            "three, are given on the bus too and must agree."
+        ),
+    ] = DriveLoop.BUS
     out: Annotated[
         Path | None,
         typer.Option(

@@ -59,7 +59,7 @@ def search(options: _Options) -> None:
         kurt2rt search circle --trials 20 --jobs 2
     """
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+    from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
     from kurt2rt.experiments.search.figures import draw_trials
     from kurt2rt.experiments.search.found import write_found
@@ -81,7 +81,7 @@ def search(options: _Options) -> None:
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
     command = typed_command("search", options)
     require_unchecked(plan, trials)
-    if settings.exams is ExamLoop.BATCH:
+    if settings.exams is DriveLoop.BATCH:
         say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
     with results.held(), one_bar(trials_s + check_time_s(plan)) as bar:

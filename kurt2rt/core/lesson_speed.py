@@ -1,6 +1,7 @@
 """Lesson speed: the fraction of their speed at which actions drive while a teacher teaches them (slow lessons)."""
 
 from hal.robot import WheelSpeeds
+from hal.slow_way import advance_way
 
 SLOWEST = 0.2
 """Least lesson speed: at less, set points of whole cm/s would change the curves of the actions by a third."""
@@ -27,10 +28,7 @@ class LessonSpeed:
     def slow(self, wheel_speeds: WheelSpeeds) -> WheelSpeeds:
         """Return slowed wheel speeds, in m/s, and advance the clock of the way; call it once in each slow tick."""
         share = self.share
-        self._way += share
-        self.counts = self._way >= 1.0
-        if self.counts:
-            self._way -= 1.0
+        self._way, self.counts = advance_way(self._way, share)
         self.slows = True
         return WheelSpeeds(share * wheel_speeds.left_m_s, share * wheel_speeds.right_m_s)
 

@@ -113,6 +113,10 @@ class RobotBatch:
         )
         self._bodies[r].move(record, behind, self._gap_cycles)
         self._caught_up[r] = end
+        self._finish(r)
+
+    def _finish(self, r: int) -> None:
+        """Finish the tick of a robot whose body the engine has moved."""
         finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
 
     def _keep_set_points(self, chosen: NDArray[np.int64], ticks: int) -> None:

@@ -27,7 +27,7 @@ _SOURCES = (
     *sorted(_ROOT.glob("behaviors/policies/*.py")),
     _ROOT / "behaviors" / "keep_distance.py",
     _ROOT / "simbridge" / "robot" / "wheels.py",
-    *(_ROOT / "hal" / name for name in ("batch.py", "infrared_law.py", "sensor_signs.py")),
+    *(_ROOT / "hal" / f"{name}.py" for name in ("batch", "batch_lesson", "infrared_law", "sensor_signs", "slow_way")),
 )
 """Files with functions that are compiled, and with the constants in them."""
 

@@ -5,7 +5,7 @@ from simbridge.batch.minds import decide
 from simbridge.batch.motion import move, turn_wheels
 from simbridge.batch.parts import Integers, Knowledge, Laws, Robot, Robots, World
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
-from simbridge.batch.sensing import measure
+from simbridge.batch.sensing import measure, measure_all
 from simbridge.batch.sight import gather, has_moved, may_touch
 from simbridge.batch.tally import count_tick
 
@@ -48,31 +48,48 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
     if not grips or may_touch(robot, world.reach_m, laws.body):
         robot.waits = 1
         return
-    robot.bumpers = 0
+    robot.bumpers = robot.touching = 0
     robot.free_cycles += 1
 
 
 @compiled
 def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) -> None:
     """Run the rest of a tick from the robot's new pose: sensors; then sense, check, decide, guard of the notebook."""
+    if sense_tick(robot, world, laws):
+        asked = robot.tick > 1 and robot.action < 0
+        wanted = decide(robot, robot.at, laws.mind, knowledge)
+        drive_guarded(robot, wanted, robot.tick * laws.body.cycle_s, laws.guard)
+        count_tick(robot, asked, laws.stuck)
+        robot.at += 1
+
+
+@compiled
+def sense_tick(robot: Robot, world: World, laws: Laws) -> bool:
+    """Run a tick from the robot's new pose up to the notebook's check of its sensors; return whether it stays."""
     if has_moved(robot) and not gather(robot, world):
         robot.left = CROWDED
-        return
+        return False
     measure(robot, laws.sensor)
     k = robot.at
     robot.track_x_m[k], robot.track_y_m[k], robot.track_heading_rad[k] = robot.x_m, robot.y_m, robot.heading_rad
     robot.track_collisions[k] = robot.collisions
-    now_s = robot.tick * laws.body.cycle_s
-    if is_frozen(robot, now_s, laws.watch):
+    if is_frozen(robot, robot.tick * laws.body.cycle_s, laws.watch):
         robot.left = FROZEN
     elif looks_broken(robot, laws.watch):
         robot.left = BROKEN
+    return bool(robot.left == STAYS)
+
+
+@compiled
+def put_down(robot: Robot, world: World, laws: Laws) -> None:
+    """Let a robot stand at the pose where it was put: wheels still, sensors settled, nothing touched."""
+    robot.vx_m_s = robot.vy_m_s = robot.yaw_rad_s = 0.0
+    robot.left_m_s = robot.right_m_s = robot.left_carry = robot.right_carry = 0.0
+    robot.bumpers = robot.touching = 0
+    if has_moved(robot) and not gather(robot, world):
+        robot.left = CROWDED
     else:
-        asked = robot.tick > 1 and robot.action < 0
-        wanted = decide(robot, k, laws.mind, knowledge)
-        drive_guarded(robot, wanted, now_s, laws.guard)
-        count_tick(robot, asked, laws.stuck)
-        robot.at += 1
+        measure_all(robot, laws.sensor)
 
 
 @compiled

@@ -48,17 +48,23 @@ def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
 def fill_features(counts: Integers, features: Features, situation: Floats) -> None:
     """Write the weighted recent features of a robot's counts (sensors,) to `situation`, (64,), in counts."""
     for i in range(features.kind.shape[0]):
-        kind = features.kind[i]
-        value = counts[features.sensors[i, 0]]
-        if kind == NOTHING:
-            value = 0
-        elif kind == ORIENTATION:
-            value = max(0, value - counts[features.sensors[i, 1]])
-        elif kind != READING:
-            for k in range(1, features.sensor_count[i]):
-                other = counts[features.sensors[i, k]]
-                value = max(value, other) if kind == MAXIMUM else min(value, other)
-        situation[i] = value * features.weights[i]
+        situation[i] = feature_of(counts, features, i) * features.weights[i]
+
+
+@compiled
+def feature_of(counts: Integers, features: Features, i: int) -> int:
+    """Return recent feature `i` of a robot's counts (sensors,), in counts."""
+    kind = features.kind[i]
+    value = counts[features.sensors[i, 0]]
+    if kind == NOTHING:
+        value = 0
+    elif kind == ORIENTATION:
+        value = max(0, value - counts[features.sensors[i, 1]])
+    elif kind != READING:
+        for k in range(1, features.sensor_count[i]):
+            other = counts[features.sensors[i, k]]
+            value = max(value, other) if kind == MAXIMUM else min(value, other)
+    return int(value)
 
 
 @compiled
@@ -127,6 +133,16 @@ def nearest(first: int, end: int, guess: int, conditions: Conditions, situation:
 
 
 @compiled
+def scan_nearest(end: int, guess: int, values: Floats, situation: Floats) -> tuple[int, float]:
+    """Return row and distance of the nearest condition among the rows up to `end`; -1 and infinity without rows.
+
+    For conditions that change too often for a table of their neighbours. Else as `nearest`; `values`: (rows, values).
+    """
+    bound = _SLACK * exact_square(guess, values, situation) if 0 <= guess < end else math.inf
+    return _nearest_of_all(0, end, bound, values, situation)
+
+
+@compiled
 def _nearest_of_all(first: int, end: int, bound: float, values: Floats, situation: Floats) -> tuple[int, float]:
     """Return row and distance of the nearest condition by comparing all rows, (rows, values), in counts.
 
@@ -160,7 +176,7 @@ def hold_or_change(robot: Robot, action: int, law: MindLaw) -> bool:
 def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
     """Return the wheel speeds in m/s of the action that drives a robot."""
     action = robot.action
-    robot.action_ticks += 1
+    robot.action_ticks += robot.way_counts
     if law.wall[action, 0] >= 0:
         front_m = law.distance_m[robot.counts[law.wall[action, 0]]]
         back_m = law.distance_m[robot.counts[law.wall[action, 1]]]
@@ -182,11 +198,17 @@ def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[fl
     if robot.kind == KNOWLEDGE:
         _match(robot, k, law, knowledge)
     else:
-        for i in range(law.seen.shape[0]):
-            robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
-        hold_or_change(robot, law.actions[policy_answer(robot.kind, robot.seen, law)], law)
+        hold_or_change(robot, right_action(robot, law), law)
     robot.track_action[k], robot.track_rla[k] = robot.action, robot.rla
     return step_action(robot, law) if robot.action >= 0 else (0.0, 0.0)
+
+
+@compiled
+def right_action(robot: Robot, law: MindLaw) -> int:
+    """Return the index of the action that the policy takes for right."""
+    for i in range(law.seen.shape[0]):
+        robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
+    return int(law.actions[policy_answer(robot.kind, robot.seen, law)])
 
 
 @compiled

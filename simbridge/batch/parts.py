@@ -69,6 +69,8 @@ class Robot:
     """Ticks for which the engine has to move the body still, because it may remember a contact."""
     bumpers: int
     """Bit n set: bumper n is pressed."""
+    touching: int
+    """1 while the body touches something."""
     free_cycles: int
     """Cycles without a touch, as in simbridge.robot.bumpers.CollisionCounter."""
     collisions: int
@@ -141,6 +143,8 @@ class Robot:
     driven_at_s: float
     turned: int
     """1 if the last CONTROL frame let a wheel turn."""
+    way_counts: int
+    """1 if the last tick counts on the clock of the way; a slow lesson leaves out some."""
 
     # Mind
     kind: int
@@ -327,7 +331,7 @@ class Conditions(NamedTuple):
     """Weighted conditions of all RLAs, and which of them are near each other."""
 
     values: Floats
-    """In counts, (rows, values); the number of values is a multiple of eight."""
+    """Weighted conditions in counts, (rows, values); the number of values is a multiple of eight."""
     neighbours: Integers
     """Rows of the same knowledge, the nearest first, which is the row itself; (rows, neighbours)."""
     apart: Floats

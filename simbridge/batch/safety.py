@@ -52,7 +52,7 @@ def is_frozen(robot: Robot, now_s: float, law: WatchLaw) -> bool:
 def looks_broken(robot: Robot, law: WatchLaw) -> bool:
     """Return whether a sensor of a robot shows a sign of a fault (hal.sensor_watch); call it in each tick."""
     if robot.bumpers == 0:
-        robot.driven += robot.turned
+        robot.driven += robot.turned * robot.way_counts
         robot.watch_left_ticks += robot.left_ticks
         robot.watch_right_ticks += robot.right_ticks
     if robot.tick % LOOK_TICKS:
@@ -112,6 +112,14 @@ def _update_signs(robot: Robot, i: int, motion: tuple[float, float], law: WatchL
                 _follow_obstacle(robot, i, motion, law)
     still = driven - signs[STILL_FROM] >= law.stuck_ticks
     return bool(signs[_LOW_TICKS] > 0 or signs[_HIGH_TICKS] > 0 or signs[_OUT_TICKS] > 0 or still)
+
+
+@compiled
+def forget_contradictions(robot: Robot) -> None:
+    """Forget the contradictions of all sensors with their neighbours, as a resume does (hal.sensor_signs)."""
+    for i in range(robot.counts.shape[0]):
+        robot.signs[i][_LOW_TICKS] = robot.signs[i][_HIGH_TICKS] = robot.signs[i][_AGREED_TICKS] = 0
+        robot.ways_m[i, 0] = robot.ways_m[i, 1] = 0.0
 
 
 @compiled

@@ -36,6 +36,17 @@ def measure(robot: Robot, law: SensorLaw) -> None:
 
 
 @compiled
+def measure_all(robot: Robot, law: SensorLaw) -> None:
+    """Let all sensors of a robot that was put elsewhere measure at once, out of turn."""
+    turn = (math.cos(robot.heading_rad), math.sin(robot.heading_rad))
+    for i in range(robot.counts.shape[0]):
+        read = _read(robot, i, _look(robot, i, turn, law.ray_m), law)
+        if read != robot.counts[i]:
+            robot.counts[i] = read
+            robot.board_still_s[robot.board[i]] = 0.0
+
+
+@compiled
 def _look(robot: Robot, i: int, turn: tuple[float, float], free_m: float) -> float:
     """Return the distance in m to the nearest hit of the rays of sensor `i`, at most `free_m`."""
     cos, sin = turn

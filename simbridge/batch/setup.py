@@ -194,6 +194,7 @@ def build_robots(
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
     robots["action"] = robots["rla"] = STANDS
     robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
+    robots["way_counts"] = 1
     robots["kind"] = [kind_of(mind) for mind in minds]
     robots["knowledge"] = knowledge_of
     world, robots["world"] = _world(simulated)

@@ -98,7 +98,7 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
         radius=np.array([radius for mind in tables for radius in mind.radii], dtype=np.float64),
         answer=answer,
         action=np.array([place[name] for mind in tables for name in mind.actions], dtype=np.int64),
-        features=_features(features),
+        features=build_features(features),
     )
     return knowledge, of
 
@@ -123,7 +123,8 @@ def build_conditions(values: Floats, first: Integers) -> Conditions:
     return Conditions(values, neighbours, apart)
 
 
-def _features(table: FeatureTable) -> Features:
+def build_features(table: FeatureTable) -> Features:
+    """Return the recent features of a situation as arrays."""
     most = max((len(each) for each in table.sensors), default=1)
     sensors = np.zeros((len(table.kinds), most), dtype=np.int64)
     for row, places in enumerate(table.sensors):

@@ -99,6 +99,11 @@ class Body:
         self.rest()
         self._space.reindex_shapes_for_body(body)
 
+    def skip(self, cycles: int, slip: tuple[float, float]) -> None:
+        """Leave out cycles before the body is placed elsewhere; `slip`: of both sides after them, dimensionless."""
+        self._noise.normals(2 * cycles)
+        self._left_slip, self._right_slip = slip
+
     def rest(self) -> None:
         """Simulate one cycle at rest without contacts."""
         self._body.velocity = (0.0, 0.0)

@@ -23,6 +23,8 @@ class Clearance:
         world = self._world.settings
         if world is not self._surveyed:
             self._survey()
+        if not positions:
+            return []  # shapely makes no points of nothing
         away_m: list[float] = shapely.distance(self._faces, shapely.points(positions)).tolist()
         if not world.round_obstacles:
             return [max(0.0, each) for each in away_m]

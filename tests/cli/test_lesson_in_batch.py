@@ -30,3 +30,26 @@ def test_lesson_refuses_exams_that_a_batch_does_not_know(
     kurt2rt: CommandLine, words: tuple[str, ...], why: str
 ) -> None:
     assert why in kurt2rt.refused("lesson", *SHORT, "--exams", "batch", *words)
+
+
+def test_lesson_is_the_same_in_a_batch(kurt2rt: CommandLine) -> None:
+    told = [
+        json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", "--lessons", each).out)
+        for each in ("batch", "bus")
+    ]
+    assert told[0]["robots"] == told[1]["robots"]
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ((), "give --seeds"),
+        (("--seeds", "1-2", "--task", "streets"), "course junctions"),
+        (("--seeds", "1-2", "--wire", "lossy"), "no wire"),
+        (("--seeds", "1-2", "--teacher", "ordinary", "--controls"), "drives by hand"),
+    ],
+)
+def test_lesson_refuses_lessons_that_a_batch_does_not_know(
+    kurt2rt: CommandLine, words: tuple[str, ...], why: str
+) -> None:
+    assert why in kurt2rt.refused("lesson", *SHORT, "--lessons", "batch", *words)

@@ -9,7 +9,7 @@ import typer
 from kurt2rt.cli.lesson_options import LessonOptions
 from kurt2rt.cli.options import Jobs
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Options:
     seconds_s: Annotated[float, typer.Option("--seconds")] = 12.0
     set_down: Annotated[float, typer.Option()] = 1.0
     sound: Annotated[bool, typer.Option("--sound/--mute")] = True
-    loop: Annotated[ExamLoop, typer.Option()] = ExamLoop.BUS
+    loop: Annotated[DriveLoop, typer.Option()] = DriveLoop.BUS
     world: Annotated[list[str] | None, typer.Option()] = None
     jobs: Jobs = 1
 
@@ -26,7 +26,7 @@ class Options:
 def test_typed_command_leaves_out_defaults_and_paths() -> None:
     assert typed_command("try", Options(Path("/home/ann/made"))) == "kurt2rt try made"
     options = Options(
-        Path("made"), seconds_s=3.0, set_down=0.5, sound=False, loop=ExamLoop.BATCH, world=["a", "/x/b.yaml"], jobs=7
+        Path("made"), seconds_s=3.0, set_down=0.5, sound=False, loop=DriveLoop.BATCH, world=["a", "/x/b.yaml"], jobs=7
     )
     assert typed_command("try", options, {"taught": "other"}) == (
         "kurt2rt try other --seconds 3 --set-down 0.5 --mute --loop batch --world a --world b.yaml"

@@ -23,7 +23,7 @@ from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.status_line import status_line
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.channel.channel_fixture import STAMP
 from tests.experiments.helpers import ROBOT
 

@@ -12,7 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.simbridge.rig import ROBOT
 from tests.simbridge.wires import changed
 

@@ -6,6 +6,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from kurt2rt.checks.bench.batch import BatchLengths, measure_batch
+from kurt2rt.checks.bench.batch_lesson import BatchLessonLengths, measure_batch_lessons
 from kurt2rt.checks.bench.channel import ChannelLengths, measure_channel
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
@@ -46,6 +47,7 @@ class Lengths:
     channel: ChannelLengths
     recording: LoadShifts
     batch: BatchLengths
+    batch_lessons: BatchLessonLengths
 
 
 FULL = Lengths(
@@ -58,6 +60,7 @@ FULL = Lengths(
     channel=ChannelLengths(presses=200, shifts=LoadShifts(rounds=8, ticks=250), lessons=200),
     recording=LoadShifts(rounds=10, ticks=600),
     batch=BatchLengths(robots=30, exam_s=60.0, batches=5, on_bus=6),
+    batch_lessons=BatchLessonLengths(lesson_s=345.0, lessons=6, on_bus=2),
 )
 QUICK = Lengths(
     learning_s=90.0,
@@ -69,6 +72,7 @@ QUICK = Lengths(
     channel=ChannelLengths(presses=15, shifts=LoadShifts(rounds=2, ticks=100), lessons=15),
     recording=LoadShifts(rounds=3, ticks=150),
     batch=BatchLengths(robots=6, exam_s=20.0, batches=3, on_bus=2),
+    batch_lessons=BatchLessonLengths(lesson_s=60.0, lessons=3, on_bus=1),
 )
 
 
@@ -118,4 +122,7 @@ async def run_suite(
         )
     if BenchName.BATCH in benches:
         results.append(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
+        results.extend(
+            await measure_batch_lessons(fixture, lengths.batch_lessons, start_job("giving lessons in a batch"))
+        )
     return tuple(results)

@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from itertools import chain
 
+import numpy as np
+from numpy.typing import NDArray
+
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.expectations.expectations import Expectations
 from kurt2rt.core.expectations.surprise import Surprise
@@ -70,13 +73,24 @@ class ExpectationTracker:
             counts: whether the tick counts on the clock of the way, by which the mid level learns how long a way is.
         """
         drove = driving and not slow
-        surprise = self._basic.update(tick, decision.rla_id if drove else None, situation.vector, behaviour)
+        surprise = self.follow(tick, decision.rla_id if drove else None, situation.vector, behaviour)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
         if commanded.overridden or decision.cause is DecisionCause.TEACHER:
             following.restart()
         return following.update(commanded, mid.vector, driving=driving and counts) or surprise
+
+    def follow(self, tick: int, rla_id: int | None, vector: NDArray[np.float64], behaviour: str) -> Surprise | None:
+        """Learn at the basic level from one tick; ticks in which the same RLA drives on may be left out.
+
+        Args:
+            tick: number of the tick.
+            rla_id: RLA that drove at full speed; None at standstill.
+            vector: situation of the basic level, (d,).
+            behaviour: active taught behaviour.
+        """
+        return self._basic.update(tick, rla_id, vector, behaviour)
 
     def on_event(self, event: TeachingEvent) -> int | None:
         """Drop the expectation of the RLA whose action an applied event changed.

@@ -86,7 +86,7 @@ class ControlAuthority:
         `seen_tick`: tick of the state that the teacher saw when giving it.
         """
         if teacher == self.teacher:
-            self._present_until = max(self._present_until, self._lease_end(tick, seen_tick))
+            self._present_until = max(self._present_until, self.lease_end(tick, seen_tick))
 
     def extend_leases(self, ticks: int) -> None:
         """Extend every lease by missed ticks, in which the robot could not move or read messages."""
@@ -132,7 +132,7 @@ class ControlAuthority:
         self._behaviour = self.held_press = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
         self.drive_seen_tick = command.seen_tick
-        self._driven_until = self._lease_end(tick, command.seen_tick)
+        self._driven_until = self.lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
     def hold(self, command: HoldAction, tick: int) -> None:
@@ -144,8 +144,18 @@ class ControlAuthority:
         if self.held_press != command.press_id or self._behaviour_name != command.action:
             self._start(command.action)
         self.held_press = command.press_id
-        self._behaviour_until = self._lease_end(tick, command.seen_tick)
+        self._behaviour_until = self.lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
+
+    @property
+    def held_action(self) -> str:
+        """Action that the teacher holds; empty if none is held."""
+        return "" if self.held_press is None else self._behaviour_name
+
+    @property
+    def held_until(self) -> int:
+        """Tick in which the lease of the held action is over."""
+        return self._behaviour_until
 
     @property
     def driving_press(self) -> tuple[str, int] | None:
@@ -206,7 +216,11 @@ class ControlAuthority:
         self.teacher = teacher
         self._present_until = -1
 
-    def _lease_end(self, tick: int, seen_tick: int) -> int:
+    def lease_end(self, tick: int, seen_tick: int) -> int:
+        """Return the tick in which the lease of a message is over that arrives in `tick`.
+
+        `seen_tick`: tick of the state that the teacher saw when giving it.
+        """
         return min(tick + self._lease_ticks * self.speed, seen_tick + self._max_picture_age_ticks * self.speed)
 
 

@@ -99,6 +99,14 @@ class HoldLessons:
             press.since = tick
             press.hold = press.hold._replace(action=command.action)
 
+    def next_tick(self, tick: int) -> int:
+        """Return the next tick, from `tick` on, in which `build` may give a lesson. Call it only after `begin`."""
+        press = self._press
+        assert press is not None
+        if press.press_lessons < PRESS_LESSONS and press.since == press.began:
+            return tick
+        return max(tick, press.due)
+
     def build(self, tick: int, phase: Phase, speed: int) -> TeachingEvent | None:
         """Return the lesson that is due in a tick of the hold; None if none is. Call it only after `begin`.
 

@@ -33,6 +33,11 @@ class TeacherInbox:
         """Replace all waiting messages, so that the next tick takes exactly these, as a recorded tick did."""
         self._waiting = deque(commands)
 
+    @property
+    def is_empty(self) -> bool:
+        """Return whether no message waits."""
+        return not self._waiting
+
     def pop_all(self) -> tuple[Input, ...]:
         """Return all waiting messages in order of arrival; never block."""
         if not self._waiting:

@@ -18,7 +18,7 @@ from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
 from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 from kurt2rt.experiments.study.provenance import Provenance
@@ -87,7 +87,7 @@ class BlockJob(_StoredJob):
 
     outcome = BlockOutcome
     runs: tuple[Run, ...]
-    loop: ExamLoop
+    loop: DriveLoop
 
     @property
     def name(self) -> str:
@@ -108,7 +108,7 @@ class BlockJob(_StoredJob):
     def robot_time_s(self) -> float:
         """Simulated time on the CAN loop in s; that in a batch counts less."""
         whole_s = len(self.runs) * self.task.exam.duration_s
-        return whole_s if self.loop is ExamLoop.BUS else whole_s / BATCH_GAIN
+        return whole_s if self.loop is DriveLoop.BUS else whole_s / BATCH_GAIN
 
     def run(self, tell: Progress) -> None:
         """Drive all runs and store their outcomes; those that leave the batch are driven on the CAN loop.
@@ -117,7 +117,7 @@ class BlockJob(_StoredJob):
         """
         subject = self.subject()
         driven: list[RunOutcome | None] = [None] * len(self.runs)
-        if self.loop is ExamLoop.BATCH:
+        if self.loop is DriveLoop.BATCH:
             driven = self.drive_in_batch(subject, self.runs, tell)
         left = [run for run, outcome in zip(self.runs, driven, strict=True) if outcome is None]
         finished = {each.number: each for each in (*driven, *self._drive_all_on_bus(subject, left, tell)) if each}

@@ -15,7 +15,7 @@ from kurt2rt.experiments.certify.jobs import BlockJob, WitnessJob, require_equal
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
 from kurt2rt.experiments.certify.run import SEED, Run, draw_runs, draw_witnesses
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam_driver import LEAST_WITNESSES, WITNESS_SHARE, ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import LEAST_WITNESSES, WITNESS_SHARE, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash, source_hash
 from kurt2rt.experiments.study.results import Results
@@ -23,7 +23,7 @@ from kurt2rt.knowledge.journal.loading import read_lessons
 
 DECIDING = (BlockJob, WitnessJob)
 """Classes whose code, and all that it imports, decides the results."""
-_BLOCK = {ExamLoop.BATCH: 200, ExamLoop.BUS: 1}
+_BLOCK = {DriveLoop.BATCH: 200, DriveLoop.BUS: 1}
 """Runs of one job, by the loop that drives them."""
 
 
@@ -35,7 +35,7 @@ class Extent(NamedTuple):
     runs: int
     places: tuple[str, ...]
     """Worlds; SEED in a name stands for the number of the run."""
-    loop: ExamLoop
+    loop: DriveLoop
 
 
 def find_refusal(task: TaskSettings, knowledge: Path, place: str, parts: JobParts) -> str:
@@ -132,7 +132,7 @@ def make_plan(
         extent,
         tuple(runs),
         tuple(map(witness, draw_witnesses(runs, WITNESS_SHARE, LEAST_WITNESSES)))
-        if extent.loop is ExamLoop.BATCH
+        if extent.loop is DriveLoop.BATCH
         else (),
         tuple(block(tuple(runs[begin : begin + step])) for begin in range(0, len(runs), step)),
     )

@@ -141,10 +141,11 @@ class _Drive:
 
     def _follow_poses(self, stretch: Stretch) -> int:
         """Measure the drive at each pose; return the number of ticks until the robot is stuck, or all."""
-        stuck_after = self._stuck.ticks_until_stuck(stretch.poses)
+        poses = stretch.poses
+        stuck_after = self._stuck.ticks_until_stuck(len(poses), lambda k: Position(poses[k].x_m, poses[k].y_m))
         self._is_stuck = stuck_after is not None
-        ticks = len(stretch.poses) if stuck_after is None else stuck_after
-        poses = stretch.poses[:ticks]
+        ticks = len(poses) if stuck_after is None else stuck_after
+        poses = poses[:ticks]
         if stretch.collisions[ticks - 1] > len(self._collision_positions):
             for pose, collisions in zip(poses, stretch.collisions, strict=False):
                 if collisions > len(self._collision_positions):

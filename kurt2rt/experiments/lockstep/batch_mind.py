@@ -33,24 +33,32 @@ from kurt2rt.runtime import Runtime, RuntimeOptions
 
 _COURSES = ("laps", "way", "rounds", "eights")
 """Courses that never reposition the robot and want one behaviour."""
-_ON_THE_BUS = "examine it on the CAN bus (--exams bus)"
+_ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
+
+
+def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
+    """Check that a batch knows course and levels of a task. Raises BatchRefusedError.
+
+    `by_policy`: whether the policy drives, without the levels.
+    """
+    if task.course.kind not in _COURSES:
+        raise refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
+    if task.mid is not None and not by_policy:
+        raise refused(task, "a mid level")
+    if len(task.behaviours) > 1:
+        raise refused(task, "several behaviours")
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
     """Check that a batch can drive exams of a task. Raises BatchRefusedError."""
     doubt = task.learning.doubt
-    if task.course.kind not in _COURSES:
-        raise _refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
+    require_known_task(task, by_policy=all(setup.teacher_policy for setup in setups))
     if doubt is not None and doubt.contact is not None and doubt.contact.avoids:
-        raise _refused(task, "a robot that avoids obstacles that it remembers")
+        raise refused(task, "a robot that avoids obstacles that it remembers")
     if doubt is not None and doubt.asks and doubt.alone:
-        raise _refused(task, "a robot that stands at a doubt without a teacher")
-    if task.mid is not None and not all(setup.teacher_policy for setup in setups):
-        raise _refused(task, "a mid level")
-    if len(task.behaviours) > 1:
-        raise _refused(task, "several behaviours")
+        raise refused(task, "a robot that stands at a doubt without a teacher")
     if not all(setup.stuck_ends for setup in setups):
-        raise _refused(task, "rescues")
+        raise refused(task, "rescues")
 
 
 def build_drive_settings(settings: RobotSettings, task: TaskSettings) -> DriveSettings:
@@ -93,7 +101,7 @@ def build_minds(
     for simulation, (events, setup) in zip(simulations, exams, strict=True):
         if setup.teacher_policy:
             if not isinstance(policy, TabledPolicy):
-                raise _refused(task, f"policy {task.policy.kind}")
+                raise refused(task, f"policy {task.policy.kind}")
             minds.append(PolicyMind(policy))
             continue
         key = id(events), id(setup.saved), id(setup.autonomous_values)
@@ -109,7 +117,7 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     level, definition = runtime.level, runtime.definition
     system, width = level.system, len(definition.features)
     if system.weights[width:].any():
-        raise _refused(task, "averages that count in a distance")
+        raise refused(task, "averages that count in a distance")
     behaviour = runtime.active_behaviour.behaviour
     rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not system.passes_over(rla)]
     place = {rla.rla_id: index for index, rla in enumerate(rlas)}
@@ -124,13 +132,14 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
         radii=tuple(system.whole_radius(rla) for rla in rlas),
         answers=tuple(answers),
         actions=tuple(rla.action for rla in rlas),
-        features=_feature_table(definition, settings, system.weights[:width].tolist(), task),
+        features=feature_table(definition, settings, system.weights[:width].tolist(), task),
     )
 
 
-def _feature_table(
+def feature_table(
     definition: SituationDefinition, settings: RobotSettings, weights: Sequence[float], task: TaskSettings
 ) -> FeatureTable:
+    """Return the recent features of a situation with their weights, dimensionless. Raises BatchRefusedError."""
     place = {name: index for index, name in enumerate(settings.infrared.names)}
     kinds, sensors = [], []
     for feature in definition.features:
@@ -152,9 +161,10 @@ def _kind_and_sensors(
         case Orientation():
             return FeatureKind.ORIENTATION, (feature.nearer, feature.farther)
     if definition.wheel_speed_counts_per_m_s:
-        raise _refused(task, "wheel speeds that count in a situation")
+        raise refused(task, "wheel speeds that count in a situation")
     return FeatureKind.NOTHING, ()
 
 
-def _refused(task: TaskSettings, what: str) -> BatchRefusedError:
+def refused(task: TaskSettings, what: str) -> BatchRefusedError:
+    """Return the refusal of a task for what the batch does not know."""
     return BatchRefusedError(f"a batch does not know {what}", where=f"task {task.name}", do=_ON_THE_BUS)

@@ -6,18 +6,29 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.batch import BatchFactory
+from hal.batch_lesson import LessonFactory
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
+from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
+from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver, ExamLoop, require_equal
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, ExamDriver, require_equal
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
+from kurt2rt.experiments.lockstep.lesson_driver import (
+    LESSON_ON_BUS,
+    GivenLesson,
+    LessonDriver,
+    require_equal_lessons,
+)
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 
@@ -57,6 +68,7 @@ async def run_lesson(
     report: Report,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
     plan: LessonPlan | None = None,
+    driver: LessonDriver = LESSON_ON_BUS,
 ) -> tuple[TrainingResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; return the result and all events the file then holds.
 
@@ -70,26 +82,42 @@ async def run_lesson(
         seed: of the robot and the teacher.
         report: progress callback.
         on_saved: gets each acknowledgement of a durable lesson.
-        plan: None: the task's own lesson, phases 1 and 2.
+        plan: None: the task's own lesson, phases 1 and 2. A batch knows no other one.
+        driver: loop that drives the robot; a batch begins without knowledge.
 
     Raises:
         KnowledgeError: the file cannot be used.
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command, or a lesson was not stored.
+        BatchRefusedError: the driver is a batch, which does not know the lesson.
+        BatchDiffersError: the batch and a witness on the CAN bus differ.
     """
+    in_batch = driver.loop is DriveLoop.BATCH
+    if in_batch and plan is not None:
+        raise refused(task, "a plan of its own")
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
-        with closing(factory.open(world, seed, plan.purpose)) as simulation:
-            lesson = await teach(
-                simulation,
-                settings,
-                task,
-                keeping.training,
-                seed=seed,
-                on_progress=keeping.telling(report, f"teaching in world {world}", whole_s),
-                plan=plan,
-            )
+        on_progress = keeping.telling(report, f"teaching in world {world}", whole_s)
+
+        async def on_bus(training: TrainingStore) -> TrainingResult:
+            with closing(factory.open(world, seed, plan.purpose)) as simulation:
+                return await teach(simulation, settings, task, training, seed=seed, on_progress=on_progress, plan=plan)
+
+        given: GivenLesson | None = None
+        if in_batch:
+            if keeping.opened.events:
+                raise refused(task, "knowledge to go on from")
+            given = _teach_in_batch(factory, settings, task, seed, on_progress)
+        if given is None:
+            lesson = await on_bus(keeping.training)
+        else:
+            if driver.is_witnessed:
+                store = InMemoryEventStore()
+                require_equal_lessons(given, GivenLesson(await on_bus(TrainingStore(store)), store.events))
+            lesson = given.result
+            for event in given.events:
+                keeping.writer.submit(event)
         keeping.end(lesson.saved)
         report(f"teaching in world {world}", whole_s, whole_s)
     return lesson, read_lessons(knowledge, settings, task)
@@ -157,7 +185,7 @@ async def run_exams(
     """
     setups = [ExamSetup(world, seed, policy) for world in worlds for policy in (False, True)]
     finished: list[ExamResult | None] = [None] * len(setups)
-    if driver.loop is ExamLoop.BATCH:
+    if driver.loop is DriveLoop.BATCH:
         finished = _run_in_batch(factory, settings, task, [BatchExam(setup, events) for setup in setups])
     drives = []
     for setup, in_batch in zip(setups, finished, strict=True):
@@ -181,6 +209,18 @@ def _run_in_batch(
     if not isinstance(factory, BatchFactory):
         raise BatchRefusedError("this simulation has no batch", do="examine on the CAN bus")
     return examine_in_batch(factory, settings, task, exams)
+
+
+def _teach_in_batch(
+    factory: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> GivenLesson | None:
+    if not isinstance(factory, LessonFactory):
+        raise BatchRefusedError("this simulation has no batch", do="teach on the CAN bus")
+    return teach_in_batch(factory, settings, task, seed=seed, on_progress=on_progress)
 
 
 def _drive_name(setup: ExamSetup) -> str:

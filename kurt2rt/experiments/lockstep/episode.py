@@ -4,7 +4,8 @@ import math
 import random
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from copy import copy
 from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
@@ -43,12 +44,15 @@ class StuckDetector:
         self._ticks += 1
         return due and self._looks_stuck(Position(pose.x_m, pose.y_m))
 
-    def ticks_until_stuck(self, poses: Sequence[Pose]) -> int | None:
-        """Return the number of ticks in a row, at these poses, after which the robot is stuck; None if it is not."""
+    def ticks_until_stuck(self, ticks: int, position_at: Callable[[int], Position]) -> int | None:
+        """Return the number of ticks in a row after which the robot is stuck; None if it is not.
+
+        `position_at`: returns the position in m of one of the `ticks` ticks, counted from 0.
+        """
         first = -self._ticks % self._stride
-        self._ticks += len(poses)
-        for place in range(first, len(poses), self._stride):
-            if self._looks_stuck(Position(poses[place].x_m, poses[place].y_m)):
+        self._ticks += ticks
+        for place in range(first, ticks, self._stride):
+            if self._looks_stuck(position_at(place)):
                 return place + 1
         return None
 
@@ -67,6 +71,12 @@ class StuckDetector:
         """Begin a new window."""
         self._positions.clear()
         self._ticks = 0
+
+    def copy(self) -> "StuckDetector":
+        """Return a detector in the same state, to try out ticks that may be taken back."""
+        twin = copy(self)
+        twin._positions = self._positions.copy()
+        return twin
 
 
 class Episode(ABC):

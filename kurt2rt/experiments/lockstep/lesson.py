@@ -208,9 +208,7 @@ class TrainingRun(Episode):
         self._send_lessons(record)
         self._trusted_ticks += self._agreement is not None and self._agreement.trusted
         self.measure()
-        self._end_sensor_stop(record.tick)
-        self._rescue_if_stuck(record.tick)
-        self._reposition_as_planned(record.tick)
+        self._look_after(record.tick)
         self._command_behaviour(record.behaviour)
         most = self._plan.most_presses
         if most is not None and len(self._workload.press_ticks) > most:
@@ -218,10 +216,8 @@ class TrainingRun(Episode):
 
     def on_second(self, record: TickRecord) -> None:
         """Record the growth of the RLA system and the agreement of the critic."""
-        self._growth.append(len(self.runtime.level.system))
+        self._note_second(record.tick, len(self.runtime.level.system))
         super().on_second(record)
-        if record.tick % (_AGREEMENT_EVERY_S * self.ticks_per_second) == 0:
-            self._agreements.append(None if self._agreement is None else self._agreement.share)
 
     def result(self) -> TrainingResult:
         """Return the counters and the knowledge."""
@@ -266,6 +262,12 @@ class TrainingRun(Episode):
             autonomous_values=runtime.reinforcement.autonomous_values() if autonomous else None,
         )
 
+    def _note_second(self, tick: int, rlas: int) -> None:
+        """Record the number of RLAs after a tick at the end of a second, and the critic's agreement."""
+        self._growth.append(rlas)
+        if tick % (_AGREEMENT_EVERY_S * self.ticks_per_second) == 0:
+            self._agreements.append(None if self._agreement is None else self._agreement.share)
+
     def _begin_phase(self, phase: Phase) -> None:
         self.send(self._teacher.begin_phase(phase))
         if self._dispatcher is not None:
@@ -300,6 +302,12 @@ class TrainingRun(Episode):
         self._workload.count_manual(tick, "go")
         self.latched_ticks = 0
         self._alarms += 1
+
+    def _look_after(self, tick: int) -> None:
+        """Let the person next to the robot resume, rescue or reposition it."""
+        self._end_sensor_stop(tick)
+        self._rescue_if_stuck(tick)
+        self._reposition_as_planned(tick)
 
     def _end_sensor_stop(self, tick: int) -> None:
         act = self._sensor_stop.update(self.runtime.handler.active_stop)

@@ -7,6 +7,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.event_store import EventStore
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
@@ -38,9 +39,13 @@ class TrainingStore:
 
 
 def build_training_runtime(
-    simulation: Simulation, settings: RobotSettings, task: TaskSettings, training: TrainingStore
+    simulation: Simulation,
+    settings: RobotSettings,
+    task: TaskSettings,
+    training: TrainingStore,
+    recent: DecisionHistory | None = None,
 ) -> Runtime:
-    """Build the runtime for a scripted teacher.
+    """Build the runtime for a scripted teacher; `recent`: history of decisions, None: an empty one.
 
     Raises:
         hal.settings.SettingsError: settings do not fit each other.
@@ -58,6 +63,7 @@ def build_training_runtime(
             checkpoint=training.saved,
             # The scripted teacher has no bumper input: at a wall its answer is the action that led there.
             asks_at_bumper=False,
+            recent=recent,
         ),
     )
 

@@ -9,7 +9,7 @@ from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.search.jobs import JobMaker, SearchJob
 from kurt2rt.experiments.search.settings import SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace
@@ -63,7 +63,7 @@ def make_plan(
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
     factory.require_worlds(*worlds)
     require_course(factory, task, worlds)
-    if search.exams is ExamLoop.BATCH:
+    if search.exams is DriveLoop.BATCH:
         require_known(task, [ExamSetup(world, seed) for world, seed in exams])
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     # More trials, and another number of them checked, leave each trial as it is.

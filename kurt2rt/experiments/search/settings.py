@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from hal.settings import Settings, find_config, load_settings
 from kurt2rt.core.task_settings import Name
-from kurt2rt.experiments.lockstep.exam_driver import ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 
 SEED = "SEED"
 """Part of a world's name that stands for the robot's seed."""
@@ -81,7 +81,7 @@ class SearchSettings(Settings):
     """Name of the task, or path of its YAML file."""
     teacher: str
     """Scripted teacher: a name in `config/teachers`, or a path."""
-    exams: ExamLoop = ExamLoop.BATCH
+    exams: DriveLoop = DriveLoop.BATCH
     objective: Objective = "passed_then_presses"
     """First the share of exams passed; among equal shares, fewer presses or RLAs are better."""
     trials: Count

@@ -8,7 +8,8 @@ from typing import ClassVar
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver, ExamLoop, choose_drivers
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, ExamDriver, choose_drivers
+from kurt2rt.experiments.lockstep.lesson_driver import LESSON_ON_BUS, LessonDriver, choose_lesson_drivers
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.pool import Progress
@@ -30,6 +31,8 @@ class CurriculumJob(StudyJob):
     outcome = SeedOutcome
     driver: ExamDriver = ON_BUS
     """Loop of the exams."""
+    lesson_driver: LessonDriver = LESSON_ON_BUS
+    """Loop of the lesson."""
 
     @property
     def robot_time_s(self) -> float:
@@ -42,7 +45,9 @@ class CurriculumJob(StudyJob):
         Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
         """
         factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
-        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
+        lesson, events = await run_lesson(
+            factory, robot, task, knowledge, seed=seed, report=report, driver=self.lesson_driver
+        )
         exams = await run_exams(
             factory, robot, task, events, task.exam.worlds, seed=seed, report=report, driver=self.driver
         )
@@ -105,7 +110,8 @@ def make_plan(
     parts: JobParts,
     *,
     wire: str,
-    exams: ExamLoop = ExamLoop.BUS,
+    exams: DriveLoop = DriveLoop.BUS,
+    lessons: DriveLoop = DriveLoop.BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> SeedPlan:
     """Return the jobs.
@@ -116,6 +122,7 @@ def make_plan(
         parts: factory, robot and results of the jobs.
         wire: name of the simulated wire.
         exams: loop that drives the exams.
+        lessons: loop that drives the lessons.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -124,14 +131,15 @@ def make_plan(
     factory = parts["factory"]
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     worlds = next(iter(tasks.values())).exam.worlds
-    drivers = iter(choose_drivers(exams, len(tasks) * len(seeds), worlds))
+    robots = len(tasks) * len(seeds)
+    drivers = iter(zip(choose_drivers(exams, robots, worlds), choose_lesson_drivers(lessons, robots), strict=True))
     jobs = {}
     for place, (label, task) in enumerate(tasks.items()):
         made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds), wire)
         end = f"-control-{place}" if place else ""
         jobs[label] = tuple(
-            SeedJob(task=task, seed=seed, label=end, driver=driver, made_of=made, **parts)
-            for seed, driver in zip(seeds, drivers, strict=False)
+            SeedJob(task=task, seed=seed, label=end, driver=driver, lesson_driver=lesson_driver, made_of=made, **parts)
+            for seed, (driver, lesson_driver) in zip(seeds, drivers, strict=False)
         )
     return SeedPlan(jobs)
 

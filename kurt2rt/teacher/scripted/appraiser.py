@@ -12,7 +12,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView, view_of_tick
 from kurt2rt.teacher.scripted.press_times import HumanTimes, PressTimes
 
 _NAME = "scripted teacher"
@@ -216,6 +216,19 @@ class ScriptedAppraiser:
         while self._delayed and self._delayed[0].due_tick <= record.tick:
             commands.append(self._delayed.popleft().command)
         return commands
+
+    def skip(self, ahead: Ahead) -> int:
+        """Let coming ticks of phase 1 or 2 pass in which this teacher does nothing; return how many."""
+        return self._answering.skip(ahead)
+
+    def answer(self, view: TeacherView) -> Command | None:
+        """Return the command in response to the next tick of phase 1 or 2, in which there are no signals."""
+        return self._answering.update(view)
+
+    @property
+    def command_due(self) -> int | None:
+        """Tick of phase 1 or 2 in which a command is under way to arrive; None without one."""
+        return self._answering.command_due
 
     def _judge(self, record: TickRecord, rewards: RewardSource) -> None:
         signal = rewards.on_tick(record)

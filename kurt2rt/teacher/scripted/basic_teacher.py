@@ -2,7 +2,7 @@
 
 import math
 from abc import ABC, abstractmethod
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
@@ -65,6 +65,30 @@ def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 
     )
 
 
+class Ahead(Protocol):
+    """Next ticks of a robot that drives on without its teacher."""
+
+    @property
+    def ticks(self) -> int:
+        """Number of known ticks."""
+        ...
+
+    @property
+    def until_question(self) -> int:
+        """Number of ticks before the first in which the basic level asks; all without one."""
+        ...
+
+    @property
+    def until_difference(self) -> int:
+        """Number of ticks before the first in which it asks or does another action than the policy's."""
+        ...
+
+    @property
+    def until_change(self) -> int:
+        """Number of ticks before the first with another action, or another right action, than in the tick before."""
+        ...
+
+
 class BasicTeacher(ABC):
     """Scripted teacher of the basic level: it sees states, and gives the commands that a person can give."""
 
@@ -82,6 +106,18 @@ class BasicTeacher(ABC):
     @abstractmethod
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Process a view that is `ticks` later than the last one; return the teacher's command, None without one."""
+
+    @abstractmethod
+    def skip(self, ahead: Ahead) -> int:
+        """Let coming ticks pass in which this teacher does nothing; return how many, and call `update` for the next.
+
+        So the teacher of a robot that is simulated in stretches has no work in most ticks.
+        """
+
+    @property
+    def command_due(self) -> int | None:
+        """Tick, counted from the begin of the teaching, in which a command is under way to arrive; None without one."""
+        return None
 
     def begin_phase(self, phase: Phase) -> Command:
         """Enter a phase; return the command that the robot needs for it."""

@@ -24,6 +24,11 @@ class DelayLine(Generic[_Item]):
             return None
         return self._items.popleft()[1]
 
+    @property
+    def next_due(self) -> int | None:
+        """Tick in which the oldest item comes out; None without items."""
+        return self._items[0][0] if self._items else None
+
     def clear(self) -> None:
         """Drop all items."""
         self._items.clear()

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, TeachShown, Undo
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
+from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.demonstrator import Demonstrator
 from kurt2rt.teacher.scripted.hand import Hand
@@ -164,6 +164,26 @@ class ScriptedPerson(BasicTeacher):
         if self._hand is None and self._look_back is None and self._demonstrator is None:
             self._press_if_due()
         return self._sent.pop(self._now)
+
+    def skip(self, ahead: Ahead) -> int:
+        """Let the ticks pass before the next picture, press or arrival of a command."""
+        due = [self._next_picture, self._pictures.next_due, self._sent.next_due, self._press_due]
+        ticks = min(ahead.ticks, *(max(0, each - 1 - self._now) for each in due if each is not None))
+        self._now += ticks
+        return ticks
+
+    @property
+    def command_due(self) -> int | None:
+        """Tick in which a command arrives that was sent already; None without one."""
+        return self._sent.next_due
+
+    @property
+    def _press_due(self) -> int | None:
+        """Tick of the planned press that comes first; None without one, and while a longer act lasts."""
+        if self._hand is not None or self._look_back is not None or self._demonstrator is not None:
+            return None
+        planned = (self._undo, self._answer, self._correction)
+        return min((each.due for each in planned if each is not None), default=None)
 
     def _look(self, picture: TeacherView) -> None:
         if picture.behaviour != self._behaviour:  # questions and mistakes of the last behaviour are over

@@ -9,7 +9,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
+from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.press_times import FixedTimes
 
 
@@ -57,12 +57,15 @@ class ScriptedTeacher(BasicTeacher):
         self._ticks_asked = 0
         self._ticks_wrong = 0
         self._right: str | None = None
+        self._is_wrong = False
+        """Whether the newest view showed an action that is not the right one."""
         self._behaviour = ""
         self._action_of: dict[int, str] = {}
         self._replaced: Counter[int] = Counter()
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Process a view that is `ticks` later than the last one; return the teacher's command, None without one."""
+        self._is_wrong = False
         if view.behaviour != self._behaviour:  # questions and errors of the last behaviour are over
             self._behaviour = view.behaviour
             self._ticks_asked = self._ticks_wrong = 0
@@ -80,6 +83,23 @@ class ScriptedTeacher(BasicTeacher):
             return None
         return self._correct(view, ticks)
 
+    def skip(self, ahead: Ahead) -> int:
+        """Let the ticks pass before a question, an action that is not the right one, and the end of a delay."""
+        if self._ticks_asked:
+            ticks = min(ahead.ticks, max(0, self._reaction_ticks - self._ticks_asked - 1))
+            self._ticks_asked += ticks
+            return ticks
+        if self._delete_after:
+            return 0
+        if self._ticks_wrong:
+            if not self._is_wrong:
+                return 0
+            ticks = min(ahead.until_change, max(0, self._patience_ticks - self._ticks_wrong - 1))
+            self._ticks_wrong += ticks
+            return ticks
+        answers_only = self.phase is Phase.SUPERVISED or not self._corrects
+        return ahead.until_question if answers_only else ahead.until_difference
+
     def _correct(self, view: TeacherView, ticks: int) -> Command | None:
         right = self._policy.choose(view.infrared_counts, view.behaviour)
         if right == view.action:
@@ -89,6 +109,7 @@ class ScriptedTeacher(BasicTeacher):
             self._right = right
             self._ticks_wrong = 0
         self._ticks_wrong += ticks
+        self._is_wrong = True
         if self._ticks_wrong < self._patience_ticks:
             return None
         self._ticks_wrong = 0

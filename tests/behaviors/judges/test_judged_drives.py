@@ -13,7 +13,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.behaviors.helpers import ROBOT, counts
 
 Shares = dict[int, float]

@@ -9,7 +9,7 @@ from behaviors.metrics.way import WaySettings
 from hal.robot import WheelSpeeds
 from hal.simulation import Pose
 from kurt2rt.core.task_settings import load_task
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.behaviors.metrics.paths import Point, along
 from tests.experiments.helpers import STAGE, short_task, teachers_drive
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.bench.batch import BatchLengths
+from kurt2rt.checks.bench.batch_lesson import BatchLessonLengths
 from kurt2rt.checks.bench.channel import ChannelLengths
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.match import Size
@@ -21,6 +22,7 @@ TINY = Lengths(
     lessons=2,
     channel=ChannelLengths(presses=1, shifts=LoadShifts(rounds=1, ticks=10), lessons=1),
     batch=BatchLengths(robots=2, exam_s=1.0, batches=1, on_bus=2),
+    batch_lessons=BatchLessonLengths(lesson_s=3.0, lessons=1, on_bus=1),
     recording=LoadShifts(rounds=1, ticks=20),
 )
 
@@ -44,7 +46,7 @@ async def test_run_suite_measures_all_in_order_with_one_drive(untaught: BenchFix
     ]  # its processes take seconds: test_channel.py
     results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
-    assert len(jobs.names) == 7
+    assert len(jobs.names) == 8
     assert all(result.goals for result in results if not result.what.startswith("  "))
 
 

@@ -19,7 +19,7 @@ from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.core.helpers import situation
 from tests.core.mid.walk import ROBOT
 

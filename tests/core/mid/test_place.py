@@ -18,7 +18,7 @@ from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.task_settings import load_task
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 
 ROBOT = load_robot()
 STREETS = load_task("streets")

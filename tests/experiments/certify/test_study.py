@@ -16,7 +16,7 @@ from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, m
 from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.certify.summary import worst_runs
 from kurt2rt.experiments.certify.tables import all_tables
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, ExamLoop
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
@@ -24,7 +24,7 @@ from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
-EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=ExamLoop.BATCH)
+EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=DriveLoop.BATCH)
 
 
 def ignore(_done_s: float) -> None:
@@ -122,7 +122,7 @@ def test_witness_job_stores_no_run_that_differs(
 
 def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate], taught: Taught) -> None:
     folder, certificate = made
-    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=ExamLoop.BUS))
+    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=DriveLoop.BUS))
     results = Results(folder / "bus")
     with results.held():
         run_missing(plan, results, 1, lambda _: None)

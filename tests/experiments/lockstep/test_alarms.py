@@ -13,7 +13,8 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.report import render_exams
 from kurt2rt.experiments.surprise.drive import StuckSensor
-from simbridge.simulation import Kurt2Simulation, Kurt2SimulationFactory
+from simbridge.kurt2_simulation import Kurt2Simulation
+from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
 from tests.experiments.lockstep.test_report import printed
 

@@ -70,7 +70,7 @@ def test_start_in_sight_is_that_of_the_bus() -> None:
 )
 def test_batch_refuses_tasks_that_it_does_not_know(name: str, changes: dict[str, str], policy: bool) -> None:
     task = load_task(name, changes=changes)
-    with pytest.raises(BatchRefusedError, match="examine it on the CAN bus"):
+    with pytest.raises(BatchRefusedError, match="use the CAN bus"):
         examine_in_batch(STAGE, ROBOT, task, [BatchExam(ExamSetup(task.exam.worlds[0], 1, policy))])
 
 

@@ -13,8 +13,8 @@ from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.exam_driver import (
     ON_BUS,
     BatchDiffersError,
+    DriveLoop,
     ExamDriver,
-    ExamLoop,
     choose_drivers,
 )
 from kurt2rt.experiments.study.results import Results
@@ -22,18 +22,18 @@ from kurt2rt.experiments.study.seeds import SeedJob, SeedOutcome
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.paper.outcomes import MADE_OF
 
-BATCH = ExamDriver(ExamLoop.BATCH)
-WATCHED = ExamDriver(ExamLoop.BATCH, frozenset("a"))
+BATCH = ExamDriver(DriveLoop.BATCH)
+WATCHED = ExamDriver(DriveLoop.BATCH, frozenset("a"))
 
 
 def witnesses(robots: int, worlds: str) -> int:
-    return sum(len(driver.witnesses) for driver in choose_drivers(ExamLoop.BATCH, robots, list(worlds)))
+    return sum(len(driver.witnesses) for driver in choose_drivers(DriveLoop.BATCH, robots, list(worlds)))
 
 
 def test_one_exam_in_a_hundred_has_a_witness_at_least_three() -> None:
     assert [witnesses(robots, "abc") for robots in (1, 20, 100, 201)] == [3, 3, 3, 7]
     assert witnesses(2, "a") == 2
-    assert choose_drivers(ExamLoop.BUS, 2, ["a"]) == [ON_BUS, ON_BUS]
+    assert choose_drivers(DriveLoop.BUS, 2, ["a"]) == [ON_BUS, ON_BUS]
 
 
 def examined(driver: ExamDriver, reported: list[str] | None = None) -> tuple[WorldResult, ...]:

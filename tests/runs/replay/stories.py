@@ -53,7 +53,7 @@ from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.runs.replay.stored_runs import STORED
 
 NAME = "scripted teacher"

@@ -137,13 +137,28 @@ def test_watch_finds_a_sign_when_the_sensor_watch_does(seed: int, quiet: int) ->
             return
 
 
+Targets = list[tuple[float, int]]
+
+
 @given(targets=st.lists(st.tuples(st.floats(-0.6, 0.6), st.integers(1, 60)), min_size=1, max_size=8))
-def test_sound_motor_never_looks_disobedient(targets: list[tuple[float, int]]) -> None:
+def test_sound_motor_never_looks_disobedient(targets: Targets) -> None:
+    assert_obeys(targets, put_every=None)
+
+
+@given(targets=st.lists(st.tuples(st.floats(-0.6, 0.6), st.integers(1, 60)), min_size=1, max_size=16))
+def test_wheels_of_a_robot_that_is_put_obey_too(targets: Targets) -> None:
+    assert_obeys(targets, put_every=100)
+
+
+def assert_obeys(targets: Targets, put_every: int | None) -> None:
+    """Check that the watch of the wheels never acts; `put_every`: ticks after which the wheels are held."""
     wheels, watch = Wheels(ROBOT), WheelWatch(ROBOT)
     tick, told_m_s = 0, 0.0
     for target_m_s, ticks in targets:
         for _ in range(ticks):
             tick += 1
+            if put_every is not None and tick % put_every == 0:
+                wheels.halt()
             wheels.turn(told_m_s, -told_m_s)
             assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.can.cycle_s) == ""
             told_m_s = int(target_m_s * 100) / 100

@@ -1,0 +1,169 @@
+"""Contract of a lesson in a batch: a robot that drives in compiled stretches, while its teacher teaches it.
+
+The robot's own decisions are compiled. Teacher, commands and lessons are not: they act between two stretches.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.batch import Action, FeatureTable, TabledPolicy
+from hal.simulation import Pose, Simulation, SimulationFactory
+
+
+class LessonCause(IntEnum):
+    """Cause of the decision of one tick."""
+
+    RLA = 0
+    HELD = 1
+    """Another RLA is nearest, but the minimum time of the action is not over."""
+    UNKNOWN = 2
+    """The robot stands and asks."""
+    STOPPED = 3
+    """A teacher stopped the robot."""
+    TEACHER = 4
+    """An action that the teacher holds drives."""
+
+
+class LessonLog(NamedTuple):
+    """Course of a lesson, one row for each tick; row 0 is the robot before its first tick."""
+
+    features: NDArray[np.int16]
+    """Recent features in counts, (ticks + 1, features)."""
+    sums: NDArray[np.int32]
+    """Sums of the features over the steps of the average, (ticks + 1, features)."""
+    counts: NDArray[np.int16]
+    """Readings of all sensors, (ticks + 1, sensors)."""
+    poses: NDArray[np.float64]
+    """x, y in m and heading in rad, (ticks + 1, 3)."""
+    causes: NDArray[np.int8]
+    """LessonCause of each tick."""
+    actions: NDArray[np.int8]
+    """Index of the action that drives; -1 while the robot stands."""
+    right: NDArray[np.int8]
+    """Index of the action that the policy takes for right."""
+    rlas: NDArray[np.int32]
+    """RLA that drives; 0 for none."""
+    slow: NDArray[np.bool_]
+    """True where a slow lesson slowed the wheels."""
+    touching: NDArray[np.bool_]
+    collisions: NDArray[np.int32]
+    """Collisions so far."""
+
+
+class TaughtRlas(NamedTuple):
+    """RLAs that compete in a lesson, oldest first."""
+
+    rla_ids: Sequence[int]
+    conditions: Sequence[NDArray[np.float64]]
+    """Weighted recent features of each RLA, (features,)."""
+    radii: Sequence[float]
+    """Distances within which they answer now."""
+    actions: Sequence[str]
+
+
+class LessonMode(NamedTuple):
+    """Orders that hold until the next command."""
+
+    stopped: bool = False
+    """The robot stands until a resume."""
+    held: str = ""
+    """Action that the teacher holds; empty if none is."""
+    speed_share: float = 1.0
+    """Fraction of their speed at which actions drive."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LessonDriveSettings:
+    """Settings of a robot that is taught in a batch."""
+
+    actions: dict[str, Action]
+    """Actions that the robot may be taught, by name."""
+    minimum_ticks: int
+    """Ticks before another action may replace the driving one."""
+    policy: TabledPolicy
+    """Policy of the teacher."""
+    features: FeatureTable
+    average_steps: int
+    """Steps of the averages in a situation."""
+    ticks: int
+    """Length of the lesson."""
+
+
+class LessonRobot(Simulation, Protocol):
+    """Simulation whose robot drives in compiled stretches."""
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of the actions, by index."""
+        ...
+
+    @property
+    def log(self) -> LessonLog:
+        """Course of the lesson; rows after the present tick have no meaning."""
+        ...
+
+    @property
+    def reason_to_leave(self) -> str:
+        """Return why the lesson belongs on the loop over the CAN bus; empty if it does not."""
+        ...
+
+    def set_rlas(self, rlas: TaughtRlas) -> None:
+        """Replace the RLAs; the next decision may take another action at once, even if one is held."""
+        ...
+
+    def set_mode(self, mode: LessonMode) -> None:
+        """Set the orders from the next decision on."""
+        ...
+
+    @property
+    def waits(self) -> bool:
+        """Return whether the next tick needs the physics engine, so that `sense` must begin it."""
+        ...
+
+    def sense(self) -> None:
+        """Begin the next tick up to its situation, whose row of the log is written; decide in the next `drive`."""
+        ...
+
+    def drive(self, until: int) -> int:
+        """Drive to the end of a tick and return its number; less if the robot must go to the physics engine first.
+
+        Ticks after the last `keep` can be taken back. Raises ValueError for too many ticks.
+        """
+        ...
+
+    def go_back(self, tick: int) -> None:
+        """Be at the end of an earlier tick since the last `keep` again."""
+        ...
+
+    def keep(self) -> list[Pose]:
+        """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
+        ...
+
+    def restart_held(self) -> None:
+        """Begin the held action from its start."""
+        ...
+
+    def trust_sensors(self) -> None:
+        """Forget contradictions of sensors with their neighbours, as a resume does."""
+        ...
+
+    def state_hash(self) -> str:
+        """Return the state hash of the robot, as the simulated robot on the CAN bus has it after these ticks."""
+        ...
+
+
+@runtime_checkable
+class LessonFactory(SimulationFactory, Protocol):
+    """Opens simulations whose robots are taught in a batch."""
+
+    def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
+        """Open a simulation (hal.simulation.SimulationFactory) with a compiled robot.
+
+        Raises hal.batch_refusal.BatchRefusedError for what the batch does not know.
+        """
+        ...

@@ -1,0 +1,60 @@
+"""History of decisions over the log of a lesson in a batch."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.batch_lesson import LessonCause, LessonLog
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
+
+_TEACHABLE = frozenset(map(int, LessonCause)) - {int(LessonCause.STOPPED)}
+"""Causes of ticks that a held action may become a lesson about: in a batch a teacher drives by holding an action."""
+
+
+class LoggedDecisions(DecisionHistory):
+    """Decisions of the ticks up to `newest`, read from a log; no tick is missed, and no tick has an opinion.
+
+    Its owner sets `newest`. A copy shares the log, so it takes no time.
+    """
+
+    def __init__(self, log: LessonLog, average_steps: int, capacity: int = 1000) -> None:
+        """Read `log`, which its owner writes; `average_steps`: steps of the averages in a situation."""
+        super().__init__(0, capacity)
+        self._log = log
+        self._average_steps = average_steps
+
+    def empty_copy(self) -> "LoggedDecisions":
+        """Return an empty history over the same log."""
+        return LoggedDecisions(self._log, self._average_steps, self._capacity)
+
+    def copy_from(self, other: DecisionHistory) -> None:
+        """Store the ticks that another history of this log stores now."""
+        self.newest = other.newest
+
+    def contains(self, tick: int) -> bool:
+        """Return whether a tick is stored; ask before reading anything of a tick."""
+        return max(1, self.newest - self._capacity + 1) <= tick <= self.newest
+
+    def has_situation(self, tick: int) -> bool:  # noqa: ARG002 - a simulated robot is never blind
+        """Return True: a robot in a batch always has sensor data."""
+        return True
+
+    def teachable(self, tick: int) -> bool:
+        """Return whether a held action may become a lesson about a stored tick."""
+        return self._log.causes.item(tick) in _TEACHABLE
+
+    def touched(self, tick: int) -> bool:  # noqa: ARG002 - lessons of scripted teachers
+        """Return False: a robot that a scripted teacher teaches does not ask at a bumper."""
+        return False
+
+    def situation(self, tick: int) -> NDArray[np.float64]:
+        """Return the situation (d,) of a logged tick."""
+        features, sums = self._log.features[tick], self._log.sums[tick]
+        return np.concatenate((features.astype(np.float64), sums / float(self._average_steps)))
+
+    def driving_rla(self, tick: int) -> int | None:
+        """Return the id of the RLA that drove in a stored tick; None if none did."""
+        return int(self._log.rlas[tick]) or None
+
+    def behaviour(self, tick: int) -> str:  # noqa: ARG002 - a batch knows tasks of one behaviour
+        """Return the empty name of the only behaviour."""
+        return ""

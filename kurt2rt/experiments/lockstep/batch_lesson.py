@@ -1,0 +1,343 @@
+"""Lessons in a batch: the same training runs as on the CAN bus, many times faster.
+
+The robot drives compiled stretches as if its teacher did nothing. Then the teacher sees what a person would have seen.
+Where it gives a command, the robot goes back to that tick, and its own runtime carries the command out.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from behaviors.metrics.task_metric import StretchMetric
+from hal.batch import TabledPolicy
+from hal.batch_lesson import LessonCause, LessonDriveSettings, LessonFactory, LessonRobot
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose, Position
+from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.weights import feature_weights
+from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import HoldAction
+from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
+from kurt2rt.experiments.lockstep.command_checks import require_accepted
+from kurt2rt.experiments.lockstep.episode import StuckDetector
+from kurt2rt.experiments.lockstep.lesson import TrainingRun
+from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
+from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
+from kurt2rt.teacher.scripted.basic_teacher import TeacherView
+
+_UNKNOWN = int(LessonCause.UNKNOWN)
+_STRETCH_TICKS = 200
+"""Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
+
+
+def teach_in_batch(
+    factory: LessonFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> GivenLesson | None:
+    """Teach an untaught robot as `teach` does; return the lesson, None if it belongs on the CAN bus.
+
+    Args:
+        factory: opens the simulation.
+        settings: of the robot.
+        task: to teach.
+        seed: of robot and teacher.
+        on_progress: called once for each simulated second, with the simulated seconds.
+
+    Raises:
+        BatchRefusedError: the batch does not know the task or its teacher.
+        LessonLostError: the robot refused a command.
+        hal.settings.SettingsError: task and world do not fit.
+    """
+    with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress) as run:
+        return run.given() if run.drive_stretches() else None
+
+
+@contextmanager
+def open_batch_lesson(
+    factory: LessonFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> Iterator["BatchTrainingRun"]:
+    """Yield a lesson that has not begun, with its robot; close the robot's simulation (`teach_in_batch`).
+
+    Raises BatchRefusedError, hal.settings.SettingsError.
+    """
+    plan, store = plan_of(task), InMemoryEventStore()
+    lesson = _drive_settings(settings, task, plan)
+    with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
+        recent = LoggedDecisions(robot.log, lesson.average_steps)
+        runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
+        mind = LessonMind(runtime, robot, recent, store)
+        session = f"{plan.purpose}-{seed}-after-0"
+        yield BatchTrainingRun(robot, mind, plan, seed=seed, session=session, on_progress=on_progress)
+
+
+def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch can teach a task with its teacher. Raises BatchRefusedError."""
+    _drive_settings(settings, task, plan_of(task))
+
+
+def _drive_settings(settings: RobotSettings, task: TaskSettings, plan: LessonPlan) -> LessonDriveSettings:
+    require_known_task(task)
+    profile, doubt = task.teaching.profile, task.learning.doubt
+    if doubt is not None and doubt.asks:
+        raise refused(task, "a robot that asks at a doubt")
+    if profile.shows.times:
+        raise refused(task, "a teacher who drives by hand")
+    if task.teaching.teacher.delete_after:
+        raise refused(task, "a teacher who deletes RLAs")
+    policy = task.policy.build(settings.infrared)
+    if not isinstance(policy, TabledPolicy):
+        raise refused(task, f"policy {task.policy.kind}")
+    definition = load_situation(task.situation, settings.infrared.names)
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    width = len(definition.features)
+    if weights[width:].any():
+        raise refused(task, "averages that count in a distance")
+    drive = build_drive_settings(settings, task)
+    return LessonDriveSettings(
+        actions=dict(drive.actions),
+        minimum_ticks=drive.minimum_ticks,
+        policy=policy,
+        features=feature_table(definition, settings, weights[:width].tolist(), task),
+        average_steps=definition.history_steps,
+        ticks=round(plan.duration_s / settings.can.cycle_s),
+    )
+
+
+class _Ahead:
+    """Ticks of the log that the teacher has not seen yet (kurt2rt.teacher.scripted.basic_teacher.Ahead)."""
+
+    def __init__(self, questions: NDArray[np.intp], differences: NDArray[np.intp], changes: NDArray[np.intp]) -> None:
+        """Know the ticks of questions and so on, ascending, each (n,)."""
+        self._questions, self._differences, self._changes = questions, differences, changes
+        self._tick = 0
+        self.ticks = 0
+        """Number of known ticks."""
+
+    def after(self, tick: int, until: int) -> "_Ahead":
+        """Look from the tick after `tick` on, up to `until`."""
+        self._tick, self.ticks = tick, until - tick
+        return self
+
+    @property
+    def until_question(self) -> int:
+        """Number of ticks before the first in which the robot asks; all without one."""
+        return self._until(self._questions)
+
+    @property
+    def until_difference(self) -> int:
+        """Number of ticks before the first in which it asks or does another action than the policy's."""
+        return self._until(self._differences)
+
+    @property
+    def until_change(self) -> int:
+        """Number of ticks before the first with another action, or another right action, than in the tick before."""
+        return self._until(self._changes)
+
+    def _until(self, ticks: NDArray[np.intp]) -> int:
+        place = ticks.searchsorted(self._tick, side="right")
+        return min(ticks.item(place) - 1 - self._tick, self.ticks) if place < len(ticks) else self.ticks
+
+
+class BatchTrainingRun(TrainingRun):
+    """Training run whose robot drives compiled stretches."""
+
+    def __init__(
+        self,
+        robot: LessonRobot,
+        mind: LessonMind,
+        plan: LessonPlan,
+        *,
+        seed: int,
+        session: str,
+        on_progress: Callable[[float], None],
+    ) -> None:
+        super().__init__(robot, mind.runtime, plan, seed=seed, session=session, on_progress=on_progress)
+        self.robot, self._mind = robot, mind
+        self._actions = robot.actions
+        # Asked once, because it reads all members of the protocol.
+        self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
+        self._over = False
+        self._messages: list[tuple[int, HoldAction]] = []
+        """Messages of a hold that goes on in the present stretch, with their ticks."""
+
+    def given(self) -> GivenLesson:
+        """Return the lesson so far."""
+        return GivenLesson(self.result(), self._mind.events)
+
+    def drive_stretches(self) -> bool:
+        """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
+        while self.ticks < self._planned_ticks and not self._over:
+            if not self._drive_stretch():
+                return False
+        self._mind.count(self.ticks)
+        return True
+
+    def _drive_stretch(self) -> bool:
+        """Drive to the next command, or as far as is known; return whether the robot stays in the batch."""
+        robot, begin = self.robot, self.ticks
+        due = self._mind.is_due(begin + 1)
+        if due or robot.waits:
+            robot.sense()
+            if robot.reason_to_leave:
+                return False
+        if due:
+            results = self._mind.take(begin + 1)
+            self._refused += require_accepted(results, begin + 1, self.task, self._teacher.may_be_refused)
+        reached = robot.drive(self._stretch_end(begin))
+        if reached == begin:
+            return not robot.reason_to_leave
+        stuck = self._stuck_tick(begin, reached)
+        cut = self._ask_teacher(begin, reached if stuck is None else stuck)
+        if cut == reached and robot.reason_to_leave:
+            return False
+        if cut < reached or cut == stuck or self._repositions_at(cut):
+            robot.go_back(cut)
+        poses = robot.keep()
+        if self._mind.holds:
+            self._hold_on(begin + 1 + due, cut)
+        self._pass(begin, cut, poses)
+        return True
+
+    def _hold_on(self, first: int, cut: int) -> None:
+        """Carry out the messages of a hold up to a tick; a later one is sent."""
+        if self._messages and self._messages[-1][0] > cut:
+            self.send(self._messages.pop()[1])
+        self._mind.hold_on(first, cut, self._messages)
+        self._messages.clear()
+
+    def _stretch_end(self, begin: int) -> int:
+        """Return the tick up to which the robot may drive at once after tick `begin`."""
+        ends = [begin + _STRETCH_TICKS, self._planned_ticks, *self._phase_starts_after(begin)]
+        if self._reposition_every:
+            ends.append((begin // self._reposition_every + 1) * self._reposition_every)
+        arrives = self._teacher.command_due
+        if arrives is not None and not self._mind.holds:
+            ends.append(max(begin + 1, arrives))
+        return min(ends)
+
+    def _phase_starts_after(self, begin: int) -> list[int]:
+        """Return the tick before the next phase; its first tick if the phase begins after tick `begin`."""
+        return [tick if tick == begin + 1 else tick - 1 for tick in self._phase_starts if tick > begin]
+
+    def _repositions_at(self, tick: int) -> bool:
+        return bool(self._reposition_every) and tick % self._reposition_every == 0
+
+    def _stuck_tick(self, begin: int, end: int) -> int | None:
+        """Return the tick up to `end` in which the robot has been stuck for long enough; None without one."""
+        return self._follow_detector(self._stuck.copy(), begin, end)
+
+    def _follow_detector(self, detector: StuckDetector, begin: int, end: int) -> int | None:
+        """Let a detector see the ticks from `begin` + 1 to `end`; return the tick in which it finds the robot stuck."""
+        if self.runtime.handler.active_stop is not None:
+            return None
+        log = self.robot.log
+        asks = log.causes[begin + 1 : end + 1] == _UNKNOWN
+        edges = [0, *(np.flatnonzero(asks[1:] != asks[:-1]) + 1).tolist(), end - begin]
+        for first, after in pairwise(edges):
+            if first < after and asks[first]:
+                detector.restart()
+                continue
+            stuck = detector.ticks_until_stuck(after - first, partial(self._position, begin + 1 + first))
+            if stuck is not None:
+                return begin + first + stuck
+        return None
+
+    def _position(self, first: int, place: int) -> Position:
+        """Return the position in the tick that is `place` ticks after the `first`."""
+        x_m, y_m, _ = self.robot.log.poses[first + place].tolist()
+        return Position(x_m, y_m)
+
+    def _ask_teacher(self, begin: int, last: int) -> int:
+        """Show the ticks up to `last` to the teacher, and return the tick of the first command, or `last`."""
+        if begin + 1 in self._phase_starts:
+            self._begin_phase(self._phase_starts[begin + 1])
+        log, teacher = self.robot.log, self._teacher
+        rows = slice(begin + 1, last + 1)
+        asks = log.causes[rows] == _UNKNOWN
+        actions, right = log.actions[begin : last + 1], log.right[begin : last + 1]
+        differs = asks | ((actions[1:] >= 0) & (actions[1:] != right[1:]))
+        # A question has no action, and a robot without an action asks or was stopped.
+        changes = (actions[1:] != actions[:-1]) | (right[1:] != right[:-1])
+        ahead = _Ahead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
+        held_to = self._mind.held_to
+        tick, until = begin, last if held_to is None else min(last, held_to)
+        while tick < until:
+            tick += teacher.skip(ahead.after(tick, until))
+            if tick == until:
+                break
+            tick += 1
+            command = teacher.answer(self._view(tick))
+            if command is None:
+                continue
+            if not isinstance(command, HoldAction) or not self._mind.renews(command):
+                self._send_lesson(command, tick)
+                break
+            self._workload.count(tick, command)
+            self._messages.append((tick + 1, command))
+            until = min(last, self._mind.held_to_by(command, tick + 1))
+        return tick
+
+    def _view(self, tick: int) -> TeacherView:
+        """Return the teacher's view of a tick."""
+        log = self.robot.log
+        action = log.actions.item(tick)
+        return TeacherView(
+            asking=log.causes.item(tick) == _UNKNOWN,
+            driving=action >= 0,
+            action=self._actions[action] if action >= 0 else None,
+            infrared_counts=tuple(log.counts[tick].tolist()),
+            tick=tick,
+            touching=log.touching.item(tick),
+        )
+
+    def _pass(self, begin: int, cut: int, poses: list[Pose]) -> None:
+        """Measure the ticks up to `cut` as `after_tick` does one by one, and look after the robot in the last one."""
+        asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
+        self.ticks = cut
+        self.unknown_ticks += int(asks.sum())
+        begins = np.flatnonzero(asks & ~np.concatenate(([self.asking], asks[:-1])))
+        self.ask_positions += [Position(poses[place].x_m, poses[place].y_m) for place in begins.tolist()]
+        self.asking = bool(asks[-1])
+        self._measure_all(poses)
+        self._follow_detector(self._stuck, begin, cut - 1)
+        first = -(begin + 1) % self.trail_stride
+        self.trail += [Position(pose.x_m, pose.y_m) for pose in poses[first : len(poses) - 1 : self.trail_stride]]
+        self._look_after(cut)
+        if cut % self.trail_stride == 0:
+            self.trail.append(self.simulation.position)
+        for second in range(begin // self.ticks_per_second + 1, cut // self.ticks_per_second + 1):
+            tick = second * self.ticks_per_second
+            self._note_second(tick, self._mind.rlas_after(tick))
+            self._on_progress(tick * self.period_s)
+        most = self._plan.most_presses
+        self._over = most is not None and len(self._workload.press_ticks) > most
+
+    def _measure_all(self, poses: list[Pose]) -> None:
+        # Added one by one, as in each tick of `Episode`: another order would change the last digits.
+        for before, after in pairwise([self._pose, *poses]):
+            self.distance_travelled_m += math.hypot(after.x_m - before.x_m, after.y_m - before.y_m)
+        self._pose = poses[-1]
+        if self._stretch_metric is not None:
+            self._stretch_metric.update_all(poses)
+            return
+        for pose in poses:
+            self.metric.update(pose)

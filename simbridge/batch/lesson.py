@@ -1,0 +1,185 @@
+"""Robot of a lesson in a batch: it drives compiled stretches, which can be taken back."""
+
+import numpy as np
+
+from hal.batch import DriveSettings, PolicyMind
+from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
+from hal.batch_refusal import BatchRefusedError
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
+from simbridge.batch.batch import RobotBatch
+from simbridge.batch.drive import begin_tick, put_down
+from simbridge.batch.minds import LANES
+from simbridge.batch.parts import STRETCH
+from simbridge.batch.safety import forget_contradictions
+from simbridge.batch.tables import build_features
+from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
+from simbridge.simulated_robot import SimulatedRobot
+
+MOST_TICKS = STRETCH // 2
+"""Most ticks after a `keep`: half of the random numbers that lie ahead are used up at most before more are drawn."""
+_MOST_RLAS = 4096
+_ALONE = np.array([0])
+"""Indexes of the robots of the batch."""
+
+
+class CompiledLesson(RobotBatch):
+    """Robot that is taught: its state, its course and its RLAs in arrays."""
+
+    def __init__(self, robot: RobotSettings, simulated: SimulatedRobot, settings: LessonDriveSettings) -> None:
+        """Copy the state of a simulated robot that has not driven yet, which follows this robot from then on.
+
+        Raises BatchRefusedError for what the batch does not know.
+        """
+        drive = DriveSettings(actions=settings.actions, minimum_ticks=settings.minimum_ticks)
+        super().__init__(robot, [simulated], [PolicyMind(settings.policy)], drive)
+        self._simulated = simulated
+        width, rows, sensors = len(settings.features.kinds), settings.ticks + 1, len(robot.infrared.sensors)
+        self._minimum_ticks = settings.minimum_ticks
+        self._width = width
+        self.log = LessonLog(
+            features=np.zeros((rows, width), dtype=np.int16),
+            sums=np.zeros((rows, width), dtype=np.int32),
+            counts=np.zeros((rows, sensors), dtype=np.int16),
+            poses=np.zeros((rows, 3)),
+            causes=np.full(rows, -1, dtype=np.int8),
+            actions=np.full(rows, -1, dtype=np.int8),
+            right=np.full(rows, -1, dtype=np.int8),
+            rlas=np.zeros(rows, dtype=np.int32),
+            slow=np.zeros(rows, dtype=np.bool_),
+            touching=np.zeros(rows, dtype=np.bool_),
+            collisions=np.zeros(rows, dtype=np.int32),
+        )
+        padded = -(-width // LANES) * LANES
+        self._table = Table(
+            rows=np.zeros(1, dtype=np.int64),
+            rla_ids=np.zeros(_MOST_RLAS, dtype=np.int64),
+            conditions=np.zeros((_MOST_RLAS, padded)),
+            radius=np.zeros(_MOST_RLAS),
+            action=np.zeros(_MOST_RLAS, dtype=np.int64),
+            features=build_features(settings.features),
+            added=np.zeros(rows, dtype=np.int64),
+            average_steps=settings.average_steps,
+        )
+        self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
+        self._orders = Orders(False, -1, 1.0)
+        self.tick = 0
+        """Tick that the robot has completed."""
+        self._kept = 0
+        self._draw_noise(0, MOST_TICKS)
+        self._saved = self._robots.copy()
+        self._saved_learner = [array.copy() for array in self._learner]
+
+    @property
+    def waits(self) -> bool:
+        """Return whether the next tick has begun, and waits for the physics engine."""
+        return bool(self._robots[0]["waits"])
+
+    def set_rlas(self, rlas: TaughtRlas) -> None:
+        """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
+        table, count = self._table, len(rlas.rla_ids)
+        if count > _MOST_RLAS:
+            raise BatchRefusedError(f"{count} RLAs: a lesson in a batch has at most {_MOST_RLAS}", do="use the CAN bus")
+        place = {name: index for index, name in enumerate(self.actions)}
+        table.rows[0] = count
+        if count:
+            table.rla_ids[:count] = rlas.rla_ids
+            table.conditions[:count, : self._width] = rlas.conditions
+            table.radius[:count] = rlas.radii
+            table.action[:count] = [place[name] for name in rlas.actions]
+        self._robots[0]["action_ticks"] = self._minimum_ticks
+        self._keep_state()
+
+    def set_mode(self, mode: LessonMode) -> None:
+        """Set the orders from the next decision on."""
+        held = self.actions.index(mode.held) if mode.held else -1
+        if self._orders.held >= 0 > held:
+            self._robots[0]["action"] = self._robots[0]["rla"] = -1
+        self._orders = Orders(mode.stopped, held, mode.speed_share)
+        self._keep_state()
+
+    def restart_held(self) -> None:
+        """Begin the held action from its start."""
+        self._robots[0]["turned_m"] = 0.0
+        self._keep_state()
+
+    def trust_sensors(self) -> None:
+        """Forget contradictions of sensors with their neighbours, as a resume does."""
+        forget_contradictions(self._robots[0])
+        self._keep_state()
+
+    def sense(self) -> None:
+        """Begin the next tick up to its situation; only after `keep`."""
+        record = self._robots[0]
+        if not self.waits:
+            begin_tick(record, self._world, self._laws)
+        if self.waits:
+            self._move_in_engine(0)
+        elif not record["left"]:
+            self._finish(0)
+        self._keep_state()
+
+    def run(self, until: int) -> int:
+        """Drive to the end of a tick, and return the tick that was reached; less if the engine must move the body.
+
+        Raises ValueError for too many ticks since the last `keep`.
+        """
+        if not until - self._kept <= MOST_TICKS:
+            raise ValueError(f"{until - self._kept} ticks to take back: keep after {MOST_TICKS}")
+        assert not self.waits, "sense before the next stretch"
+        teach(
+            until,
+            self._robots,
+            self._world,
+            self._laws,
+            self._learner,
+            self._table,
+            self._orders,
+            self.log,
+        )
+        record = self._robots[0]
+        self.tick = int(record["tick"]) - bool(record["waits"] or record["left"])
+        return self.tick
+
+    def go_back(self, tick: int) -> None:
+        """Be at the end of an earlier tick since the last `keep` again; what had begun of the next one is forgotten."""
+        if tick == self.tick and not self.waits and not self._robots[0]["left"]:
+            return
+        self._robots[0] = self._saved[0]
+        for array, saved in zip(self._learner, self._saved_learner, strict=True):
+            array[:] = saved
+        self.run(tick)
+
+    def keep(self) -> list[Pose]:
+        """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
+        record, end = self._robots[0], int(self._robots[0]["at"])
+        poses = [Pose(*each) for each in self.log.poses[self._kept + 1 : self.tick + 1].tolist()]
+        if poses:
+            self._simulated.follow(poses)
+        self._keep_set_points(_ALONE, end)
+        for side in ("left", "right"):  # of a tick that waits
+            record[f"track_{side}_cm_s"][0] = record[f"track_{side}_cm_s"][end]
+        record["at"] = self._caught_up[0] = 0
+        self._draw_noise(0, MOST_TICKS)
+        self._kept = self.tick
+        self._keep_state()
+        return poses
+
+    def put(self, pose: Pose) -> None:
+        """Put the robot, standing, at this pose; only after `keep`, and not while it waits for the engine."""
+        assert not self.waits
+        record = self._robots[0]
+        self._bodies[0].put(record, pose, self._set_points.take(0))
+        record["x_m"], record["y_m"], record["heading_rad"] = pose
+        record["free_cycles"] = self._gap_cycles + 1
+        put_down(record, self._world, self._laws)
+        self._simulated.carry(pose)
+        self._keep_state()
+
+    def _finish(self, r: int) -> None:  # noqa: ARG002 - there is one robot
+        perceive(self._robots, self._world, self._laws, self._learner, self._table, self.log)
+
+    def _keep_state(self) -> None:
+        self._saved[0] = self._robots[0]
+        for array, saved in zip(self._learner, self._saved_learner, strict=True):
+            saved[:] = array

@@ -1,0 +1,158 @@
+"""The loop of a lesson in a batch: a taught robot drives, and its course is logged, until a lesson may be given."""
+
+from typing import NamedTuple
+
+from hal.batch_lesson import LessonCause, LessonLog
+from hal.slow_way import advance_way
+from simbridge.batch.compiled import compiled
+from simbridge.batch.drive import STAYS, begin_tick, sense_tick
+from simbridge.batch.minds import feature_of, hold_or_change, right_action, scan_nearest, step_action
+from simbridge.batch.parts import Features, Floats, Integers, Laws, Robot, Robots, World
+from simbridge.batch.safety import drive_guarded
+
+BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER = (int(cause) for cause in LessonCause)
+_advance_way = compiled(advance_way)
+
+
+class Learner(NamedTuple):
+    """State of the robot's mind, each in an array of its own, so that it can be copied."""
+
+    sums: Integers
+    """Sums of the features over the steps of the average, (features,)."""
+    numbers: Integers
+    """Steps that were added to the averages; 1 if the next tick was sensed already; 1 if an action drove in the last
+    tick, (3,)."""
+    way: Floats
+    """Way since the last counted tick of a slow lesson, (1,)."""
+
+
+class Orders(NamedTuple):
+    """Orders that hold until the next command."""
+
+    stopped: bool
+    held: int
+    """Action that the teacher holds; -1: none."""
+    speed_share: float
+
+
+class Table(NamedTuple):
+    """RLAs of the lesson, oldest first; rows after the last one are free."""
+
+    rows: Integers
+    """Number of RLAs, (1,)."""
+    rla_ids: Integers
+    conditions: Floats
+    """Weighted conditions, (rows, values)."""
+    radius: Floats
+    action: Integers
+    features: Features
+    added: Integers
+    """Ticks whose features were added to the averages, (ticks + 1,)."""
+    average_steps: int
+
+
+STEPS, SENSED, DROVE = range(3)
+
+
+@compiled
+def teach(
+    until: int,
+    robots: Robots,
+    world: World,
+    laws: Laws,
+    learner: Learner,
+    table: Table,
+    orders: Orders,
+    log: LessonLog,
+) -> None:
+    """Drive the only robot of a batch to the end of a tick, or until it waits for the physics engine or leaves."""
+    robot = robots[0]
+    if learner.numbers[SENSED]:
+        _decide(robot, laws, learner, table, orders, log)
+    while robot.tick < until and robot.left == STAYS:
+        begin_tick(robot, world, laws)
+        if robot.waits:
+            return
+        if robot.left == STAYS:
+            perceive(robots, world, laws, learner, table, log)
+            if robot.left == STAYS:
+                _decide(robot, laws, learner, table, orders, log)
+
+
+@compiled
+def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: Table, log: LessonLog) -> None:
+    """Run a tick of the only robot of a batch from its new pose up to its situation, and log what it perceives."""
+    robot = robots[0]
+    robot.waits = 0
+    if not sense_tick(robot, world, laws):
+        return
+    tick, numbers, features = robot.tick, learner.numbers, table.features
+    # As kurt2rt.core.perception: the averages stand still while the robot stands, and in ticks that do not count.
+    moves = numbers[DROVE] and robot.way_counts
+    steps = table.average_steps
+    for i in range(features.kind.shape[0]):
+        value = feature_of(robot.counts, features, i)
+        log.features[tick, i] = value
+        if tick == 1:
+            learner.sums[i] = steps * value
+        if moves:
+            # Before the first step leaves the averages, the robot has been where it began.
+            leaves = table.added[numbers[STEPS] - steps] if numbers[STEPS] >= steps else 1
+            learner.sums[i] += value - log.features[leaves, i]
+        log.sums[tick, i] = learner.sums[i]
+    if moves:
+        table.added[numbers[STEPS]] = tick
+        numbers[STEPS] += 1
+    for i in range(robot.counts.shape[0]):
+        log.counts[tick, i] = robot.counts[i]
+    log.poses[tick, 0], log.poses[tick, 1], log.poses[tick, 2] = robot.x_m, robot.y_m, robot.heading_rad
+    log.touching[tick] = robot.touching != 0
+    log.collisions[tick] = robot.collisions
+    log.right[tick] = right_action(robot, laws.mind)
+    numbers[SENSED] = 1
+
+
+@compiled
+def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Orders, log: LessonLog) -> None:
+    """Decide the tick that was sensed, and send CONTROL."""
+    learner.numbers[SENSED] = 0
+    tick, cause = robot.tick, _choose(robot, laws, table, orders)
+    left_m_s = right_m_s = 0.0
+    drives = robot.action >= 0
+    if drives:
+        left_m_s, right_m_s = step_action(robot, laws.mind)
+    slow = drives and orders.speed_share < 1.0
+    robot.way_counts = 1
+    if slow:
+        way, counts = _advance_way(learner.way[0], orders.speed_share)
+        learner.way[0] = way
+        robot.way_counts = 1 if counts else 0
+        left_m_s, right_m_s = orders.speed_share * left_m_s, orders.speed_share * right_m_s
+    learner.numbers[DROVE] = 1 if drives else 0
+    log.causes[tick], log.actions[tick], log.slow[tick] = cause, robot.action, slow
+    log.rlas[tick] = robot.rla if cause in (BY_RLA, HELD) else 0
+    drive_guarded(robot, (left_m_s, right_m_s), tick * laws.body.cycle_s, laws.guard)
+    robot.at += 1
+
+
+@compiled
+def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders) -> int:
+    """Let the nearest RLA or the teacher choose the action; return the cause, a number of LessonCause."""
+    if orders.held >= 0:
+        robot.action = orders.held
+        return TEACHER
+    if orders.stopped:
+        robot.action = robot.rla = -1
+        return STOPPED
+    features = table.features
+    for i in range(features.kind.shape[0]):
+        robot.situation[i] = feature_of(robot.counts, features, i) * features.weights[i]
+    row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
+    robot.nearest = row
+    if row < 0 or not distance <= table.radius[row]:
+        robot.action = robot.rla = -1
+        return UNKNOWN
+    if hold_or_change(robot, table.action[row], laws.mind):
+        robot.rla = table.rla_ids[row]
+        return BY_RLA
+    return HELD
