@@ -8,7 +8,7 @@ from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
 from simbridge.batch.parts import Features, Floats, Integers, Knowledge, MindLaw, Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT = range(5)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
 LANES = 8
@@ -155,6 +155,9 @@ def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[fl
     robot.track_distance[k] = math.inf
     if robot.kind == KNOWLEDGE:
         _match(robot, k, law, knowledge)
+    elif robot.kind == COMMANDED:
+        if robot.command >= 0:
+            hold_or_change(robot, robot.command, law)
     else:
         for i in range(law.seen.shape[0]):
             robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
