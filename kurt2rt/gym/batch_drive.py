@@ -52,6 +52,7 @@ class BatchDrive:
         self._perception = Perception(definition, settings.infrared.names)
         self._appraisal = AppraisalPerception(load_critic(task.critic), settings)
         self._batch = factory.open_batch([simulation], [CommandedMind()], drive_settings)
+        simulation.close()  # from here on it follows the batch, which has no bus
         self._commands: list[tuple[str, int]] = []
         self._bus: BusDrive | None = None
         """Drive over the CAN bus, once the robot has left the batch."""
@@ -85,8 +86,7 @@ class BatchDrive:
         return self._moment
 
     def close(self) -> None:
-        """Close the bus of the robot."""
-        self._simulation.close()
+        """Close the bus of a robot that has left the batch."""
         if self._bus is not None:
             self._bus.close()
 
