@@ -1,13 +1,15 @@
 """Drive of an agent in the compiled batch, with the numbers of the drive over the CAN bus."""
 
+from collections.abc import Iterable
+
 from behaviors.judges.judge import AppraisalFeatures
-from hal.batch import BatchFactory, CommandedMind, Trace
+from hal.batch import BatchFactory, CommandedMind, DriveSettings, Trace
 from hal.batch_refusal import BatchRefusedError
 from hal.robot import SensorReadings
 from hal.simulation import Pose, Position
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings
 from kurt2rt.experiments.lockstep.episode import Episode, StuckDetector
@@ -15,6 +17,9 @@ from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.endings import Ending
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.moment import Moment
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+
+_ON_THE_BUS = 'drive on the CAN bus: loop="bus"'
 
 
 class BatchDrive:
@@ -36,10 +41,7 @@ class BatchDrive:
         self._factory, self._setup = factory, setup
         drive_settings = build_drive_settings(settings, task, minimum_ticks=0)
         definition = load_situation(task.situation, settings.infrared.names)
-        if definition.wheel_speed_counts_per_m_s:
-            raise BatchRefusedError(
-                f"situation {definition.name}: the batch has no wheel speeds", do="drive on the CAN bus"
-            )
+        require_known(definition, load_task_repertoire(task, settings), drive_settings)
         self._simulation = simulation = factory.open(setup.world, setup.seed, PURPOSE)
         chance = setup.chance()
         self._metric = task.course.build(simulation, task.behaviours, chance)
@@ -142,6 +144,18 @@ class BatchDrive:
             (Ending.TIME, self._ticks >= self._setup.ticks),
         )
         return next((ending for ending, is_so in reached if is_so and ending in self._setup.ends_at), None)
+
+
+def require_known(definition: SituationDefinition, names: Iterable[str], known: DriveSettings) -> None:
+    """Check that a batch knows the features of a situation, and the actions of these names.
+
+    Raises BatchRefusedError.
+    """
+    if definition.wheel_speed_counts_per_m_s:
+        raise BatchRefusedError(f"situation {definition.name}: the batch has no wheel speeds", do=_ON_THE_BUS)
+    unknown = [name for name in names if name not in known.actions]
+    if unknown:
+        raise BatchRefusedError(f"action {', '.join(unknown)}: the batch knows no taught actions", do=_ON_THE_BUS)
 
 
 def _readings(trace: Trace, place: int) -> SensorReadings:

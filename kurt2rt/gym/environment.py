@@ -65,7 +65,6 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             render_mode: "rgb_array" for pictures of the world; None for none.
 
         Raises:
-            BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
             hal.settings.SettingsError: for a task, world or option that cannot be used.
         """
         self._settings = load_robot()
@@ -106,6 +105,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             options: "world", a name or path; "start", a pose (x_m, y_m, heading_rad) in m and rad.
 
         Raises:
+            BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
             hal.settings.SettingsError: for an option that cannot be used.
         """
         super().reset(seed=seed)

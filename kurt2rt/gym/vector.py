@@ -16,7 +16,6 @@ def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
     Without the compiler (extra `fast`) they drive over the CAN bus, with the same numbers: that is quicker then.
 
     Raises:
-        BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
         hal.settings.SettingsError: for a task, world or option that cannot be used.
     """
     options.setdefault("loop", ExamLoop.BATCH.value if IS_COMPILED else ExamLoop.BUS.value)
