@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol, runtime_checkable
 
+from hal.guard_reason import GuardReason
 from hal.simulation import Pose, Simulation, SimulationFactory
 
 STANDS = -1
@@ -67,7 +68,12 @@ class TaughtMind:
     features: FeatureTable
 
 
-Mind = PolicyMind | TaughtMind
+@dataclass(frozen=True, slots=True)
+class CommandedMind:
+    """Robot that drives by the newest command, and stands before the first one."""
+
+
+Mind = PolicyMind | TaughtMind | CommandedMind
 
 
 class FixedSpeeds(NamedTuple):
@@ -159,6 +165,24 @@ class Tally(NamedTuple):
     """Pose after the last tick."""
 
 
+class Trace(NamedTuple):
+    """Readings of a commanded robot over the newest stretch of ticks, one value for each tick."""
+
+    counts: list[tuple[int, ...]]
+    """Readings of all sensors, in counts."""
+    left_ticks: list[int]
+    """Encoder ticks of the left side in this tick, forward positive."""
+    right_ticks: list[int]
+    bumpers: list[int]
+    """Bit n is set if bumper n touches."""
+    limits: list[tuple[GuardReason, ...]]
+    """Reasons why the guard changed the set points."""
+
+
+TRACED_TICKS = 10
+"""Most ticks of a stretch of a commanded robot."""
+
+
 class Batch(Protocol):
     """Robots that drive at once, each in a world of its own."""
 
@@ -187,6 +211,17 @@ class Batch(Protocol):
 
     def tally(self, robot: int) -> Tally:
         """Return the counts of a robot's drive so far."""
+        ...
+
+    def command(self, robot: int, action: int) -> None:
+        """Let an action drive a commanded robot from the next tick on; a finished turn begins again.
+
+        `action`: index into `actions`.
+        """
+        ...
+
+    def trace(self, robot: int) -> Trace:
+        """Return the readings of a commanded robot over the newest call of `drive`."""
         ...
 
     def state_hash(self, robot: int, laps: float) -> str:

@@ -20,7 +20,7 @@ TRAINING_SEED, EXAM_SEED = 1, 1000
 
 def make(task: str) -> gym.Env[Any, Any]:
     """Return the environment of a task, with observations between -1 and 1."""
-    return RescaleObservation(gym.make(task), -1.0, 1.0)
+    return RescaleObservation(gym.make(task, loop="batch"), -1.0, 1.0)
 
 
 def drive(env: gym.Env[Any, Any], choose: Callable[[Any, dict[str, Any]], int]) -> tuple[float, float, str]:

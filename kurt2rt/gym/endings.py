@@ -32,7 +32,7 @@ OPTIONAL = frozenset({Ending.COLLISION, Ending.STUCK})
 
 
 def read_endings(names: Collection[str]) -> frozenset[Ending]:
-    """Return the endings with these names.
+    """Return the endings with these names, and the inevitable ones.
 
     Raises hal.settings.SettingsError for another name than collision or stuck.
     """
@@ -41,4 +41,4 @@ def read_endings(names: Collection[str]) -> frozenset[Ending]:
         raise SettingsError(
             f"ends_at: unknown ending (got {', '.join(unknown)}, allowed {', '.join(sorted(OPTIONAL))})"
         )
-    return frozenset(Ending(name) for name in names)
+    return frozenset(Ending(name) for name in names) | INEVITABLE

@@ -10,16 +10,17 @@ from numpy.typing import NDArray
 
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
-from hal.simulation import Simulation
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.gym.agent_task import load_agent_task
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
-from kurt2rt.gym.episode import AgentEpisode
+from kurt2rt.gym.episode_setup import EpisodeSetup
+from kurt2rt.gym.loops import open_drive, read_loop
+from kurt2rt.gym.moment import AgentDrive, Moment
 from kurt2rt.gym.picture import Picture
 from kurt2rt.gym.reset_options import read_options
-from kurt2rt.gym.rewards import DecisionOutcome, build_reward
+from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, build_reward
 from kurt2rt.gym.spaces import observation_space
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from simbridge.simulation import Kurt2SimulationFactory
@@ -32,7 +33,7 @@ _MOST_SEEDS = 2**31
 
 
 class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
-    """The simulated KURT2 behind its CAN bus, with the perception and the guard of the real runtime.
+    """The simulated KURT2, by default behind its CAN bus, with the perception and the guard of the real runtime.
 
     The observation is the situation, an action is a place in `actions`, and a decision lasts for 0.1 s.
     """
@@ -48,6 +49,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         reward: str | None = None,
         ends_at: Collection[str] = (Ending.COLLISION.value, Ending.STUCK.value),
         duration_s: float | None = None,
+        loop: str = DriveLoop.BUS.value,
         render_mode: str | None = None,
     ) -> None:
         """Load the task.
@@ -59,6 +61,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             reward: source of the rewards, "judge" or "teacher"; None: the judge if the task has one.
             ends_at: endings that terminate an episode, of "collision" and "stuck".
             duration_s: time after which an episode is truncated, in s; None: that of the task's exam.
+            loop: "bus" drives over the simulated CAN bus, "batch" in the compiled batch, with the same numbers.
             render_mode: "rgb_array" for pictures of the world; None for none.
 
         Raises:
@@ -72,12 +75,15 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         require_course(self._factory, self._task, [self._world])
         self._reward = build_reward(self._task, reward)
         self._ends_at = read_endings(ends_at)
+        self.loop = read_loop(loop)
+        """Loop that drives the robot."""
         self._policy = self._task.policy.build(self._settings.infrared)
         cycle_s = self._settings.can.cycle_s
         self._decision_ticks = round(_DECISION_S / cycle_s)
         self._episode_ticks = round(self._checked_duration_s(duration_s) / cycle_s)
         definition = load_situation(self._task.situation, self._settings.infrared.names)
         names = definition.names if averages else definition.names[: len(definition.features)]
+        self._averages = averages
         self.observation_names = names
         """Name of each value of an observation."""
         self.observation_space = observation_space(definition, self._settings, averages=averages)
@@ -87,8 +93,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise SettingsError(f"render_mode: unknown (got {render_mode}, allowed rgb_array)")
         self.render_mode = render_mode
-        self._simulation: Simulation | None = None
-        self._episode: AgentEpisode | None = None
+        self._drive: AgentDrive | None = None
         self._picture: Picture | None = None
         """Drawing of the episode's world; None until the first frame of the episode."""
 
@@ -100,23 +105,26 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             options: "world", a name or path; "start", a pose (x_m, y_m, heading_rad) in m and rad.
 
         Raises:
+            BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
             hal.settings.SettingsError: for an option that cannot be used.
         """
         super().reset(seed=seed)
         wanted = read_options(options, self._world, self._settings)
         run = int(self.np_random.integers(_MOST_SEEDS)) if seed is None else seed
         self.close()
-        self._simulation = self._factory.open(wanted.world, run, "exam")
-        self._episode = AgentEpisode(
-            self._simulation,
-            self._settings,
-            self._task,
-            ExamSetup(wanted.world, run),
+        setup = EpisodeSetup(
+            settings=self._settings,
+            task=self._task,
+            world=wanted.world,
+            seed=run,
+            start=wanted.start,
             ends_at=self._ends_at,
             ticks=self._episode_ticks,
-            start=wanted.start,
+            averages=self._averages,
+            judged=isinstance(self._reward, JudgeReward),
         )
-        return self._observation(self._episode), self._info(self._episode)
+        self._drive = open_drive(self.loop, self._factory, setup)
+        return self._observation(self._drive.moment), self._info(self._drive.moment)
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, Info]:
         """Drive by an action for 0.1 s; return observation, reward (-1, 0 or +1), terminated, truncated, information.
@@ -125,19 +133,19 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             gymnasium.error.ResetNeeded: no episode is under way.
             gymnasium.error.InvalidAction: `action` is not a place in `actions`.
         """
-        episode = self._episode
-        if episode is None or episode.ending is not None:
+        drive = self._drive
+        if drive is None or drive.moment.ending is not None:
             raise gymnasium.error.ResetNeeded("step: no episode is under way; call reset first")
         if action not in self.action_space:
             raise gymnasium.error.InvalidAction(
                 f"step: unknown action (got {action}, allowed 0 to {len(self.actions) - 1}); give a place in `actions`"
             )
-        name, answer = self.actions[action], self._teachers_answer(episode)
-        record, ending = episode.drive(name, self._decision_ticks)
-        reward = self._reward.reward(DecisionOutcome(name, answer, record.appraisal_features))
-        terminated = ending in TERMINAL
-        truncated = ending is not None and not terminated
-        return self._observation(episode), float(reward), terminated, truncated, self._info(episode)
+        name, answer = self.actions[action], self._teachers_answer(drive.moment)
+        now = drive.drive(name, self._decision_ticks)
+        reward = self._reward.reward(DecisionOutcome(name, answer, now.features))
+        terminated = now.ending in TERMINAL
+        truncated = now.ending is not None and not terminated
+        return self._observation(now), float(reward), terminated, truncated, self._info(now)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Return a picture of the world, RGB of shape (height, width, 3); None without a render mode.
@@ -146,17 +154,17 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         """
         if self.render_mode is None:
             return None
-        if self._episode is None:
+        if self._drive is None:
             raise gymnasium.error.ResetNeeded("render: there is no robot yet; call reset first")
         if self._picture is None:
-            self._picture = Picture(self._factory, self._episode.world, self._settings)
-        return self._picture.frame(self._episode.simulation.pose, self._episode.trail)
+            self._picture = Picture(self._factory, self._drive.world, self._settings)
+        return self._picture.frame(self._drive.moment.pose, self._drive.trail)
 
     def close(self) -> None:
         """Stop the robot and close its bus; `reset` opens another one."""
-        if self._simulation is not None:
-            self._simulation.close()
-        self._simulation = self._episode = self._picture = None
+        if self._drive is not None:
+            self._drive.close()
+        self._drive = self._picture = None
 
     def _checked_duration_s(self, duration_s: float | None) -> float:
         if duration_s is None:
@@ -165,24 +173,22 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             raise SettingsError(f"duration_s: too short (got {duration_s}, allowed {_DECISION_S} or more)")
         return duration_s
 
-    def _observation(self, episode: AgentEpisode) -> Observation:
-        return episode.record.situation.vector[: len(self.observation_names)].copy()
+    def _observation(self, now: Moment) -> Observation:
+        return now.situation[: len(self.observation_names)].copy()
 
-    def _teachers_answer(self, episode: AgentEpisode) -> str:
-        """Return the action of the reference policy for the newest observation."""
-        record = episode.record
-        counts = record.readings.infrared_counts if record.trusted_counts is None else record.trusted_counts
-        return self._policy.choose(counts, self._task.behaviours[0])
+    def _teachers_answer(self, now: Moment) -> str:
+        """Return the action of the reference policy for an observation."""
+        return self._policy.choose(now.counts, self._task.behaviours[0])
 
-    def _info(self, episode: AgentEpisode) -> Info:
-        record, answer = episode.record, self._teachers_answer(episode)
+    def _info(self, now: Moment) -> Info:
+        answer = self._teachers_answer(now)
         return {
             "teacher": {"name": answer, "index": self.actions.index(answer)},
-            "action": record.decision.action or "",
-            "guard": tuple(reason.value for reason in record.guard_result.reasons),
-            "pose": np.array(episode.simulation.pose),
-            "collisions": episode.simulation.collisions,
-            "progress": episode.metric.progress,
-            "time_s": episode.driven_ticks * episode.period_s,
-            "ending": "" if episode.ending is None else episode.ending.value,
+            "action": now.action,
+            "guard": tuple(reason.value for reason in now.guard),
+            "pose": np.array(now.pose),
+            "collisions": now.collisions,
+            "progress": now.progress,
+            "time_s": now.ticks * self._settings.can.cycle_s,
+            "ending": "" if now.ending is None else now.ending.value,
         }

@@ -17,4 +17,9 @@ ENVIRONMENTS = {
 def register_environments() -> None:
     """Register the environment of each task in Gymnasium's registry."""
     for name, task in ENVIRONMENTS.items():
-        gymnasium.register(name, "kurt2rt.gym.environment:TaskEnvironment", kwargs={"task": task})
+        gymnasium.register(
+            name,
+            "kurt2rt.gym.environment:TaskEnvironment",
+            vector_entry_point="kurt2rt.gym.vector:make_vector_environment",
+            kwargs={"task": task},
+        )

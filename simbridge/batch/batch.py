@@ -6,12 +6,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.batch import STANDS, DriveSettings, Mind, Stretch, Tally
+from hal.batch import STANDS, TRACED_TICKS, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
+from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.contacts import ContactBody, SetPoints
 from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting
 from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
+from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import build_knowledge, require_known
 from simbridge.robot.bumpers import CollisionCounter
@@ -23,6 +25,15 @@ _REASONS = {
     BROKEN: "a sensor looks broken",
     CROWDED: "too many walls are near",
 }
+
+_LIMIT_BITS = {
+    SPEED_LIMIT: GuardReason.SPEED_LIMIT,
+    FRONT_BUMPER: GuardReason.FRONT_BUMPER,
+    REAR_BUMPER: GuardReason.REAR_BUMPER,
+    SLEW_LIMIT: GuardReason.SLEW_LIMIT,
+}
+_LIMITS = [tuple(reason for bit, reason in _LIMIT_BITS.items() if bits & bit) for bits in range(2 * SLEW_LIMIT)]
+"""Reasons of the guard, by the bits of the limits that were met."""
 
 
 _MOVING = (
@@ -70,6 +81,7 @@ class RobotBatch:
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
+        self._longest = TRACED_TICKS if any(isinstance(mind, CommandedMind) for mind in minds) else STRETCH
         self._driven = 0
 
     def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
@@ -78,8 +90,8 @@ class RobotBatch:
         Robots that leave the batch or are stuck stop early. Raises ValueError for a longer stretch, and for a robot
         that stopped before.
         """
-        if not 0 < ticks <= STRETCH:
-            raise ValueError(f"a stretch of {ticks} ticks: give 1 to {STRETCH}")
+        if not 0 < ticks <= self._longest:
+            raise ValueError(f"a stretch of {ticks} ticks: give 1 to {self._longest}")
         if stopped := set(robots) - set(self._going_on(robots)):
             raise ValueError(f"robot {min(stopped)} has left the batch, or is stuck")
         for r in robots:
@@ -155,6 +167,21 @@ class RobotBatch:
             travelled_m=float(record["travelled_m"]),
             pose=Pose(*(float(record[name]) for name in Pose._fields)),
         )
+
+    def command(self, robot: int, action: int) -> None:
+        """Let an action, by its index, drive a commanded robot from the next tick on; a finished turn begins again."""
+        record = self._robots[robot]
+        if record["action"] == action and record["turned_m"] >= self._laws.mind.wanted_m[action]:
+            record["action"] = STANDS
+        record["command"] = action
+
+    def trace(self, robot: int) -> Trace:
+        """Return the readings of a commanded robot over the newest call of `drive`."""
+        record, end = self._robots[robot], self._driven
+        names = ("left_ticks", "right_ticks", "bumpers", "limits")
+        left_ticks, right_ticks, bumpers, limits = (record[f"track_{name}"][:end].tolist() for name in names)
+        counts = list(map(tuple, record["track_counts"][:end].tolist()))
+        return Trace(counts, left_ticks, right_ticks, bumpers, [_LIMITS[each] for each in limits])
 
     def state_hash(self, robot: int, laps: float) -> str:
         """Return the state hash of a robot, as the simulated robot on the CAN bus has it after these ticks.

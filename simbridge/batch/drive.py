@@ -1,7 +1,7 @@
 """The loop of a batch: each robot drives some ticks, in the order of events of the loop over the CAN bus."""
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.minds import decide
+from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.motion import move, turn_wheels
 from simbridge.batch.parts import Integers, Knowledge, Laws, Robot, Robots, World
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
@@ -60,6 +60,8 @@ def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) ->
         wanted = decide(robot, robot.at, laws.mind, knowledge)
         drive_guarded(robot, wanted, robot.tick * laws.body.cycle_s, laws.guard)
         count_tick(robot, asked, laws.stuck)
+        if robot.kind == COMMANDED:
+            trace(robot, robot.at)
         robot.at += 1
 
 
@@ -90,6 +92,15 @@ def put_down(robot: Robot, world: World, laws: Laws) -> None:
         robot.left = CROWDED
     else:
         measure_all(robot, laws.sensor)
+
+
+@compiled
+def trace(robot: Robot, k: int) -> None:
+    """Enter the readings of a commanded robot in tick `k` of the stretch, and the limits that its guard met."""
+    for i in range(robot.counts.shape[0]):
+        robot.track_counts[k, i] = robot.counts[i]
+    robot.track_left_ticks[k], robot.track_right_ticks[k] = robot.left_ticks, robot.right_ticks
+    robot.track_bumpers[k], robot.track_limits[k] = robot.bumpers, robot.limits
 
 
 @compiled

@@ -8,7 +8,7 @@ from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
 from simbridge.batch.parts import Conditions, Features, Floats, Integers, Knowledge, MindLaw, Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT = range(5)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
 LANES = 8
@@ -197,6 +197,9 @@ def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[fl
     robot.track_distance[k] = math.inf
     if robot.kind == KNOWLEDGE:
         _match(robot, k, law, knowledge)
+    elif robot.kind == COMMANDED:
+        if robot.command >= 0:
+            hold_or_change(robot, robot.command, law)
     else:
         hold_or_change(robot, right_action(robot, law), law)
     robot.track_action[k], robot.track_rla[k] = robot.action, robot.rla

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.policies import circle, eight, fleeing, wall_following
+from hal.batch import TRACED_TICKS
 from hal.infrared_law import InfraredLawNumbers
 from simbridge.robot.wheels import SideLaw
 
@@ -145,10 +146,14 @@ class Robot:
     """1 if the last CONTROL frame let a wheel turn."""
     way_counts: int
     """1 if the last tick counts on the clock of the way; a slow lesson leaves out some."""
+    limits: int
+    """Limits of the guard that were met in the newest tick, as bits (simbridge.batch.safety)."""
 
     # Mind
     kind: int
     """Kind of mind (simbridge.batch.minds)."""
+    command: int
+    """Action that was commanded last; -1: none."""
     action: int
     """Action that drives; -1: none."""
     action_ticks: int
@@ -193,6 +198,13 @@ class Robot:
     track_left_cm_s: Annotated[Integers, (STRETCH,)]
     """Set points that the motors followed."""
     track_right_cm_s: Annotated[Integers, (STRETCH,)]
+
+    # Readings of a commanded robot in that stretch
+    track_counts: Annotated[Integers, (TRACED_TICKS, "sensors")]
+    track_left_ticks: Annotated[Integers, (TRACED_TICKS,)]
+    track_right_ticks: Annotated[Integers, (TRACED_TICKS,)]
+    track_bumpers: Annotated[Integers, (TRACED_TICKS,)]
+    track_limits: Annotated[Integers, (TRACED_TICKS,)]
 
 
 class Sizes(NamedTuple):

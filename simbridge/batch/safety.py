@@ -32,6 +32,8 @@ UNSEEN = -1000
 _ROUNDING = 1e-6
 """Set points are truncated to whole cm/s beyond this (hal.control)."""
 _LONGEST_SLEW_CYCLES = 2
+SPEED_LIMIT, FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT = 1, 2, 4, 8
+"""Bits of the limits that a set point met."""
 
 
 @compiled
@@ -165,20 +167,29 @@ def drive_guarded(robot: Robot, wanted: tuple[float, float], now_s: float, law: 
     """Move the set points of a robot toward wanted speeds in m/s within the guard's limits, and send CONTROL."""
     left_m_s, right_m_s = wanted
     fastest_m_s = max(abs(left_m_s), abs(right_m_s))
+    robot.limits = 0
     if fastest_m_s > law.maximum_speed_m_s:
+        robot.limits |= SPEED_LIMIT
         share = law.maximum_speed_m_s / fastest_m_s
         left_m_s *= share
         right_m_s *= share
     from_left_m_s, from_right_m_s = robot.guarded_left_m_s, robot.guarded_right_m_s
     if robot.bumpers & law.front_bits:
+        if left_m_s > 0.0 or right_m_s > 0.0:
+            robot.limits |= FRONT_BUMPER
         left_m_s, right_m_s = min(left_m_s, 0.0), min(right_m_s, 0.0)
         from_left_m_s, from_right_m_s = min(from_left_m_s, 0.0), min(from_right_m_s, 0.0)
     if robot.bumpers & law.rear_bits:
+        if left_m_s < 0.0 or right_m_s < 0.0:
+            robot.limits |= REAR_BUMPER
         left_m_s, right_m_s = max(left_m_s, 0.0), max(right_m_s, 0.0)
         from_left_m_s, from_right_m_s = max(from_left_m_s, 0.0), max(from_right_m_s, 0.0)
     elapsed_s = min(now_s - robot.driven_at_s, _LONGEST_SLEW_CYCLES * law.cycle_s)
+    wanted_left_m_s, wanted_right_m_s = left_m_s, right_m_s
     left_m_s = slewed(from_left_m_s, left_m_s, elapsed_s, law)
     right_m_s = slewed(from_right_m_s, right_m_s, elapsed_s, law)
+    if left_m_s != wanted_left_m_s or right_m_s != wanted_right_m_s:
+        robot.limits |= SLEW_LIMIT
     robot.guarded_left_m_s, robot.guarded_right_m_s = left_m_s, right_m_s
     robot.driven_at_s = now_s
     left, right = left_m_s * 100.0, right_m_s * 100.0

@@ -192,7 +192,7 @@ def build_robots(
     robots["signs"][:, :, :4] = UNSEEN
     robots["looked_at_s"], robots["driven_at_s"] = math.inf, -math.inf
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
-    robots["action"] = robots["rla"] = STANDS
+    robots["command"] = robots["action"] = robots["rla"] = STANDS
     robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
     robots["way_counts"] = 1
     robots["kind"] = [kind_of(mind) for mind in minds]

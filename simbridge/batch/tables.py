@@ -9,10 +9,10 @@ from behaviors.policies.circle import Circle
 from behaviors.policies.eight import Eight
 from behaviors.policies.fleeing import Fleeing
 from behaviors.policies.wall_following import WallFollowing
-from hal.batch import DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
+from hal.batch import CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings, SpeedMode
-from simbridge.batch.minds import CIRCLE, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
+from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
 from simbridge.batch.parts import MOST_KEPT, MOST_VALUES, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.simulated_robot import SimulatedRobot
 
@@ -24,7 +24,12 @@ _NO_FEATURES = FeatureTable((), (), ())
 
 def kind_of(mind: Mind) -> int:
     """Return the kind of a mind (simbridge.batch.minds)."""
-    return KNOWLEDGE if isinstance(mind, TaughtMind) else _POLICIES[type(mind.policy)]
+    match mind:
+        case TaughtMind():
+            return KNOWLEDGE
+        case CommandedMind():
+            return COMMANDED
+    return _POLICIES[type(mind.policy)]
 
 
 def require_known(
@@ -61,10 +66,19 @@ _ON_THE_BUS = "drive it on the CAN bus"
 
 def _require_actions(minds: Sequence[Mind], settings: DriveSettings) -> None:
     for mind in minds:
-        named = mind.actions if isinstance(mind, TaughtMind) else getattr(mind.policy, "actions", ())
-        unknown = sorted(set(named) - set(settings.actions))
+        unknown = sorted(set(_actions_of(mind)) - set(settings.actions))
         if unknown:
             raise BatchRefusedError(f"action {', '.join(unknown)}: the batch does not know it", do=_ON_THE_BUS)
+
+
+def _actions_of(mind: Mind) -> Sequence[str]:
+    """Return the actions that a mind may choose; none for a commanded one, whose commands are indexes."""
+    match mind:
+        case TaughtMind():
+            return mind.actions
+        case PolicyMind():
+            return mind.policy.actions
+    return ()
 
 
 def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Knowledge, list[int]]:

@@ -1,28 +1,27 @@
 """Episodes end at a collision, stuck, stopped, off course or at the end of their time."""
 
+import math
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 
 import gymnasium
 import pytest
 
 from hal.guard_reason import GuardReason
-from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.gym.agent_task import load_agent_task
-from kurt2rt.gym.endings import Ending
-from kurt2rt.gym.episode import AgentEpisode
+from kurt2rt.gym.bus_drive import BusDrive
+from kurt2rt.gym.endings import Ending, read_endings
+from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.gym.helpers import environment, follow_teacher, press_on
 
 
 @contextmanager
-def episode(*ends_at: Ending, ticks: int = 30_000) -> Iterator[AgentEpisode]:
-    simulation = STAGE.open("a", 1, "exam")
-    try:
-        task = load_agent_task("wall_following")
-        yield AgentEpisode(simulation, ROBOT, task, ExamSetup("a", 1), ends_at=ends_at, ticks=ticks)
-    finally:
-        simulation.close()
+def episode(*ends_at: str, ticks: int = 30_000) -> Iterator[BusDrive]:
+    task = load_agent_task("wall_following")
+    setup = EpisodeSetup(ROBOT, task, "a", 1, start=None, ends_at=read_endings(ends_at), ticks=ticks)
+    with closing(BusDrive(STAGE.open("a", 1, PURPOSE), setup)) as drive:
+        yield drive
 
 
 def test_episode_that_collides_is_terminated() -> None:
@@ -71,18 +70,16 @@ def test_episode_ends_at_an_emergency_stop() -> None:
     with episode() as drive:
         drive.drive("forward", 10)
         drive.simulation.robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
-        record, ending = drive.drive("forward", 10)
-        assert ending is Ending.STOPPED
-        assert record.guard_result.latched
+        assert drive.drive("forward", 10).ending is Ending.STOPPED
 
 
 def test_episode_time_ends_it_in_the_tick_of_a_collision() -> None:
-    with episode(Ending.COLLISION) as drive:
-        while drive.drive("flee", 1)[1] is None:
+    with episode("collision") as drive:
+        while drive.drive("flee", 1).ending is None:
             pass
-        collided_after = drive.driven_ticks
+        collided_after = drive.moment.ticks
     with episode(ticks=collided_after) as drive:
-        assert drive.drive("flee", collided_after)[1] is Ending.TIME
+        assert drive.drive("flee", collided_after).ending is Ending.TIME
 
 
 def test_guard_stops_an_agent_that_pushes_on() -> None:
@@ -90,7 +87,7 @@ def test_guard_stops_an_agent_that_pushes_on() -> None:
         while not drive.simulation.touching:
             drive.drive("flee", 1)
         drive.drive("flee", 50)
-        pressed = [drive.drive("flee", 1)[0] for _ in range(20)]
-        held = [record.guard_result for record in pressed if GuardReason.FRONT_BUMPER in record.guard_result.reasons]
-        assert held
-        assert all(max(result.wheel_speeds) <= 0.0 for result in held)
+        before = drive.simulation.pose
+        pressed = [drive.drive("flee", 1) for _ in range(50)]
+        assert any(GuardReason.FRONT_BUMPER in moment.guard for moment in pressed)
+        assert math.dist(before[:2], drive.simulation.pose[:2]) < 0.01

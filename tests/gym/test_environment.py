@@ -34,6 +34,11 @@ def test_environment_passes_the_checker_without_warning(name: str) -> None:
         check_env(made.unwrapped)
 
 
+def test_environment_in_the_batch_passes_the_checker() -> None:
+    with environment(loop="batch") as made:
+        check_env(made, skip_render_check=True)
+
+
 def test_environment_teachers_drive_makes_progress(env: TaskEnvironment) -> None:
     drive = follow_teacher(env, 200, seed=3)
     assert drive[-1].info["collisions"] == 0

@@ -61,12 +61,19 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "rescues")
 
 
-def build_drive_settings(settings: RobotSettings, task: TaskSettings) -> DriveSettings:
-    """Return the actions of the task's repertoire that a batch knows, and the minimum time of an action."""
+def build_drive_settings(
+    settings: RobotSettings, task: TaskSettings, minimum_ticks: int | None = None
+) -> DriveSettings:
+    """Return the actions of the task's repertoire that a batch knows, and the minimum time of an action.
+
+    `minimum_ticks`: that time in ticks; None: the task's.
+    """
     actions = {name: _action_of(each) for name, each in load_task_repertoire(task, settings).items()}
     return DriveSettings(
         actions={name: each for name, each in actions.items() if each is not None},
-        minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s),
+        minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s)
+        if minimum_ticks is None
+        else minimum_ticks,
     )
 
 

@@ -1,0 +1,28 @@
+"""Loops that an environment drives by: the CAN bus, or the compiled batch."""
+
+from hal.batch import BatchFactory
+from hal.settings import SettingsError
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.gym.batch_drive import BatchDrive
+from kurt2rt.gym.bus_drive import BusDrive
+from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
+from kurt2rt.gym.moment import AgentDrive
+
+
+def read_loop(name: str) -> DriveLoop:
+    """Return the loop of a name. Raises hal.settings.SettingsError for an unknown one."""
+    if name not in set(DriveLoop):
+        raise SettingsError(f"loop: unknown (got {name}, allowed {', '.join(DriveLoop)})")
+    return DriveLoop(name)
+
+
+def open_drive(loop: DriveLoop, factory: BatchFactory, setup: EpisodeSetup) -> AgentDrive:
+    """Return a new drive of an agent.
+
+    Raises:
+        BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
+        hal.settings.SettingsError: task and world do not fit.
+    """
+    if loop is DriveLoop.BATCH:
+        return BatchDrive(factory, setup)
+    return BusDrive(factory.open(setup.world, setup.seed, PURPOSE), setup)
