@@ -1,11 +1,12 @@
 """Jobs of a search: one robot of a trial, or of the check."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam_driver import ExamDriver, choose_drivers
+from kurt2rt.experiments.lockstep.lesson_driver import LessonDriver, choose_lesson_drivers
 from kurt2rt.experiments.search.score import RobotScore, robot_score
 from kurt2rt.experiments.search.settings import SEED, Robots, SearchSettings
 from kurt2rt.experiments.study.jobs import JobParts
@@ -57,29 +58,39 @@ class JobMaker:
 
     def trial(self, task: TaskSettings, trial: int) -> tuple[SearchJob, ...]:
         """Return the jobs of a trial, in the order in which its robots are taught."""
-        robots, loop = self.search.search, self.search.exams
+        robots = self.search.search
         count = robots.seeds.count
-        own = choose_drivers(loop, count, robots.worlds)
-        if trial:  # 1 % of their exams are driven on the CAN bus too; of the first trial, which has all robots, three
-            drivers = choose_drivers(loop, self.search.trials * count, robots.worlds)
-            own = drivers[trial * count : (trial + 1) * count] or own
+        own = self._drivers(robots, count)
+        if trial:  # 1 % of their drives are on the CAN bus too; of the first trial, which has all robots, three
+            own = self._drivers(robots, self.search.trials * count)[trial * count : (trial + 1) * count] or own
         return self._jobs("trials", label_of(trial), task, robots, own)
 
     def check(self, task: TaskSettings, label: str, place: int, of: int) -> tuple[SearchJob, ...]:
         """Return the jobs of the check of one set of settings, which is number `place`, from 0, among `of` sets."""
         robots = self.search.check
         count = robots.seeds.count
-        drivers = choose_drivers(self.search.exams, of * count, robots.worlds)
+        drivers = self._drivers(robots, of * count)
         return self._jobs("check", label, task, robots, drivers[place * count : (place + 1) * count])
 
+    def _drivers(self, robots: Robots, count: int) -> list[tuple[LessonDriver, ExamDriver]]:
+        """Return the loops of the lessons and exams of so many robots."""
+        lessons = choose_lesson_drivers(self.search.lessons, count)
+        return list(zip(lessons, choose_drivers(self.search.exams, count, robots.worlds), strict=True))
+
     def _jobs(
-        self, part: str, label: str, task: TaskSettings, robots: Robots, drivers: Sequence[ExamDriver]
+        self,
+        part: str,
+        label: str,
+        task: TaskSettings,
+        robots: Robots,
+        drivers: Sequence[tuple[LessonDriver, ExamDriver]],
     ) -> tuple[SearchJob, ...]:
         jobs = []
-        for seed, driver in zip(robots.seeds.seeds, drivers, strict=True):
+        for seed, (lesson, driver) in zip(robots.seeds.seeds, drivers, strict=True):
             worlds = robots.worlds_of(seed)
             own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
             here = ExamDriver(driver.loop, frozenset(each.replace(SEED, str(seed)) for each in driver.witnesses))
             made = self.fingerprints.of(own, (task.teaching.world, *worlds))
-            jobs.append(SearchJob(part=part, label=label, task=own, seed=seed, driver=here, made_of=made, **self.parts))
+            job = SearchJob(part=part, label=label, task=own, seed=seed, driver=here, made_of=made, **self.parts)
+            jobs.append(replace(job, lesson_driver=lesson))
         return tuple(jobs)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.exam import ExamSetup
@@ -63,6 +64,8 @@ def make_plan(
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
     factory.require_worlds(*worlds)
     require_course(factory, task, worlds)
+    if search.lessons is DriveLoop.BATCH:
+        require_known_lesson(parts["robot"], task)
     if search.exams is DriveLoop.BATCH:
         require_known(task, [ExamSetup(world, seed) for world, seed in exams])
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))

@@ -81,6 +81,7 @@ class SearchSettings(Settings):
     """Name of the task, or path of its YAML file."""
     teacher: str
     """Scripted teacher: a name in `config/teachers`, or a path."""
+    lessons: DriveLoop = DriveLoop.BATCH
     exams: DriveLoop = DriveLoop.BATCH
     objective: Objective = "passed_then_presses"
     """First the share of exams passed; among equal shares, fewer presses or RLAs are better."""
