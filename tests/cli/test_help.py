@@ -68,6 +68,7 @@ def test_every_command_is_found() -> None:
             "doubt",
             "broken",
             "results",
+            "worker",
             "search",
             "faults",
             "soak",
