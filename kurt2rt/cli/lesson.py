@@ -171,7 +171,7 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar, open_hands(options.on, options.jobs) as hands:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(out, plan, setup.command)
         run_missing(plan, results, options.jobs, bar.update, hands)
         by_teacher = read_results(plan, results)

@@ -51,7 +51,7 @@ def run_shard(
         ClusterError: no scheduler answers, or its address is not safe.
     """
     own = shard_of(plan, Shard.parse(shard))
-    with results.held(), one_bar(missing_time_s(own, results)) as bar, open_hands(on, jobs) as hands:
+    with open_hands(on, jobs) as hands, results.held(), one_bar(missing_time_s(own, results)) as bar:
         record_study(results.folder, plan, command)
         run_missing(own, results, jobs, bar.update, hands)
     count = sum(map(len, own.waves))

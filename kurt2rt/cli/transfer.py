@@ -139,7 +139,7 @@ def transfer(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar, open_hands(options.on, options.jobs) as hands:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, command)
         run_missing(plan, results, options.jobs, bar.update, hands)
         bar.say("figure")

@@ -3,6 +3,7 @@
 import logging
 import math
 import random
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from urllib.parse import urlsplit
@@ -21,6 +22,7 @@ _WITNESS_SHARE = 0.01
 _AHEAD = 2
 """Parcels on their way for each worker, so that none waits for its next one."""
 _TIMEOUT_S = 10.0
+_LOOK_EVERY_S = 0.2
 _LOOPBACK = {"127.0.0.1", "localhost", "::1"}
 
 
@@ -52,7 +54,8 @@ def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
 
     Raises ClusterError if the address is not safe, or no scheduler answers there.
     """
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what matters is raised
+    for name in ("distributed", "distributed.client"):  # Dask sets a level of both; errors are raised as well
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     if address == LOCAL:
         with (
             LocalCluster(n_workers=processes, threads_per_worker=1, dashboard_address=None) as cluster,
@@ -146,13 +149,16 @@ class ClusterHands:
             return
         parcel = pack(job, results, earlier.get(job.seed, ()))
         again = self._client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-again", workers=others)
+        while not again.done():
+            time.sleep(_LOOK_EVERY_S)
+            if not set(others) & set(self._client.scheduler_info()["workers"]):
+                return  # all other workers were killed, and the job would wait for them
         if _files_of(again, job)[job.file] != files[job.file]:
             raise WorkerDiffersError(
                 f"{' and '.join(sorted(own))} and one of {', '.join(others)} came to different results",
                 where=job.name,
                 do="do it on a third machine, and leave the wrong one out",
             )
-        again.release()
 
 
 def _witnessed(jobs: Sequence[StoredJob]) -> set[str]:
