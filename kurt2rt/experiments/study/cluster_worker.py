@@ -24,6 +24,9 @@ async def serve(scheduler: str, on_ready: Callable[[str], None]) -> None:
             scheduler, nthreads=1, protocol=protocol, host=host, death_timeout=_TIMEOUT_S, dashboard=False
         ) as worker:
             on_ready(worker.address)
-            await worker.finished()
+            try:
+                await worker.finished()
+            finally:  # closing breaks off a heartbeat, which Dask logs as an error with a traceback
+                logging.getLogger("distributed.worker").setLevel(logging.CRITICAL)
     except (OSError, TimeoutError) as error:
         raise ClusterError("no scheduler answers", where=scheduler, do="start one there: dask scheduler") from error
