@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.hands import OnOption, open_hands
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, results_option, task_option
 from kurt2rt.cli.progress import one_bar
@@ -64,6 +65,7 @@ class _Options:
     ] = True
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
+    on: OnOption = None
     out: Annotated[Path, results_option("results/broken")] = Path("results/broken")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -109,11 +111,11 @@ def broken(options: _Options) -> None:
     parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
     plan, command = make_plan(task, drives, parts), typed_command("broken", options)
     if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         study = read_study(plan, results)
     tables = list(all_tables(study))
     if options.as_json:

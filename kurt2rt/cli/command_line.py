@@ -46,6 +46,7 @@ _PANELS = {
         "certify": "Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.",
         "broken": "Break each infra-red sensor in turn, and measure whether the robot notices and collides.",
         "search": "Search settings of a task on search seeds, and check the best once on other seeds and worlds.",
+        "worker": "Run jobs of studies that another machine sends, one at a time, until Ctrl-C.",
         "results": "Look at the results of studies, and put together those of several machines.",
         "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
         "soak": "Let a day of the robot pass in simulated time in which everything fails.",

@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.hands import open_hands
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
@@ -177,11 +178,11 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, exams=options.exams, lessons=options.lessons)
     forget_lost_robots(plan, results)
     if options.shard is not None:
-        run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(out, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 

@@ -3,6 +3,7 @@
 import typer
 
 from behaviors.metrics.errands import ErrandsSettings
+from kurt2rt.cli.hands import open_hands
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import one_bar
@@ -53,11 +54,11 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         controls=options.controls,
     )
     if options.shard is not None:
-        run_shard(plan, results, setup.command, options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []

@@ -9,6 +9,7 @@ import typer
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
+from kurt2rt.cli.hands import OnOption
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -57,6 +58,7 @@ class LessonOptions:
     ] = None
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
+    on: OnOption = None
     exams: Annotated[
         DriveLoop,
         typer.Option(

@@ -15,6 +15,8 @@ from kurt2rt.cli.interrupt import end_at_interrupt
 _EXTRAS = {
     "contourpy": "simulation",
     "jinja2": "simulation",
+    "dask": "cluster",
+    "distributed": "cluster",
     "optuna": "search",
     "PIL": "simulation",
     "pymunk": "simulation",

@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.hands import OnOption, open_hands
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -46,6 +47,7 @@ class _Options:
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
+    on: OnOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
@@ -112,11 +114,11 @@ def _run_study(options: _Options) -> None:
     )
     command = typed_command("paper", options, {"seeds": typed_seeds})
     if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         bar.say("figures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, stage, results.folder))

@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.hands import OnOption, open_hands
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -48,6 +49,7 @@ class _Options:
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
+    on: OnOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None
     as_json: AsJson = False
 
@@ -83,11 +85,11 @@ def phases(options: _Options) -> None:
 
     plan, results = _plan(options)
     if options.shard is not None:
-        run_shard(plan, results, _command(options), options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, _command(options), options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, _command(options))
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))

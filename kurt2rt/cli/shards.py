@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.cli.hands import open_hands
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of
@@ -25,23 +26,34 @@ ShardOption = Annotated[
 ]
 
 
-def run_shard(plan: StudyPlan, results: Results, command: str, shard: str, jobs: int, *, as_json: bool = False) -> None:
+def run_shard(
+    plan: StudyPlan,
+    results: Results,
+    command: str,
+    shard: str,
+    jobs: int,
+    on: str | None,
+    *,
+    as_json: bool = False,
+) -> None:
     """Run the jobs of a shard that have no result, and print what to do next.
 
     Args:
         command: typed words that decide the numbers, without the shard.
         shard: value of --shard.
         jobs: number of processes.
+        on: value of --on.
         as_json: print one JSON document instead.
 
     Raises:
         ShardError: there is no such shard.
         StudyError: another run writes to the folder, or it has results of other settings.
+        ClusterError: no scheduler answers, or its address is not safe.
     """
     own = shard_of(plan, Shard.parse(shard))
-    with results.held(), one_bar(missing_time_s(own, results)) as bar:
+    with open_hands(on, jobs) as hands, results.held(), one_bar(missing_time_s(own, results)) as bar:
         record_study(results.folder, plan, command)
-        run_missing(own, results, jobs, bar.update)
+        run_missing(own, results, jobs, bar.update, hands)
     count = sum(map(len, own.waves))
     if as_json:
         print_json({"shard": shard, "seeds": own.seeds, "jobs": count, "folder": results.folder})

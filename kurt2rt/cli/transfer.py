@@ -9,6 +9,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.hands import OnOption, open_hands
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -95,6 +96,7 @@ class _Options:
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
+    on: OnOption = None
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -135,11 +137,11 @@ def transfer(options: _Options) -> None:
     )
     figure, command = options.out / "transfer.png", typed_command("transfer", options)
     if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, as_json=options.as_json)
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
         record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update)
+        run_missing(plan, results, options.jobs, bar.update, hands)
         bar.say("figure")
         study = read_study(plan, results)
         draw_curves(study, figure)

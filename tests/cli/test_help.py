@@ -69,6 +69,7 @@ def test_every_command_is_found() -> None:
             "certify",
             "broken",
             "results",
+            "worker",
             "search",
             "faults",
             "soak",

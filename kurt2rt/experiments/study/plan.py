@@ -1,6 +1,7 @@
 """Plan of a study: stored jobs in waves, of which the missing ones are run."""
 
-from collections.abc import Callable, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -19,6 +20,30 @@ class StoredJob(StoredResult, Job[None], Protocol):
     @property
     def knowledge_name(self) -> str | None:
         """Path of the stored knowledge within the folder of results; None: the job stores none."""
+        ...
+
+
+class Hands(Protocol):
+    """Runner of jobs on other machines; each job leaves its result in the folder of results here."""
+
+    def run(
+        self,
+        jobs: Sequence[StoredJob],
+        earlier: Mapping[int, Sequence[StoredJob]],
+        results: Results,
+        on_progress: Callable[[PoolProgress], None],
+    ) -> None:
+        """Run all jobs, of which none needs another.
+
+        Args:
+            earlier: jobs that are done, by the seed of their robot.
+            results: folder of results.
+            on_progress: gets the progress of all jobs.
+
+        Raises:
+            JobKilledError: the worker of a job was killed again and again.
+            Exception: any error of a job.
+        """
         ...
 
 
@@ -51,17 +76,26 @@ def missing_time_s(plan: StudyPlan, results: Results) -> float:
     return sum(wave[place].robot_time_s for wave in plan.waves for place in results.missing(wave))
 
 
-def run_missing(plan: StudyPlan, results: Results, processes: int, on_progress: Callable[[PoolProgress], None]) -> None:
+def run_missing(
+    plan: StudyPlan,
+    results: Results,
+    processes: int,
+    on_progress: Callable[[PoolProgress], None],
+    hands: Hands | None = None,
+) -> None:
     """Run the jobs without a result, wave by wave; each stores its result as soon as it is done.
 
     Args:
+        processes: of this machine.
         on_progress: called with the progress of all waves together.
+        hands: run the jobs in place of processes of this machine; None: nothing does.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
         Exception: any error of a job.
     """
     before_s = 0.0
+    earlier: dict[int, list[StoredJob]] = defaultdict(list)
     for wave in plan.waves:
         jobs = [wave[place] for place in results.missing(wave)]
 
@@ -69,9 +103,14 @@ def run_missing(plan: StudyPlan, results: Results, processes: int, on_progress: 
             on_progress(PoolProgress(before_s + progress.done_s, progress.running))
 
         try:
-            run_jobs(jobs, processes, on_progress=update)
+            if hands is None:
+                run_jobs(jobs, processes, on_progress=update)
+            else:
+                hands.run(jobs, earlier, results, update)
         except JobKilledError as error:
             raise StudyError(
                 f"{error}", do="run again, it goes on where it was (with fewer --jobs it needs less)"
             ) from error
         before_s += sum(job.robot_time_s for job in jobs)
+        for job in wave:
+            earlier[job.seed].append(job)

@@ -1,0 +1,36 @@
+"""--on, with one meaning in every study: workers on other machines run the jobs."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated
+
+import typer
+
+from kurt2rt.experiments.study.plan import Hands
+
+OnOption = Annotated[
+    str | None,
+    typer.Option(
+        "--on",
+        metavar="ADDRESS",
+        help="Run the jobs on the workers of this scheduler (kurt2rt worker), such as tls://lab:8786; local: start "
+        "one here with --jobs workers.",
+        show_default=False,
+    ),
+]
+
+
+@contextmanager
+def open_hands(address: str | None, jobs: int) -> Iterator[Hands | None]:
+    """Yield the hands of --on; None without it: processes of this machine.
+
+    `jobs`: number of workers of `local`. Raises ClusterError if no scheduler answers, or the address is not safe.
+    """
+    if address is None:
+        yield None
+        return
+    # Not at the top: Dask is an extra, and takes a second.
+    from kurt2rt.experiments.study.cluster import open_cluster
+
+    with open_cluster(address, jobs) as hands:
+        yield hands

@@ -1,0 +1,182 @@
+"""Hands on other machines: Dask workers run parcels, and only this machine writes results."""
+
+import logging
+import math
+import random
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+from distributed import CancelledError, Client, Future, LocalCluster, as_completed
+from distributed.scheduler import KilledWorker
+
+from hal.errors import UserError
+from kurt2rt.experiments.study.parcel import WorkerDiffersError, pack, run_parcel, unpack
+from kurt2rt.experiments.study.plan import StoredJob
+from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
+from kurt2rt.experiments.study.results import Results
+
+LOCAL = "local"
+_WITNESS_SHARE = 0.01
+_AHEAD = 2
+"""Parcels on their way for each worker, so that none waits for its next one."""
+_TIMEOUT_S = 10.0
+_LOOK_EVERY_S = 0.2
+_LOOPBACK = {"127.0.0.1", "localhost", "::1"}
+
+
+class ClusterError(UserError):
+    """A cluster cannot be used."""
+
+
+def require_safe(address: str) -> None:
+    """Refuse an address that is neither TLS nor loopback, because parcels are pickles. Raises ClusterError."""
+    try:
+        parts = urlsplit(address)
+        is_safe = parts.port is not None and (parts.scheme == "tls" or parts.hostname in _LOOPBACK)
+    except ValueError:
+        is_safe = False
+    if not is_safe or parts.scheme not in ("tls", "tcp"):
+        raise ClusterError(
+            f"no address of a scheduler (got {address}, allowed tls://HOST:PORT, and tcp://127.0.0.1:PORT)",
+            do="give e.g. tls://lab:8786; Dask's configuration names the certificates",
+        )
+
+
+@contextmanager
+def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
+    """Yield hands on the workers of a scheduler.
+
+    Args:
+        address: of the scheduler; `local` starts one here, with workers.
+        processes: number of workers of `local`.
+
+    Raises ClusterError if the address is not safe, or no scheduler answers there.
+    """
+    for name in ("distributed", "distributed.client"):  # Dask sets a level of both; errors are raised as well
+        logging.getLogger(name).setLevel(logging.CRITICAL)
+    if address == LOCAL:
+        with (
+            LocalCluster(n_workers=processes, threads_per_worker=1, dashboard_address=None) as cluster,
+            Client(cluster) as client,
+        ):
+            yield ClusterHands(client)
+        return
+    require_safe(address)
+    try:
+        client = Client(address, timeout=_TIMEOUT_S)
+    except (OSError, TimeoutError) as error:
+        raise ClusterError("no scheduler answers", where=address, do="start one there: dask scheduler") from error
+    with client:
+        yield ClusterHands(client)
+
+
+class ClusterHands:
+    """Workers of a scheduler, one job each at a time. 1 % of the jobs run on two workers and must agree."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+
+    def run(
+        self,
+        jobs: Sequence[StoredJob],
+        earlier: Mapping[int, Sequence[StoredJob]],
+        results: Results,
+        on_progress: Callable[[PoolProgress], None],
+    ) -> None:
+        """Run all jobs, the longest first; a job whose worker was killed runs on another one.
+
+        Raises:
+            ClusterError: there is no worker, or the scheduler is gone.
+            JobKilledError: the workers of a job were killed again and again.
+            WorkerDiffersError: a worker has another program, or two came to different results.
+            Exception: any error of a job.
+        """
+        waiting = sorted(jobs, key=lambda job: -job.robot_time_s)
+        witnessed = _witnessed(jobs)
+        running: dict[Future, StoredJob] = {}
+        done_s = 0.0
+        finished = as_completed()
+
+        def submit() -> None:
+            job = waiting.pop(0)
+            parcel = pack(job, results, earlier.get(job.seed, ()))
+            future = self._client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-{id(parcel)}")
+            running[future] = job
+            finished.add(future)
+
+        try:
+            for _ in range(min(len(waiting), _AHEAD * self._workers())):
+                submit()
+            for future in finished:
+                job = running.pop(future)
+                files = _files_of(future, job)
+                if job.file in witnessed:
+                    self._require_witness(future, job, files, results, earlier)
+                unpack(job, results, files)
+                future.release()  # else it is computed again if its worker dies
+                done_s += job.robot_time_s
+                if waiting:
+                    submit()
+                on_progress(PoolProgress(done_s, tuple(each.name for each in running.values())))
+        finally:
+            self._client.cancel(list(running))
+
+    def _workers(self) -> int:
+        try:
+            self._client.wait_for_workers(1, timeout=_TIMEOUT_S)
+            return len(self._client.scheduler_info()["workers"])
+        except (TimeoutError, OSError) as error:
+            raise ClusterError(
+                "the cluster has no worker",
+                where=self._client.scheduler.address,
+                do="start one or more: kurt2rt worker --to ADDRESS",
+            ) from error
+
+    def _require_witness(
+        self,
+        future: Future,
+        job: StoredJob,
+        files: Mapping[str, bytes],
+        results: Results,
+        earlier: Mapping[int, Sequence[StoredJob]],
+    ) -> None:
+        """Run a job on another worker too, if there is one, and compare the results. Raises WorkerDiffersError."""
+        own = {each for places in self._client.who_has([future]).values() for each in places}
+        others = sorted(set(self._client.scheduler_info()["workers"]) - own)
+        if not own or not others:
+            return
+        parcel = pack(job, results, earlier.get(job.seed, ()))
+        again = self._client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-again", workers=others)
+        while not again.done():
+            time.sleep(_LOOK_EVERY_S)
+            if not set(others) & set(self._client.scheduler_info()["workers"]):
+                return  # all other workers were killed, and the job would wait for them
+        if _files_of(again, job)[job.file] != files[job.file]:
+            raise WorkerDiffersError(
+                f"{' and '.join(sorted(own))} and one of {', '.join(others)} came to different results",
+                where=job.name,
+                do="do it on a third machine, and leave the wrong one out",
+            )
+
+
+def _witnessed(jobs: Sequence[StoredJob]) -> set[str]:
+    """Return the results that two workers must agree on: 1 %, at least one."""
+    names = sorted(job.file for job in jobs)
+    count = math.ceil(_WITNESS_SHARE * len(names))
+    return set(random.Random(f"witnesses of {len(names)} jobs").sample(names, count))
+
+
+def _files_of(future: Future, job: StoredJob) -> dict[str, bytes]:
+    """Return the files that a job gave; its errors are noted with its name. Raises JobKilledError, ClusterError."""
+    try:
+        files: dict[str, bytes] = future.result()
+    except KilledWorker as error:
+        raise JobKilledError("its workers were killed, as happens when memory runs out", where=job.name) from error
+    except CancelledError as error:
+        raise ClusterError("the scheduler is gone", do="start it and run again, it goes on where it was") from error
+    except Exception as error:
+        error.add_note(job.name)
+        raise
+    return files

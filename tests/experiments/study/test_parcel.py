@@ -1,0 +1,158 @@
+"""Parcels: a job runs in another folder, with the files that it needs, and gives the same files."""
+
+import pickle
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.paper.outcome import TaughtOutcome
+from kurt2rt.experiments.study.parcel import WorkerDiffersError, pack, run_parcel, unpack
+from kurt2rt.experiments.study.plan import StoredJob, run_missing
+from kurt2rt.experiments.study.pool import PoolProgress, Progress
+from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.results import Results
+from tests.experiments.paper.outcomes import MADE_OF, robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """Writes as many RLAs as the files that it reads are long."""
+
+    results: Results
+    seed: int
+    stem: str
+    before: "Job | None" = None
+    given: Path | None = None
+    made_of: Provenance = MADE_OF
+    outcome: type[TaughtOutcome] = TaughtOutcome
+    replaces_others: bool = False
+    robot_time_s: float = 1.0
+
+    @property
+    def name(self) -> str:
+        return f"{self.stem}, seed {self.seed}"
+
+    @property
+    def file(self) -> str:
+        return f"results/{self.stem}-{self.seed}.json"
+
+    @property
+    def knowledge_name(self) -> str:
+        return f"knowledge/{self.stem}-{self.seed}.knowledge"
+
+    def run(self, tell: Progress) -> None:
+        tell(1.0)
+        length = 7 if self.given is None else len(self.given.read_text())
+        if self.before is not None:
+            length += self.before.results.read(self.before, TaughtOutcome).rlas
+            length += len((self.before.results.folder / self.before.knowledge_name).read_text())
+        with self.results.scratch() as folder:
+            (folder / "knowledge").write_text(f"{self.name} taught")
+            self.results.keep(folder / "knowledge", self.knowledge_name)
+        self.results.write(self, robot(self.seed, length))
+
+
+@dataclass(frozen=True)
+class Plan:
+    waves: Sequence[Sequence[Job]]
+
+
+def plan_in(folder: Path, given: Path) -> Plan:
+    results = Results(folder)
+    first = [Job(results=results, seed=seed, stem="first", given=given) for seed in (3, 5)]
+    return Plan((first, [Job(results=results, seed=job.seed, stem="then", before=job) for job in first]))
+
+
+@pytest.fixture
+def given(tmp_path: Path) -> Path:
+    path = tmp_path / "given.txt"
+    path.write_text("0123456789")
+    return path
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
+    plans = [plan_in(tmp_path / name, given) for name in ("here", "there")]
+    here, there = Results(tmp_path / "here"), Results(tmp_path / "there")
+    with here.held(), there.held():
+        run_missing(plans[0], here, 1, lambda _: None)
+        done: list[Job] = []
+        for wave in plans[1].waves:
+            for job in wave:
+                parcel = pack(job, there, [each for each in done if each.seed == job.seed])
+                before = files(tmp_path / "there")
+                given_files = run_parcel(pickle.loads(pickle.dumps(parcel)))
+                assert files(tmp_path / "there") == before  # only the sender writes its folder
+                unpack(job, there, given_files)
+            done += wave
+    assert files(tmp_path / "there") == files(tmp_path / "here")
+
+
+def test_parcel_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None:
+    plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
+    (first, _), (then, _) = plan.waves
+    with results.held():
+        unpack(first, results, run_parcel(pack(first, results, [])))
+        parcel = pack(then, results, [first])
+        gone = tmp_path / "gone"
+        (tmp_path / "there").rename(gone)
+        assert set(run_parcel(parcel)) == {"knowledge/then-3.knowledge", "results/then-3.json"}
+
+
+def test_parcel_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
+    (first, _), _ = plan_in(tmp_path, given).waves
+    parcel = pack(first, Results(tmp_path), [])._replace(program="another")
+    with pytest.raises(WorkerDiffersError, match=r"got [0-9a-f]{16}, allowed another"):
+        run_parcel(parcel)
+
+
+def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, given: Path) -> None:
+    results = Results(tmp_path / "there")
+    (first, _), _ = plan_in(tmp_path / "there", given).waves
+    with results.held():
+        unpack(first, results, {first.knowledge_name: b"old", first.file: b"{}"})
+        unpack(first, results, {first.knowledge_name: b"new", first.file: b"{}"})
+    knowledge = tmp_path / "there" / first.knowledge_name
+    assert (knowledge.read_bytes(), knowledge.with_name(f"{knowledge.name}.1").read_bytes()) == (b"new", b"old")
+
+
+def test_hands_get_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Path) -> None:
+    plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
+    hands = _InTurn()
+    with results.held():
+        run_missing(plan, results, 1, lambda _: None, hands)
+        assert hands.earlier == [{}, {3: ["first, seed 3"], 5: ["first, seed 5"]}]
+        (tmp_path / "there" / plan.waves[1][1].file).unlink()
+        run_missing(plan, results, 1, lambda _: None, hands)
+    assert results.missing(plan.waves[1]) == []
+
+
+class _InTurn:
+    """Hands that run parcels in this process."""
+
+    def __init__(self) -> None:
+        self.earlier: list[dict[int, list[str]]] = []
+
+    def run(
+        self,
+        jobs: Sequence[StoredJob],
+        earlier: Mapping[int, Sequence[StoredJob]],
+        results: Results,
+        on_progress: Callable[[PoolProgress], None],
+    ) -> None:
+        self.earlier.append({seed: [each.name for each in done] for seed, done in earlier.items()})
+        for job in jobs:
+            unpack(job, results, run_parcel(pack(job, results, earlier.get(job.seed, ()))))
+            on_progress(PoolProgress(1.0, ()))
+
+
+def test_parcel_of_a_job_with_other_paths_keeps_them(tmp_path: Path, given: Path) -> None:
+    (first, _), _ = plan_in(tmp_path / "there", given).waves
+    missing = replace(first, given=tmp_path / "nowhere")
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        run_parcel(pack(missing, Results(tmp_path / "there"), []))
