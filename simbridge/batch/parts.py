@@ -327,7 +327,7 @@ class Conditions(NamedTuple):
     """Weighted conditions of all RLAs, and which of them are near each other."""
 
     values: Floats
-    """In counts, (rows, values); the number of values is a multiple of eight."""
+    """Rows of values in counts, (rows, values); the number of values is a multiple of eight."""
     neighbours: Integers
     """Rows of the same knowledge, the nearest first, which is the row itself; (rows, neighbours)."""
     apart: Floats

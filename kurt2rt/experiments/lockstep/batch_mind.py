@@ -49,6 +49,8 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise _refused(task, "a mid level")
     if len(task.behaviours) > 1:
         raise _refused(task, "several behaviours")
+    if any(setup.broken for setup in setups):
+        raise _refused(task, "a broken sensor")
     if not all(setup.stuck_ends for setup in setups):
         raise _refused(task, "rescues")
 

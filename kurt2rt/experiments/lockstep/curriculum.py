@@ -15,6 +15,7 @@ from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, ExamDriver, ExamLoop, require_equal
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
@@ -133,6 +134,7 @@ async def run_exams(
     seed: int,
     report: Report,
     driver: ExamDriver = ON_BUS,
+    broken: SensorBreak | None = None,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
 
@@ -145,6 +147,7 @@ async def run_exams(
         seed: of robot and start pose.
         report: progress callback.
         driver: loop that drives the exams.
+        broken: sensor of the robot that breaks, but not while the teacher's policy drives; None: none.
 
     Returns:
         One result per world, in order.
@@ -155,7 +158,9 @@ async def run_exams(
         BatchRefusedError: the driver is a batch, which does not know the task.
         BatchDiffersError: the batch and a witness on the CAN bus differ.
     """
-    setups = [ExamSetup(world, seed, policy) for world in worlds for policy in (False, True)]
+    setups = [
+        each for world in worlds for each in (ExamSetup(world, seed, broken=broken), ExamSetup(world, seed, True))
+    ]
     finished: list[ExamResult | None] = [None] * len(setups)
     if driver.loop is ExamLoop.BATCH:
         finished = _run_in_batch(factory, settings, task, [BatchExam(setup, events) for setup in setups])
