@@ -117,5 +117,5 @@ async def run_suite(
             await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
         )
     if BenchName.BATCH in benches:
-        results.append(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
+        results.extend(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
     return tuple(results)
