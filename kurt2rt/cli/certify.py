@@ -124,7 +124,7 @@ def _certify(options: _Options) -> None:
     from kurt2rt.experiments.certify.figures import draw_worst
     from kurt2rt.experiments.certify.plan import Extent, find_refusal, make_plan, read_certificate
     from kurt2rt.experiments.certify.report import write_report
-    from kurt2rt.experiments.certify.run import SEED, BrokenShare
+    from kurt2rt.experiments.certify.run import BrokenShare, Run
     from kurt2rt.experiments.certify.summary import summarise, worst_runs
     from kurt2rt.experiments.certify.tables import all_tables
     from kurt2rt.experiments.study.jobs import JobParts
@@ -137,8 +137,9 @@ def _certify(options: _Options) -> None:
     factory = Kurt2SimulationFactory(robot)
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
     parts = JobParts(factory=factory, robot=robot, results=results)
-    factory.require_worlds(places[0].replace(SEED, "0"))
-    loop = _loop(options, find_refusal(task, options.knowledge, places[0], parts))
+    one = Run(options.first, places[0])
+    factory.require_worlds(one.world)
+    loop = _loop(options, find_refusal(task, options.knowledge, one, parts))
     broken = BrokenShare(options.dead_sensors, robot.infrared.names)
     extent = Extent(options.first, options.runs, places, loop, broken)
     plan = make_plan(task, options.knowledge, extent, parts)

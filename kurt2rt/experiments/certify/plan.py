@@ -40,8 +40,8 @@ class Extent(NamedTuple):
     broken: BrokenShare = ALL_WORK
 
 
-def find_refusal(task: TaskSettings, knowledge: Path, place: str, parts: JobParts) -> str:
-    """Return why a batch cannot drive a robot with this knowledge in a place; empty if it can.
+def find_refusal(task: TaskSettings, knowledge: Path, run: Run, parts: JobParts) -> str:
+    """Return why a batch cannot drive a robot with this knowledge in a run; empty if it can.
 
     Raises:
         KnowledgeError: the knowledge file cannot be read.
@@ -52,7 +52,7 @@ def find_refusal(task: TaskSettings, knowledge: Path, place: str, parts: JobPart
         return "this simulation has no batch"
     subject = Subject(robot, task, read_lessons(knowledge, robot, task))
     try:
-        with opened_batch(factory, subject, [Run(0, place)]):
+        with opened_batch(factory, subject, [run]):
             return ""
     except BatchRefusedError as error:
         return str(error)
