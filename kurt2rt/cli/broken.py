@@ -16,9 +16,9 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.broken.fault import FaultKind
 from kurt2rt.experiments.broken.plan import BrokenDrives, chosen_sensors, make_plan, read_study
 from kurt2rt.experiments.broken.tables import all_tables
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results

@@ -65,6 +65,17 @@ class _Options:
             "--first-seed", min=0, metavar="N", help="Seed of the first run; each further run has the next one."
         ),
     ] = 20_000
+    dead_sensors: Annotated[
+        float,
+        typer.Option(
+            metavar="SHARE",
+            min=0.0,
+            max=1.0,
+            help="Fraction of the runs, 0 to 1, in which one infra-red sensor breaks after 2 s: another sensor and "
+            "fault (dead, stuck, unplugged and others of kurt2rt broken) in each. They have a row of their own, and "
+            "are driven on the CAN loop alone.",
+        ),
+    ] = 0.0
     pictures: Annotated[
         int, typer.Option(min=0, max=100, metavar="N", help="Number of worst runs to draw, at most.")
     ] = 6
@@ -113,7 +124,7 @@ def _certify(options: _Options) -> None:
     from kurt2rt.experiments.certify.figures import draw_worst
     from kurt2rt.experiments.certify.plan import Extent, find_refusal, make_plan, read_certificate
     from kurt2rt.experiments.certify.report import write_report
-    from kurt2rt.experiments.certify.run import SEED
+    from kurt2rt.experiments.certify.run import BrokenShare, Run
     from kurt2rt.experiments.certify.summary import summarise, worst_runs
     from kurt2rt.experiments.certify.tables import all_tables
     from kurt2rt.experiments.study.jobs import JobParts
@@ -126,9 +137,11 @@ def _certify(options: _Options) -> None:
     factory = Kurt2SimulationFactory(robot)
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
     parts = JobParts(factory=factory, robot=robot, results=results)
-    factory.require_worlds(places[0].replace(SEED, "0"))
-    loop = _loop(options, find_refusal(task, options.knowledge, places[0], parts))
-    extent = Extent(options.first, options.runs, places, loop)
+    one = Run(options.first, places[0])
+    factory.require_worlds(one.world)
+    loop = _loop(options, find_refusal(task, options.knowledge, one, parts))
+    broken = BrokenShare(options.dead_sensors, robot.infrared.names)
+    extent = Extent(options.first, options.runs, places, loop, broken)
     plan = make_plan(task, options.knowledge, extent, parts)
     report = options.out / "report.html"
     missing_s = missing_time_s(plan, results)
@@ -194,6 +207,7 @@ def _loop(options: _Options, refusal: str) -> DriveLoop:
 def _exam_command(options: _Options, run: "RunOutcome") -> str:
     """Return the command that drives a run again."""
     words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.number), "--world", run.world]
+    words += ["--broken-sensor", run.broken] if run.broken else []
     return shlex.join([*words, *_changed_words(options)])
 
 
@@ -201,6 +215,7 @@ def _command(options: _Options) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
     words = ["kurt2rt", "certify", options.knowledge.name, "--runs", str(options.runs)]
     words += ["--first-seed", str(options.first)]
+    words += ["--dead-sensors", f"{options.dead_sensors:g}"] if options.dead_sensors else []
     words += [word for name in options.world or () for word in ("--world", Path(name).name)]
     words += ["--exams", options.exams.value] if options.exams is not DriveLoop.BATCH else []
     return shlex.join([*words, *_changed_words(options)])

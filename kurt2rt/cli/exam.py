@@ -17,6 +17,7 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
+from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
 from kurt2rt.experiments.lockstep.report import exams_as_data, render_exams
 from kurt2rt.experiments.route.lesson import with_route
 from kurt2rt.knowledge.files.task_of_file import task_of_file
@@ -36,6 +37,14 @@ class _Options:
     world: Annotated[
         list[str] | None,
         world_option("Repeat for several. Default: the worlds of the task."),
+    ] = None
+    broken: Annotated[
+        str | None,
+        typer.Option(
+            "--broken-sensor",
+            metavar="SENSOR=FAULT",
+            help="Let an infra-red sensor of the robot break after 2 s, such as s15=low; faults as in kurt2rt broken.",
+        ),
     ] = None
     robot_settings: RobotName = "kurt2"
     wire: WireName = "none"
@@ -72,9 +81,10 @@ def exam(options: _Options) -> None:
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
     events = read_lessons(options.knowledge, settings, taught)
+    broken = None if options.broken is None else parse_break(options.broken, settings.infrared)
 
     async def run(report: Report) -> tuple[WorldResult, ...]:
-        return await run_exams(stage, settings, taught, events, worlds, seed=options.seed, report=report)
+        return await run_exams(stage, settings, taught, events, worlds, seed=options.seed, report=report, broken=broken)
 
     with job_bars() as report:
         results = anyio.run(run, report)

@@ -109,6 +109,8 @@ class SetPoints:
         begin, self._taken[robot] = self._taken.get(robot, 0), len(self._stretches)
         behind: list[tuple[int, int]] = []
         for places, told_cm_s, driven in self._stretches[begin:]:
-            place = places[robot]
+            place = places.get(robot)
+            if place is None:  # the robot did not drive in this stretch
+                continue
             behind += map(tuple, told_cm_s[place, driven[place] :].tolist())
         return behind

@@ -44,11 +44,22 @@ def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: Command
     assert "All runs were driven on the CAN loop" in said.out
 
 
+def test_exam_repeats_a_run_with_a_broken_sensor(kurt2rt: CommandLine, lessons: Path) -> None:
+    words = ("exam", lessons, "--world", "a", "--seed", "20000", "--set", "exam.duration_s=4", "--json")
+    working, broken = (
+        json.loads(kurt2rt(*words, *more).out)["exams"][0] for more in ((), ("--broken-sensor", "s3=unplugged"))
+    )
+    assert working["teacher"] == broken["teacher"]
+    assert working["learned"] != broken["learned"]
+    assert "s15=low" in kurt2rt.refused(*words, "--broken-sensor", "s99=low")
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [
         (("--runs", "0"), "--runs"),
         (("--seconds", "0"), "--seconds"),
+        (("--dead-sensors", "2"), "--dead-sensors"),
         (("--world", "nowhere"), "nowhere"),
         (("--task", "circle"), "circle"),
         (("--world", "two_objects", "--set", "course.kind=rounds"), "course"),

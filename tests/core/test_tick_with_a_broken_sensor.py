@@ -15,7 +15,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.broken.fault import FaultKind, FaultySensor
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
 from kurt2rt.experiments.surprise.drive import StuckSensor
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import DecisionFacts

@@ -121,7 +121,7 @@ async def run_suite(
             await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
         )
     if BenchName.BATCH in benches:
-        results.append(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
+        results.extend(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
         results.extend(
             await measure_batch_lessons(fixture, lengths.batch_lessons, start_job("giving lessons in a batch"))
         )

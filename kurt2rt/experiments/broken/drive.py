@@ -17,15 +17,13 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.broken.fault import FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.episode import Episode
+from kurt2rt.experiments.lockstep.faulty_sensor import BREAKS_AT_S, FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
-BREAKS_AT_S = 2.0
-"""Time of a drive from which on the sensor is broken."""
 GO_AFTER_S = 0.5
 """Time that a robot stands at the notice until it gets its Go."""
 MISLEADS_COUNTS = 60

@@ -13,9 +13,9 @@ from hal.settings import Settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.broken.drive import BREAKS_AT_S, Driver, DriveSetup, drive
-from kurt2rt.experiments.broken.fault import FaultKind
+from kurt2rt.experiments.broken.drive import Driver, DriveSetup, drive
 from kurt2rt.experiments.broken.outcome import FaultDrive, HealthyOutcome, SensorOutcome
+from kurt2rt.experiments.lockstep.faulty_sensor import BREAKS_AT_S, FaultKind
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results

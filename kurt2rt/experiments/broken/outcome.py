@@ -1,7 +1,7 @@
 """Stored outcomes of the study of broken sensors."""
 
 from hal.settings import Settings
-from kurt2rt.experiments.broken.fault import FaultKind
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.provenance import Provenance
 
 

@@ -9,10 +9,10 @@ from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.broken.drive import Driver
-from kurt2rt.experiments.broken.fault import FaultKind
 from kurt2rt.experiments.broken.jobs import HealthyJob, SensorJob
 from kurt2rt.experiments.broken.outcome import HealthyOutcome, SensorOutcome
 from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash, source_hash
 from kurt2rt.experiments.study.results import Results

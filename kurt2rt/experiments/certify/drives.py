@@ -19,6 +19,7 @@ from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds, require_known
 from kurt2rt.experiments.lockstep.episode import build_stuck_rule
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
 from kurt2rt.experiments.study.pool import Progress
 
 _STRETCH_TICKS = 500
@@ -115,20 +116,24 @@ async def drive_on_bus(
 
         def count(record: TickRecord, _metric: TaskMetric) -> None:
             nonlocal ticks, unknown_ticks, first_question, first_collision, stopped
+            if simulation.collisions:
+                first_collision = first_collision or record.tick
+            if stopped:  # it stands until the exam ends
+                return
             ticks = record.tick
             if record.decision.asking:
                 unknown_ticks += 1
                 first_question = first_question or ticks
-            if simulation.collisions:
-                first_collision = first_collision or ticks
             if stop := record.standing.stop:
-                stopped = stopped or f"{stop.reason.value} {stop.name}".strip()
+                stopped = f"{stop.reason.value} {stop.name}".strip()
 
-        setup = ExamSetup(run.world, run.number, on_tick=count)
+        broken = parse_break(run.broken, subject.robot.infrared) if run.broken else None
+        setup = ExamSetup(run.world, run.number, broken=broken, on_tick=count)
         exam = await examine(simulation, subject.robot, subject.task, subject.events, setup, tell)
         outcome = RunOutcome(
             number=run.number,
             world=run.world,
+            broken=run.broken,
             ticks=ticks,
             unknown_ticks=unknown_ticks,
             questions=len(exam.unknown_positions),

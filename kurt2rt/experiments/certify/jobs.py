@@ -116,11 +116,13 @@ class BlockJob(_StoredJob):
         `tell`: gets the progress in s. Raises KnowledgeError, BatchRefusedError, SettingsError, OSError.
         """
         subject = self.subject()
-        driven: list[RunOutcome | None] = [None] * len(self.runs)
-        if self.loop is DriveLoop.BATCH:
-            driven = self.drive_in_batch(subject, self.runs, tell)
-        left = [run for run, outcome in zip(self.runs, driven, strict=True) if outcome is None]
-        finished = {each.number: each for each in (*driven, *self._drive_all_on_bus(subject, left, tell)) if each}
+        driven: list[RunOutcome | None] = []
+        working = [run for run in self.runs if not run.broken]
+        if working and self.loop is DriveLoop.BATCH:
+            driven = self.drive_in_batch(subject, working, tell)
+        finished = {each.number: each for each in driven if each}
+        left = [run for run in self.runs if run.number not in finished]
+        finished |= {each.number: each for each in self._drive_all_on_bus(subject, left, tell)}
         outcomes = tuple(finished[run.number] for run in self.runs)
         on_bus = tuple(run.number for run in left)
         self.results.write(self, BlockOutcome(made_of=self.made_of, runs=outcomes, on_bus=on_bus))

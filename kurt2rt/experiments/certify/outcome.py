@@ -9,6 +9,8 @@ class RunOutcome(Settings):
 
     number: int
     world: str
+    broken: str = ""
+    """Sensor that broke and the way in which, such as s15=low; empty: all worked."""
     ticks: int
     """Ticks until the end, or until the robot was stuck or stopped."""
     unknown_ticks: int
@@ -44,7 +46,7 @@ class BlockOutcome(Settings):
     made_of: Provenance
     runs: tuple[RunOutcome, ...]
     on_bus: tuple[int, ...] = ()
-    """Numbers of the runs that the CAN loop drove because they left the batch, or because the batch is not used."""
+    """Numbers of the runs that the CAN loop drove alone, such as those with a broken sensor."""
 
 
 class WitnessOutcome(Settings):

@@ -13,7 +13,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, opened_batch
 from kurt2rt.experiments.certify.jobs import BlockJob, WitnessJob, require_equal
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
-from kurt2rt.experiments.certify.run import SEED, Run, draw_runs, draw_witnesses
+from kurt2rt.experiments.certify.run import ALL_WORK, SEED, BrokenShare, Run, draw_runs, draw_witnesses
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.exam_driver import LEAST_WITNESSES, WITNESS_SHARE, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
@@ -23,8 +23,9 @@ from kurt2rt.knowledge.journal.loading import read_lessons
 
 DECIDING = (BlockJob, WitnessJob)
 """Classes whose code, and all that it imports, decides the results."""
-_BLOCK = {DriveLoop.BATCH: 200, DriveLoop.BUS: 1}
-"""Runs of one job, by the loop that drives them."""
+_MOST_RUNS = 200
+_MOST_ROBOT_S = 60_000.0
+"""Limits of a job in the batch, which keeps the set points of all its runs: 24 MB."""
 
 
 class Extent(NamedTuple):
@@ -36,10 +37,11 @@ class Extent(NamedTuple):
     places: tuple[str, ...]
     """Worlds; SEED in a name stands for the number of the run."""
     loop: DriveLoop
+    broken: BrokenShare = ALL_WORK
 
 
-def find_refusal(task: TaskSettings, knowledge: Path, place: str, parts: JobParts) -> str:
-    """Return why a batch cannot drive a robot with this knowledge in a place; empty if it can.
+def find_refusal(task: TaskSettings, knowledge: Path, run: Run, parts: JobParts) -> str:
+    """Return why a batch cannot drive a robot with this knowledge in a run; empty if it can.
 
     Raises:
         KnowledgeError: the knowledge file cannot be read.
@@ -50,7 +52,7 @@ def find_refusal(task: TaskSettings, knowledge: Path, place: str, parts: JobPart
         return "this simulation has no batch"
     subject = Subject(robot, task, read_lessons(knowledge, robot, task))
     try:
-        with opened_batch(factory, subject, [Run(0, place)]):
+        with opened_batch(factory, subject, [run]):
             return ""
     except BatchRefusedError as error:
         return str(error)
@@ -110,7 +112,7 @@ def make_plan(
     lessons = read_lessons(knowledge, robot, task)
     if not lessons:
         raise SettingsError("holds no lesson", where=knowledge, do="teach the robot first")
-    runs = draw_runs(extent.first, extent.runs, extent.places)
+    runs = draw_runs(extent.first, extent.runs, extent.places, extent.broken)
     needed = {place: place.replace(SEED, str(extent.first)) for place in dict.fromkeys(extent.places)}
     factory.require_worlds(*needed.values())
     require_course(factory, task, needed.values())
@@ -126,7 +128,7 @@ def make_plan(
         made_of = fingerprints.of(task, worlds, taught, repr(run))
         return WitnessJob(task=task, knowledge=knowledge, witness=run, made_of=made_of, **parts)
 
-    step = _BLOCK[extent.loop]
+    step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s))) if extent.loop is DriveLoop.BATCH else 1
     return CertifyPlan(
         task,
         extent,

@@ -1,11 +1,25 @@
-"""Runs of a certificate: each draws its world from its own number, which is also the seed of robot and start."""
+"""Runs of a certificate: each draws its world and faults from its own number, the seed of robot and start."""
 
 import random
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
+
 SEED = "SEED"
 """Part of a world's name that stands for the run's number."""
+
+
+class BrokenShare(NamedTuple):
+    """Share of the runs with a broken sensor, and the sensors that may break."""
+
+    share: float
+    """0 to 1."""
+    sensors: tuple[str, ...]
+    """Names, such as s15."""
+
+
+ALL_WORK = BrokenShare(0.0, ())
 
 
 class Run(NamedTuple):
@@ -15,6 +29,8 @@ class Run(NamedTuple):
     """Seed of the robot, its noise, its start and the choice of the world."""
     place: str
     """Kind of world, with SEED where each run has a world of its own."""
+    broken: str = ""
+    """Sensor that breaks and the way in which, such as s15=low; empty: all work."""
 
     @property
     def world(self) -> str:
@@ -22,14 +38,26 @@ class Run(NamedTuple):
         return self.place.replace(SEED, str(self.number))
 
 
-def draw_runs(first: int, count: int, places: Sequence[str]) -> list[Run]:
+def draw_runs(first: int, count: int, places: Sequence[str], broken: BrokenShare = ALL_WORK) -> list[Run]:
     """Return the runs of the numbers from `first` on; each place is equally likely for each run."""
     return [
-        Run(number, random.Random(f"world of run {number}").choice(places)) for number in range(first, first + count)
+        Run(number, random.Random(f"world of run {number}").choice(places), _draw_break(number, broken))
+        for number in range(first, first + count)
     ]
 
 
+def _draw_break(number: int, broken: BrokenShare) -> str:
+    chance = random.Random(f"broken sensor of run {number}")
+    if chance.random() >= broken.share:
+        return ""
+    return f"{chance.choice(broken.sensors)}={chance.choice(list(FaultKind))}"
+
+
 def draw_witnesses(runs: Sequence[Run], share: float, at_least: int) -> list[Run]:
-    """Return a share of the runs, 0 to 1, but at least so many, chosen by chance."""
-    wanted = min(len(runs), max(at_least, round(share * len(runs))))
-    return random.Random(f"witnesses of {len(runs)} runs from {runs[0].number}").sample(runs, wanted)
+    """Return a share of the runs, 0 to 1, but at least so many, chosen by chance.
+
+    Runs with a broken sensor, which only the CAN loop drives, are left out.
+    """
+    working = [run for run in runs if not run.broken]
+    wanted = min(len(working), max(at_least, round(share * len(working))))
+    return random.Random(f"witnesses of {len(runs)} runs from {runs[0].number}").sample(working, wanted)

@@ -11,7 +11,9 @@ from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of
 
 ALL = "all"
-"""Name of the summary of all places."""
+"""Name of the summary of all places, with working sensors."""
+BROKEN = "a sensor breaks"
+"""Name of the summary of all runs with a broken sensor."""
 _MOST_GROUPS = 200
 """Groups of runs that an interval of clustered events is bootstrapped over; each run by itself needs 1 GB."""
 
@@ -50,15 +52,22 @@ class PlaceSummary:
 
 
 def summarise(certificate: Certificate) -> Iterator[PlaceSummary]:
-    """Yield the summary of each place that was drawn and, if there are several places, of all runs."""
+    """Yield the summary of each place that was drawn and, if there are several places, of all runs.
+
+    Runs with a broken sensor have a summary of their own.
+    """
     plan = certificate.plan
     period_s = plan.blocks[0].robot.can.cycle_s
+    pairs = list(zip(plan.runs, certificate.outcomes, strict=True))
+    working = [(run.place, outcome) for run, outcome in pairs if not run.broken]
+    broken = [outcome for run, outcome in pairs if run.broken]
     for place in plan.extent.places:
-        pairs = zip(plan.runs, certificate.outcomes, strict=True)
-        if runs := [outcome for run, outcome in pairs if run.place == place]:
+        if runs := [outcome for where, outcome in working if where == place]:
             yield summarise_runs(place, runs, period_s)
-    if len(plan.extent.places) > 1:
-        yield summarise_runs(ALL, certificate.outcomes, period_s)
+    if len(plan.extent.places) > 1 and working:
+        yield summarise_runs(ALL, [outcome for _, outcome in working], period_s)
+    if broken:
+        yield summarise_runs(BROKEN, broken, period_s)
 
 
 def summarise_runs(place: str, runs: Sequence[RunOutcome], period_s: float) -> PlaceSummary:

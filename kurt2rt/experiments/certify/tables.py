@@ -70,18 +70,22 @@ def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
 
     return Table(
         "Worst runs",
-        ("run", "world", "collisions", "first after s", "first question after s", "stuck after s", "stopped"),
+        (
+            *("run", "world", "broken sensor"),
+            *("collisions", "first after s", "first question after s", "stuck after s", "stopped"),
+        ),
         tuple(
             (
                 str(each.number),
                 label_of(each.world),
+                each.broken,
                 str(each.collisions),
                 *map(format_tick, (each.first_collision, each.first_question, each.ticks if each.stuck else 0)),
                 each.stopped,
             )
             for each in worst
         ),
-        words=2,
+        words=3,
         note="Most collisions first. The number of a run is its seed.",
     )
 
@@ -91,7 +95,7 @@ def _format_witnesses(certificate: Certificate) -> str:
     alone = len(certificate.on_bus)
     if alone == len(certificate.outcomes):
         return "All runs were driven on the CAN loop."
-    left = f"; {alone} that the batch could not finish were driven there alone" if alone else ""
+    left = f"; {alone} with a broken sensor, or that left the batch, were driven there alone" if alone else ""
     return f"{certificate.compared} runs were driven on the CAN loop too, with equal results{left}."
 
 

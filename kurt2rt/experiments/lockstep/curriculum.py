@@ -19,6 +19,7 @@ from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, ExamDriver, require_equal
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.lesson_driver import (
     LESSON_ON_BUS,
@@ -163,6 +164,7 @@ async def run_exams(
     seed: int,
     report: Report,
     driver: ExamDriver = ON_BUS,
+    broken: SensorBreak | None = None,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
 
@@ -175,6 +177,7 @@ async def run_exams(
         seed: of robot and start pose.
         report: progress callback.
         driver: loop that drives the exams.
+        broken: sensor of the robot that breaks, but not while the teacher's policy drives; None: none.
 
     Returns:
         One result per world, in order.
@@ -185,7 +188,9 @@ async def run_exams(
         BatchRefusedError: the driver is a batch, which does not know the task.
         BatchDiffersError: the batch and a witness on the CAN bus differ.
     """
-    setups = [ExamSetup(world, seed, policy) for world in worlds for policy in (False, True)]
+    setups = [
+        each for world in worlds for each in (ExamSetup(world, seed, broken=broken), ExamSetup(world, seed, True))
+    ]
     finished: list[ExamResult | None] = [None] * len(setups)
     if driver.loop is DriveLoop.BATCH:
         finished = _run_in_batch(factory, settings, task, [BatchExam(setup, events) for setup in setups])

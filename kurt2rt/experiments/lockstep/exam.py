@@ -19,6 +19,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
@@ -98,6 +99,8 @@ class ExamSetup:
     """Values of phase 5, by which competitors on the same condition are chosen; None: those of `saved`."""
     stuck_ends: bool = True
     """False: a stuck robot is rescued and drives on, so that collisions are counted over the whole time."""
+    broken: SensorBreak | None = None
+    """Sensor that breaks; None: all sensors work."""
     on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
     """Called in every tick with the record and the updated metric."""
 
@@ -244,8 +247,9 @@ def build_exam_runtime(
         hal.settings.SettingsError: settings do not fit each other.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
+    robot = simulation.robot
     runtime = build_runtime(
-        simulation.robot,
+        robot if setup.broken is None else setup.broken.apply(robot, settings.infrared),
         settings,
         task,
         events,

@@ -7,9 +7,12 @@ from kurt2rt.checks.bench.robot_under_test import BenchFixture
 async def test_batch_is_compared_with_the_bus(subject: BenchFixture) -> None:
     shares: list[float] = []
     lengths = BatchLengths(robots=4, exam_s=1.0, batches=2, on_bus=2)
-    result = await measure_batch(subject, lengths, shares.append)
-    ratio, equal = result.goals
-    assert result.reference is not None
-    assert ratio.measured == result.reference.ratio > 0.0
+    exams, runs = await measure_batch(subject, lengths, shares.append)
+    ratio, equal = exams.goals
+    assert exams.reference is not None
+    assert runs.reference is not None
+    assert ratio.measured == exams.reference.ratio > 0.0
+    assert runs.goals[0].measured == runs.reference.ratio > 0.0
+    assert runs.reference.took_us == exams.reference.took_us
     assert (equal.measured, equal.limit) == (2, 2)
     assert shares == [0.2, 0.4, 0.6, 0.8, 1.0]

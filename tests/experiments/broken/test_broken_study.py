@@ -7,9 +7,9 @@ import pytest
 from hal.robot import SensorReadings
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.broken.fault import FaultKind, FaultySensor
 from kurt2rt.experiments.broken.plan import BrokenDrives, BrokenStudy, chosen_sensors, make_plan, read_study
 from kurt2rt.experiments.broken.tables import all_tables
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor, parse_break
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
@@ -56,6 +56,13 @@ def test_chosen_sensors_are_all_or_those_named() -> None:
     assert chosen_sensors(NAMES, ["s3", "s3", "s1"]) == (PLACE, NAMES.index("s1"))
     with pytest.raises(SettingsError, match="s99"):
         chosen_sensors(NAMES, ["s99"])
+
+
+def test_break_is_read_from_sensor_and_fault() -> None:
+    assert parse_break("s3=low", ROBOT.infrared) == (PLACE, FaultKind.LOW)
+    for wrong in ("s3", "s3=dull", "s99=low", ""):
+        with pytest.raises(SettingsError, match="s15=low"):
+            parse_break(wrong, ROBOT.infrared)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,7 @@
 """Runs of a certificate follow from their numbers."""
 
-from kurt2rt.experiments.certify.run import Run, draw_runs, draw_witnesses
+from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs, draw_witnesses
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 
 PLACES = ("a", "b", "rooms-SEED")
 
@@ -17,6 +18,16 @@ def test_runs_do_not_depend_on_how_many_are_drawn() -> None:
 def test_each_place_is_drawn_about_equally_often() -> None:
     places = [run.place for run in draw_runs(0, 3000, PLACES)]
     assert all(abs(places.count(place) - 1000) < 100 for place in PLACES)
+
+
+def test_share_of_the_runs_has_another_broken_sensor_each() -> None:
+    sensors = ("s1", "s2", "s3")
+    runs = draw_runs(0, 1000, PLACES, BrokenShare(0.2, sensors))
+    broken = [run.broken for run in runs if run.broken]
+    assert 160 < len(broken) < 240
+    assert set(broken) == {f"{sensor}={fault}" for sensor in sensors for fault in FaultKind}
+    assert [run._replace(broken="") for run in runs] == draw_runs(0, 1000, PLACES)
+    assert not any(run.broken for run in draw_witnesses(runs, 0.5, 3))
 
 
 def test_witnesses_are_a_share_but_at_least_three() -> None:

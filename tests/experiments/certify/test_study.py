@@ -13,8 +13,8 @@ from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on
 from kurt2rt.experiments.certify.figures import draw_worst
 from kurt2rt.experiments.certify.jobs import WitnessJob
 from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, make_plan, read_certificate
-from kurt2rt.experiments.certify.run import Run
-from kurt2rt.experiments.certify.summary import worst_runs
+from kurt2rt.experiments.certify.run import BrokenShare, Run
+from kurt2rt.experiments.certify.summary import summarise, worst_runs
 from kurt2rt.experiments.certify.tables import all_tables
 from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
@@ -130,6 +130,20 @@ def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate],
     assert on_bus.outcomes == certificate.outcomes[:2]
     assert (on_bus.compared, on_bus.on_bus) == (0, frozenset({20_000, 20_001}))
     assert "All runs were driven on the CAN loop." in next(all_tables(on_bus, [])).note
+
+
+def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_path: Path) -> None:
+    extent = EXTENT._replace(runs=3, places=("a",), broken=BrokenShare(1.0, ("s3",)))
+    plan, results = plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), Results(tmp_path)
+    with results.held():
+        run_missing(plan, results, 1, lambda _: None)
+    certificate = read_certificate(plan, results)
+    assert [summary.place for summary in summarise(certificate)] == ["a sensor breaks"]
+    assert all(each.broken.startswith("s3=") for each in certificate.outcomes)
+    stopped = [each for each in certificate.outcomes if each.stopped]
+    assert {each.stopped for each in stopped} == {"sensor broken left mid front (s3)"}
+    assert all(200 < each.ticks < 600 and not each.stuck for each in stopped)
+    assert certificate.on_bus == {20_000, 20_001, 20_002}
 
 
 def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path) -> None:

@@ -2,10 +2,12 @@
 
 import random
 from enum import StrEnum
+from typing import NamedTuple
 
 from hal.robot import HIGHEST_COUNTS, Robot, SensorReadings
 from hal.robot_proxy import RobotProxy
 from hal.robot_settings import InfraredSettings
+from hal.settings import SettingsError
 
 
 class FaultKind(StrEnum):
@@ -25,7 +27,33 @@ class FaultKind(StrEnum):
     """It sees an obstacle at 10 cm that is not there, with the noise of a working sensor."""
 
 
+BREAKS_AT_S = 2.0
+"""Time of a drive from which on the sensor is broken."""
 _OPEN_INPUT_COUNTS = 3
+
+
+class SensorBreak(NamedTuple):
+    """Sensor that breaks in a drive after BREAKS_AT_S."""
+
+    place: int
+    """Place in the sensor table."""
+    kind: FaultKind
+
+    def apply(self, robot: Robot, infrared: InfraredSettings) -> "FaultySensor":
+        """Return the robot with this sensor breaking."""
+        return FaultySensor(robot, infrared, self.place, self.kind, BREAKS_AT_S)
+
+
+def parse_break(text: str, infrared: InfraredSettings) -> SensorBreak:
+    """Return the break of a sensor that is given as `s15=low`. Raises SettingsError."""
+    name, _, kind = text.partition("=")
+    if name not in infrared.names or kind not in list(FaultKind):
+        raise SettingsError(
+            f"is no SENSOR=FAULT (allowed sensors {', '.join(infrared.names)}; faults {', '.join(FaultKind)})",
+            where=f"broken sensor {text}",
+            do="give e.g. s15=low",
+        )
+    return SensorBreak(infrared.names.index(name), FaultKind(kind))
 
 
 class FaultySensor(RobotProxy):

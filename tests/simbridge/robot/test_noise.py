@@ -1,0 +1,30 @@
+"""Random numbers of the simulation, one by one and many at once."""
+
+import random
+
+import pytest
+
+from simbridge.robot.noise import Noise
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_normals_are_those_of_single_draws(seed: int) -> None:
+    chance = random.Random(seed)
+    single, mixed = Noise(seed, "slip"), Noise(seed, "slip")
+    drawn: list[float] = []
+    while len(drawn) < 12_000:
+        count = chance.choice([1, 7, 1000, 2048, 5000])
+        drawn += mixed.normals(count).tolist() if chance.random() < 0.6 else [mixed.normal() for _ in range(count)]
+    assert drawn == [single.normal() for _ in drawn]
+    assert mixed.drawn == len(drawn)
+
+
+def test_fractions_between_normals_shift_no_normal() -> None:
+    single, mixed = Noise(1, "slip"), Noise(1, "slip")
+    expected = []
+    for noise, many in ((single, False), (mixed, True)):
+        found = noise.normals(100).tolist() if many else [noise.normal() for _ in range(100)]
+        noise.fraction()
+        found += noise.normals(3000).tolist() if many else [noise.normal() for _ in range(3000)]
+        expected.append(found)
+    assert expected[0] == expected[1]
