@@ -107,8 +107,8 @@ class BlockJob(_StoredJob):
     @property
     def robot_time_s(self) -> float:
         """Simulated time on the CAN loop in s; that in a batch counts less."""
-        whole_s = len(self.runs) * self.task.exam.duration_s
-        return whole_s if self.loop is DriveLoop.BUS else whole_s / BATCH_GAIN
+        in_batch = 0 if self.loop is DriveLoop.BUS else sum(not run.broken for run in self.runs)
+        return self.task.exam.duration_s * (len(self.runs) - in_batch + in_batch / BATCH_GAIN)
 
     def run(self, tell: Progress) -> None:
         """Drive all runs and store their outcomes; those that leave the batch are driven on the CAN loop.

@@ -13,7 +13,7 @@ from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on
 from kurt2rt.experiments.certify.figures import draw_worst
 from kurt2rt.experiments.certify.jobs import WitnessJob
 from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, make_plan, read_certificate
-from kurt2rt.experiments.certify.run import BrokenShare, Run
+from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs
 from kurt2rt.experiments.certify.summary import summarise, worst_runs
 from kurt2rt.experiments.certify.tables import all_tables
 from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
@@ -21,7 +21,7 @@ from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from simbridge.batch.compiled import IS_COMPILED
-from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
 EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=DriveLoop.BATCH)
@@ -154,3 +154,17 @@ def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path)
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(tmp_path))
     with pytest.raises(SettingsError, match="holds no lesson"):
         make_plan(short_task(), empty, EXTENT, parts)
+
+
+@pytest.mark.deep
+def test_all_runs_in_the_batch_have_the_outcomes_of_the_bus(tmp_path: Path) -> None:
+    lesson = teach(tmp_path / "k", short_task(supervised_s=60.0, corrections_s=120.0, exam_s=60.0))
+    subject = Subject(ROBOT, lesson.task, lesson.events)
+    runs = draw_runs(21_000, 30, ("a", "b", "c", "rooms-SEED", "floors-SEED"))
+    compared = 0
+    for run, in_batch in zip(runs, drive_in_batch(STAGE, subject, runs, ignore), strict=True):
+        if in_batch is not None:
+            on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
+            assert in_batch.differing(on_bus) == []
+            compared += 1
+    assert compared >= 24
