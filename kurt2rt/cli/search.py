@@ -8,7 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.hands import OnOption, open_hands
+from kurt2rt.cli.executor_option import OnOption, open_executor
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
@@ -87,9 +87,9 @@ def search(options: _Options) -> None:
         say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
     whole_s = trials_s + check_time_s(plan)
-    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(whole_s) as bar:
+    with open_executor(options.on, options.jobs) as executor, results.held(), one_bar(whole_s) as bar:
         journal = TrialJournal(plan)
-        run_trials(plan, journal, trials, options.jobs, bar.update, hands)
+        run_trials(plan, journal, trials, options.jobs, bar.update, executor)
         record = begin_check(plan, journal, trials)
         check = run_check(
             plan,
@@ -97,7 +97,7 @@ def search(options: _Options) -> None:
             record,
             options.jobs,
             lambda told: bar.update(told._replace(done_s=trials_s + told.done_s)),
-            hands,
+            executor,
         )
         bar.say("figure and report")
         tables = all_tables(plan, journal, check)

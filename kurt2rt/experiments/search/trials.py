@@ -8,7 +8,7 @@ from kurt2rt.experiments.search.jobs import SearchJob
 from kurt2rt.experiments.search.journal import TrialJournal
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.score import RobotScore, highest_score, score_of
-from kurt2rt.experiments.study.plan import Hands, JobWave, run_missing
+from kurt2rt.experiments.study.plan import Executor, JobWave, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 
 
@@ -23,7 +23,7 @@ def run_trials(
     trials: int,
     processes: int,
     on_progress: Callable[[PoolProgress], None],
-    hands: Hands | None = None,
+    executor: Executor | None = None,
 ) -> None:
     """Run trials until there are `trials`; go on with those that an earlier run left.
 
@@ -31,7 +31,7 @@ def run_trials(
 
     Args:
         on_progress: gets the robot time of all trials; a pruned one counts as whole.
-        hands: run the jobs in place of processes of this machine.
+        executor: runs the jobs in place of processes of this machine.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -53,7 +53,7 @@ def run_trials(
         running = [number for number in numbers if journal.trials[number].state is TrialState.RUNNING]
 
         def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
-            run_missing(JobWave(wave), plan.jobs.parts["results"], processes, on_wave, hands)
+            run_missing(JobWave(wave), plan.jobs.parts["results"], processes, on_wave, executor)
 
         _run_together(plan, journal, running, to_beat, run, update)
 

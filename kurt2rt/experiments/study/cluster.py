@@ -1,4 +1,4 @@
-"""Hands on other machines: Dask workers run parcels, and only this machine writes results."""
+"""Executor of jobs on other machines: Dask workers run parcels, and only this machine writes results."""
 
 import logging
 import math
@@ -45,8 +45,8 @@ def require_safe(address: str) -> None:
 
 
 @contextmanager
-def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
-    """Yield hands on the workers of a scheduler.
+def open_cluster(address: str, processes: int) -> Iterator["ClusterExecutor"]:
+    """Yield an executor on the workers of a scheduler.
 
     Args:
         address: of the scheduler; `local` starts one here, with workers.
@@ -61,7 +61,7 @@ def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
             LocalCluster(n_workers=processes, threads_per_worker=1, dashboard_address=None) as cluster,
             Client(cluster) as client,
         ):
-            yield ClusterHands(client)
+            yield ClusterExecutor(client)
         return
     require_safe(address)
     try:
@@ -69,10 +69,10 @@ def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
     except (OSError, TimeoutError) as error:
         raise ClusterError("no scheduler answers", where=address, do="start one there: dask scheduler") from error
     with client:
-        yield ClusterHands(client)
+        yield ClusterExecutor(client)
 
 
-class ClusterHands:
+class ClusterExecutor:
     """Workers of a scheduler, one job each at a time. 1 % of the jobs run on two workers and must agree."""
 
     def __init__(self, client: Client) -> None:
