@@ -8,7 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.hands import OnOption, open_hands
+from kurt2rt.cli.executor_option import OnOption, open_executor
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, results_option, task_option
 from kurt2rt.cli.progress import one_bar
@@ -113,9 +113,13 @@ def broken(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with (
+        open_executor(options.on, options.jobs) as executor,
+        results.held(),
+        one_bar(missing_time_s(plan, results)) as bar,
+    ):
         record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update, hands)
+        run_missing(plan, results, options.jobs, bar.update, executor)
         study = read_study(plan, results)
     tables = list(all_tables(study))
     if options.as_json:

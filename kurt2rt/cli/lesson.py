@@ -8,7 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.hands import open_hands
+from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
@@ -180,9 +180,13 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with (
+        open_executor(options.on, options.jobs) as executor,
+        results.held(),
+        one_bar(missing_time_s(plan, results)) as bar,
+    ):
         record_study(out, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, hands)
+        run_missing(plan, results, options.jobs, bar.update, executor)
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 

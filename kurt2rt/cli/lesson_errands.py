@@ -3,7 +3,7 @@
 import typer
 
 from behaviors.metrics.errands import ErrandsSettings
-from kurt2rt.cli.hands import open_hands
+from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import one_bar
@@ -56,9 +56,13 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with (
+        open_executor(options.on, options.jobs) as executor,
+        results.held(),
+        one_bar(missing_time_s(plan, results)) as bar,
+    ):
         record_study(results.folder, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, hands)
+        run_missing(plan, results, options.jobs, bar.update, executor)
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []

@@ -9,7 +9,7 @@ import typer
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.cli.hands import OnOption
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,

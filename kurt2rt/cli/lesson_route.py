@@ -4,7 +4,7 @@ import anyio
 import typer
 
 from behaviors.metrics.route import RouteSettings
-from kurt2rt.cli.hands import open_hands
+from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ROUTES, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import job_bars, one_bar
@@ -116,9 +116,13 @@ def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with open_hands(options.on, options.jobs) as hands, results.held(), one_bar(missing_time_s(plan, results)) as bar:
+    with (
+        open_executor(options.on, options.jobs) as executor,
+        results.held(),
+        one_bar(missing_time_s(plan, results)) as bar,
+    ):
         record_study(results.folder, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, hands)
+        run_missing(plan, results, options.jobs, bar.update, executor)
         bar.say("pictures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, factory, results.folder))

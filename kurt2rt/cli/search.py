@@ -8,6 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.executor_option import OnOption, open_executor
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
@@ -30,6 +31,7 @@ class _Options:
     ] = None
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
+    on: OnOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the search's name")] = None
     as_json: AsJson = False
 
@@ -84,12 +86,18 @@ def search(options: _Options) -> None:
     if settings.exams is DriveLoop.BATCH:
         say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
-    with results.held(), one_bar(trials_s + check_time_s(plan)) as bar:
+    whole_s = trials_s + check_time_s(plan)
+    with open_executor(options.on, options.jobs) as executor, results.held(), one_bar(whole_s) as bar:
         journal = TrialJournal(plan)
-        run_trials(plan, journal, trials, options.jobs, bar.update)
+        run_trials(plan, journal, trials, options.jobs, bar.update, executor)
         record = begin_check(plan, journal, trials)
         check = run_check(
-            plan, journal, record, options.jobs, lambda told: bar.update(told._replace(done_s=trials_s + told.done_s))
+            plan,
+            journal,
+            record,
+            options.jobs,
+            lambda told: bar.update(told._replace(done_s=trials_s + told.done_s)),
+            executor,
         )
         bar.say("figure and report")
         tables = all_tables(plan, journal, check)

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.hands import open_hands
+from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of
@@ -51,9 +51,9 @@ def run_shard(
         ClusterError: no scheduler answers, or its address is not safe.
     """
     own = shard_of(plan, Shard.parse(shard))
-    with open_hands(on, jobs) as hands, results.held(), one_bar(missing_time_s(own, results)) as bar:
+    with open_executor(on, jobs) as executor, results.held(), one_bar(missing_time_s(own, results)) as bar:
         record_study(results.folder, plan, command)
-        run_missing(own, results, jobs, bar.update, hands)
+        run_missing(own, results, jobs, bar.update, executor)
     count = sum(map(len, own.waves))
     if as_json:
         print_json({"shard": shard, "seeds": own.seeds, "jobs": count, "folder": results.folder})

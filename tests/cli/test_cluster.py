@@ -12,8 +12,11 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study.cluster import ClusterError, require_safe
+from kurt2rt.experiments.study.cluster import ClusterError, require_safe, require_witness
+from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError
+from kurt2rt.experiments.study.results import Results
 from tests.cli.helpers import ROOT, CommandLine
+from tests.experiments.study.test_parcel import Job
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
 LESSON = (
@@ -61,6 +64,55 @@ def test_cluster_without_dask_names_its_extra(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert "pip install 'kurt2rt[cluster]'" in kurt2rt.refused(*words)
+
+
+class OneFuture:
+    """Future of a job that gave these files."""
+
+    def __init__(self, files: dict[str, bytes]) -> None:
+        self._files = files
+
+    def done(self) -> bool:
+        return True
+
+    def result(self) -> dict[str, bytes]:
+        return self._files
+
+
+class TwoWorkers:
+    """Client of a cluster, whose second worker comes to this result."""
+
+    def __init__(self, result: bytes, *workers: str) -> None:
+        self._result, self._workers = result, workers
+
+    def who_has(self, _futures: object) -> dict[str, list[str]]:
+        return {"job": ["tcp://127.0.0.1:1"]}
+
+    def scheduler_info(self) -> dict[str, dict[str, object]]:
+        return {"workers": dict.fromkeys(self._workers)}
+
+    def submit(self, *_: object, workers: list[str], **__: object) -> OneFuture:
+        assert workers == ["tcp://127.0.0.1:2"]
+        return OneFuture({JOB.file: self._result})
+
+
+JOB = Job(results=Results(Path("made")), seed=3, stem="one")
+OWN, OTHER = "tcp://127.0.0.1:1", "tcp://127.0.0.1:2"
+
+
+def witness(result: bytes, *workers: str) -> None:
+    parcel = Parcel(b"", "made", {}, {}, "program")
+    require_witness(TwoWorkers(result, *workers), OneFuture({}), JOB, parcel, {JOB.file: b"right"})
+
+
+def test_workers_that_differ_in_one_bit_are_refused_by_name() -> None:
+    with pytest.raises(WorkerDiffersError, match=rf"^one, seed 3: {OWN} and one of {OTHER} came to different results"):
+        witness(b"wrong", OWN, OTHER)
+
+
+def test_equal_results_and_a_lone_worker_are_accepted() -> None:
+    witness(b"right", OWN, OTHER)
+    witness(b"never asked", OWN)
 
 
 @contextmanager

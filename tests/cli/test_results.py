@@ -69,7 +69,7 @@ def test_results_show_names_what_is_missing(kurt2rt: CommandLine) -> None:
     [
         (("paper", "--quick", "--shard", "3/3"), "got 3, allowed 2"),
         (("lesson", "--seeds", "1,2", "--shard", "2"), "'2', allowed K/N"),
-        (("transfer", "--shard", "0/2"), "'0/2', allowed K/N"),
+        (("transfer", "--seeds", "1100", "--shard", "0/2"), "'0/2', allowed K/N"),
         (("results", "show", "."), "holds no study"),
         (("results", "merge", "out", "."), "holds no study"),
     ],

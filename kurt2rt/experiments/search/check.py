@@ -15,7 +15,7 @@ from kurt2rt.experiments.search.score import RobotScore, effort, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.study.intervals import RateDifference, difference_of
-from kurt2rt.experiments.study.plan import JobWave, missing_time_s, run_missing
+from kurt2rt.experiments.study.plan import Executor, JobWave, missing_time_s, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.knowledge.journal.writer import utc_now
@@ -117,10 +117,13 @@ def run_check(
     record: CheckRecord,
     processes: int,
     on_progress: Callable[[PoolProgress], None],
+    executor: Executor | None = None,
 ) -> CheckResult:
     """Teach and examine all robots of the check that have no result, and compare.
 
-    `on_progress` gets the robot time of the check.
+    Args:
+        on_progress: gets the robot time of the check.
+        executor: runs the jobs in place of processes of this machine.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -134,7 +137,9 @@ def run_check(
     }
     wave = JobWave(tuple(job for of_label in jobs.values() for job in of_label))
     done_s = sum(job.robot_time_s for job in wave.jobs) - missing_time_s(wave, results)
-    run_missing(wave, results, processes, lambda told: on_progress(told._replace(done_s=done_s + told.done_s)))
+    run_missing(
+        wave, results, processes, lambda told: on_progress(told._replace(done_s=done_s + told.done_s)), executor
+    )
 
     def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
         return tuple(job.score(results) for job in of_label)

@@ -30,13 +30,13 @@ def draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> Save
     for unused in axes[panels:]:
         unused.remove()
     for first in axes[:panels:_COLUMNS]:
-        first.set_ylabel("score: share of exams passed")
+        first.set_ylabel("score")
     save(figure, path)
     return SavedFigure(
         path,
         "Trials",
-        "Each point is a trial, the first one the shipped settings. A cross was pruned: its score is that of its first "
-        "robots.",
+        "Each point is a trial, the first one the shipped settings. The score is the share of exams passed, and less "
+        "than half an exam more for little effort. A cross was pruned: its score is that of its first robots.",
     )
 
 

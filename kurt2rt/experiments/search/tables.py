@@ -1,7 +1,7 @@
 """Tables of a search: the best trials, and the check."""
 
 from collections.abc import Sequence
-from statistics import median
+from statistics import fmean
 
 from kurt2rt.experiments.search.check import CheckResult, best_trials
 from kurt2rt.experiments.search.jobs import SHIPPED, label_of
@@ -48,7 +48,7 @@ def _trials_table(plan: SearchPlan, journal: TrialJournal, count: int) -> Table:
     robots_text = f"{search.search.seeds.count} robots from seed {search.search.seeds.first}"
     return Table(
         f"Best trials of {len(trials)}, {pruned} pruned: {search.name}, taught by {search.teacher}",
-        ("trial", "exams passed", f"{_EFFORT[search.objective]}, median", *keys),
+        ("trial", "exams passed", f"{_EFFORT[search.objective]}, mean", *keys),
         tuple(rows),
         note=f"{robots_text} in {', '.join(search.search.worlds)}.",
     )
@@ -64,7 +64,7 @@ def _check_table(plan: SearchPlan, check: CheckResult) -> Table:
     seeds = search.check.seeds
     return Table(
         f"Check on {seeds.count} other robots from seed {seeds.first}",
-        ("trial", "exams passed", f"{unit}, median", "passed, difference in points", f"{unit}, difference"),
+        ("trial", "exams passed", f"{unit}, mean", "passed, difference in points", f"{unit}, difference"),
         tuple(rows),
         note=f"In {', '.join(search.check.worlds)}. Differences are paired by robot; all intervals hold together with "
         f"95 %. {verdict_text(plan, check)}",
@@ -73,8 +73,8 @@ def _check_table(plan: SearchPlan, check: CheckResult) -> Table:
 
 def _cells(robots: Sequence[RobotScore], objective: Objective) -> tuple[str, str]:
     passed, exams = sum(each.passed for each in robots), sum(each.exams for each in robots)
-    of_robot = median(effort(each, objective) for each in robots)
-    return f"{passed} of {exams}", f"{of_robot:g}"
+    of_robot = fmean(effort(each, objective) for each in robots)
+    return f"{passed} of {exams}", f"{of_robot:.1f}"
 
 
 def _values(values: Values, keys: Sequence[str]) -> tuple[str, ...]:

@@ -1,13 +1,14 @@
 """Runner of the trials: robots come one after the other, and a trial that cannot beat the median ends early."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from optuna.trial import TrialState
 
+from kurt2rt.experiments.search.jobs import SearchJob
 from kurt2rt.experiments.search.journal import TrialJournal
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.score import RobotScore, highest_score, score_of
-from kurt2rt.experiments.study.plan import JobWave, run_missing
+from kurt2rt.experiments.study.plan import Executor, JobWave, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 
 
@@ -22,6 +23,7 @@ def run_trials(
     trials: int,
     processes: int,
     on_progress: Callable[[PoolProgress], None],
+    executor: Executor | None = None,
 ) -> None:
     """Run trials until there are `trials`; go on with those that an earlier run left.
 
@@ -29,6 +31,7 @@ def run_trials(
 
     Args:
         on_progress: gets the robot time of all trials; a pruned one counts as whole.
+        executor: runs the jobs in place of processes of this machine.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -48,7 +51,11 @@ def run_trials(
         # Of earlier trials only, so that it is the same if some of these ended before a restart.
         to_beat = journal.median_score(first)
         running = [number for number in numbers if journal.trials[number].state is TrialState.RUNNING]
-        _run_together(plan, journal, running, to_beat, processes, update)
+
+        def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
+            run_missing(JobWave(wave), plan.jobs.parts["results"], processes, on_wave, executor)
+
+        _run_together(plan, journal, running, to_beat, run, update)
 
 
 def _run_together(
@@ -56,7 +63,7 @@ def _run_together(
     journal: TrialJournal,
     numbers: list[int],
     to_beat: float,
-    processes: int,
+    run: Callable[[Sequence[SearchJob], Callable[[PoolProgress], None]], None],
     on_progress: Callable[[PoolProgress], None],
 ) -> None:
     """Run some trials, robot by robot, and prune those that cannot have a higher score than `to_beat`."""
@@ -73,7 +80,7 @@ def _run_together(
         def update(progress: PoolProgress, before_s: float = before_s) -> None:
             on_progress(PoolProgress(before_s + progress.done_s, progress.running))
 
-        run_missing(JobWave(wave), results, processes, update)
+        run(wave, update)
         before_s += sum(job.robot_time_s for job in wave)
         for number in numbers:
             journal.report(number, step, score_of(scores(number, step + 1), plan.search.objective))

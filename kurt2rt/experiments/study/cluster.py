@@ -1,4 +1,4 @@
-"""Hands on other machines: Dask workers run parcels, and only this machine writes results."""
+"""Executor of jobs on other machines: Dask workers run parcels, and only this machine writes results."""
 
 import logging
 import math
@@ -12,7 +12,7 @@ from distributed import CancelledError, Client, Future, LocalCluster, as_complet
 from distributed.scheduler import KilledWorker
 
 from hal.errors import UserError
-from kurt2rt.experiments.study.parcel import WorkerDiffersError, pack, run_parcel, unpack
+from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
 from kurt2rt.experiments.study.results import Results
@@ -45,8 +45,8 @@ def require_safe(address: str) -> None:
 
 
 @contextmanager
-def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
-    """Yield hands on the workers of a scheduler.
+def open_cluster(address: str, processes: int) -> Iterator["ClusterExecutor"]:
+    """Yield an executor on the workers of a scheduler.
 
     Args:
         address: of the scheduler; `local` starts one here, with workers.
@@ -61,7 +61,7 @@ def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
             LocalCluster(n_workers=processes, threads_per_worker=1, dashboard_address=None) as cluster,
             Client(cluster) as client,
         ):
-            yield ClusterHands(client)
+            yield ClusterExecutor(client)
         return
     require_safe(address)
     try:
@@ -69,10 +69,10 @@ def open_cluster(address: str, processes: int) -> Iterator["ClusterHands"]:
     except (OSError, TimeoutError) as error:
         raise ClusterError("no scheduler answers", where=address, do="start one there: dask scheduler") from error
     with client:
-        yield ClusterHands(client)
+        yield ClusterExecutor(client)
 
 
-class ClusterHands:
+class ClusterExecutor:
     """Workers of a scheduler, one job each at a time. 1 % of the jobs run on two workers and must agree."""
 
     def __init__(self, client: Client) -> None:
@@ -113,7 +113,8 @@ class ClusterHands:
                 job = running.pop(future)
                 files = _files_of(future, job)
                 if job.file in witnessed:
-                    self._require_witness(future, job, files, results, earlier)
+                    parcel = pack(job, results, earlier.get(job.seed, ()))
+                    require_witness(self._client, future, job, parcel, files)
                 unpack(job, results, files)
                 future.release()  # else it is computed again if its worker dies
                 done_s += job.robot_time_s
@@ -134,31 +135,36 @@ class ClusterHands:
                 do="start one or more: kurt2rt worker --to ADDRESS",
             ) from error
 
-    def _require_witness(
-        self,
-        future: Future,
-        job: StoredJob,
-        files: Mapping[str, bytes],
-        results: Results,
-        earlier: Mapping[int, Sequence[StoredJob]],
-    ) -> None:
-        """Run a job on another worker too, if there is one, and compare the results. Raises WorkerDiffersError."""
-        own = {each for places in self._client.who_has([future]).values() for each in places}
-        others = sorted(set(self._client.scheduler_info()["workers"]) - own)
-        if not own or not others:
-            return
-        parcel = pack(job, results, earlier.get(job.seed, ()))
-        again = self._client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-again", workers=others)
-        while not again.done():
-            time.sleep(_LOOK_EVERY_S)
-            if not set(others) & set(self._client.scheduler_info()["workers"]):
-                return  # all other workers were killed, and the job would wait for them
-        if _files_of(again, job)[job.file] != files[job.file]:
-            raise WorkerDiffersError(
-                f"{' and '.join(sorted(own))} and one of {', '.join(others)} came to different results",
-                where=job.name,
-                do="do it on a third machine, and leave the wrong one out",
-            )
+
+def require_witness(client: Client, future: Future, job: StoredJob, parcel: Parcel, files: Mapping[str, bytes]) -> None:
+    """Run a job on another worker too, if there is one, and compare the results.
+
+    Args:
+        client: of the cluster.
+        future: finished future of the job; not released.
+        job: the job.
+        parcel: its parcel.
+        files: files that it gave.
+
+    Raises:
+        WorkerDiffersError: the results differ.
+        Exception: any error of the job.
+    """
+    own = {each for places in client.who_has([future]).values() for each in places}
+    others = sorted(set(client.scheduler_info()["workers"]) - own)
+    if not own or not others:
+        return
+    again = client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-again", workers=others)
+    while not again.done():
+        time.sleep(_LOOK_EVERY_S)
+        if not set(others) & set(client.scheduler_info()["workers"]):
+            return  # all other workers were killed, and the job would wait for them
+    if _files_of(again, job)[job.file] != files[job.file]:
+        raise WorkerDiffersError(
+            f"{' and '.join(sorted(own))} and one of {', '.join(others)} came to different results",
+            where=job.name,
+            do="do it on a third machine, and leave the wrong one out",
+        )
 
 
 def _witnessed(jobs: Sequence[StoredJob]) -> set[str]:

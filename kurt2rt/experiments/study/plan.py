@@ -23,7 +23,7 @@ class StoredJob(StoredResult, Job[None], Protocol):
         ...
 
 
-class Hands(Protocol):
+class Executor(Protocol):
     """Runner of jobs on other machines; each job leaves its result in the folder of results here."""
 
     def run(
@@ -81,14 +81,14 @@ def run_missing(
     results: Results,
     processes: int,
     on_progress: Callable[[PoolProgress], None],
-    hands: Hands | None = None,
+    executor: Executor | None = None,
 ) -> None:
     """Run the jobs without a result, wave by wave; each stores its result as soon as it is done.
 
     Args:
         processes: of this machine.
         on_progress: called with the progress of all waves together.
-        hands: run the jobs in place of processes of this machine; None: nothing does.
+        executor: runs the jobs in place of processes of this machine; None: those processes do.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -103,10 +103,10 @@ def run_missing(
             on_progress(PoolProgress(before_s + progress.done_s, progress.running))
 
         try:
-            if hands is None:
+            if executor is None:
                 run_jobs(jobs, processes, on_progress=update)
             else:
-                hands.run(jobs, earlier, results, update)
+                executor.run(jobs, earlier, results, update)
         except JobKilledError as error:
             raise StudyError(
                 f"{error}", do="run again, it goes on where it was (with fewer --jobs it needs less)"

@@ -121,19 +121,19 @@ def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, giv
     assert (knowledge.read_bytes(), knowledge.with_name(f"{knowledge.name}.1").read_bytes()) == (b"new", b"old")
 
 
-def test_hands_get_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Path) -> None:
+def test_executor_gets_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Path) -> None:
     plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
-    hands = _InTurn()
+    executor = _InTurn()
     with results.held():
-        run_missing(plan, results, 1, lambda _: None, hands)
-        assert hands.earlier == [{}, {3: ["first, seed 3"], 5: ["first, seed 5"]}]
+        run_missing(plan, results, 1, lambda _: None, executor)
+        assert executor.earlier == [{}, {3: ["first, seed 3"], 5: ["first, seed 5"]}]
         (tmp_path / "there" / plan.waves[1][1].file).unlink()
-        run_missing(plan, results, 1, lambda _: None, hands)
+        run_missing(plan, results, 1, lambda _: None, executor)
     assert results.missing(plan.waves[1]) == []
 
 
 class _InTurn:
-    """Hands that run parcels in this process."""
+    """Executor that run parcels in this process."""
 
     def __init__(self) -> None:
         self.earlier: list[dict[int, list[str]]] = []

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.experiments.study.plan import Hands
+from kurt2rt.experiments.study.plan import Executor
 
 OnOption = Annotated[
     str | None,
@@ -21,8 +21,8 @@ OnOption = Annotated[
 
 
 @contextmanager
-def open_hands(address: str | None, jobs: int) -> Iterator[Hands | None]:
-    """Yield the hands of --on; None without it: processes of this machine.
+def open_executor(address: str | None, jobs: int) -> Iterator[Executor | None]:
+    """Yield the executor of --on; None without it, for processes of this machine.
 
     `jobs`: number of workers of `local`. Raises ClusterError if no scheduler answers, or the address is not safe.
     """
@@ -32,5 +32,5 @@ def open_hands(address: str | None, jobs: int) -> Iterator[Hands | None]:
     # Not at the top: Dask is an extra, and takes a second.
     from kurt2rt.experiments.study.cluster import open_cluster
 
-    with open_cluster(address, jobs) as hands:
-        yield hands
+    with open_cluster(address, jobs) as executor:
+        yield executor
