@@ -166,12 +166,13 @@ class CompiledLesson(RobotBatch):
     def put(self, pose: Pose) -> None:
         """Put the robot, standing, at this pose; only after `keep`, and not while it waits for the engine."""
         assert not self.waits
-        record = self._robots[0]
-        self._bodies[0].put(record, pose, [each for stretch in self._behind[0] for each in stretch.tolist()])
-        self._behind[0].clear()
+        record, before = self._robots[0], self._robots.copy()[0]
         record["x_m"], record["y_m"], record["heading_rad"] = pose
         record["free_cycles"] = self._gap_cycles + 1
-        put_down(record, self._world, self._laws)
+        if not put_down(record, self._world, self._laws):
+            self._bodies[0].put(pose, before, [each for stretch in self._behind[0] for each in stretch.tolist()])
+            self._behind[0].clear()
+            record["box_is_new"] = 0
         self._simulated.carry(pose)
         self._keep_state()
 
