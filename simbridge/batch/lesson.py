@@ -1,5 +1,7 @@
 """Robot of a lesson in a batch: it drives compiled stretches, which can be taken back."""
 
+from itertools import starmap
+
 import numpy as np
 
 from hal.batch import DriveSettings, PolicyMind
@@ -151,7 +153,7 @@ class CompiledLesson(RobotBatch):
     def keep(self) -> list[Pose]:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
         record, end = self._robots[0], int(self._robots[0]["at"])
-        poses = [Pose(*each) for each in self.log.poses[self._kept + 1 : self.tick + 1].tolist()]
+        poses = list(starmap(Pose, self.log.poses[self._kept + 1 : self.tick + 1].tolist()))
         if poses:
             self._simulated.follow(poses)
         self._behind[0].append(self._told(0, end))

@@ -333,8 +333,9 @@ class BatchTrainingRun(TrainingRun):
 
     def _measure_all(self, poses: list[Pose]) -> None:
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
-        for before, after in pairwise([self._pose, *poses]):
-            self.distance_travelled_m += math.hypot(after.x_m - before.x_m, after.y_m - before.y_m)
+        path = self.robot.log.poses[self.ticks - len(poses) + 1 : self.ticks + 1, :2]
+        for step_m in map(math.hypot, *np.diff(path, axis=0, prepend=[self._pose[:2]]).T.tolist()):
+            self.distance_travelled_m += step_m
         self._pose = poses[-1]
         if self._stretch_metric is not None:
             self._stretch_metric.update_all(poses)
