@@ -4,6 +4,7 @@ import hashlib
 import struct
 from collections.abc import Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -21,6 +22,12 @@ from simbridge.survey.laps import WallProgress
 from simbridge.worlds.world_settings import WorldSettings
 
 _LAPS_EVERY_CYCLES = 10
+
+
+class _Put(NamedTuple):
+    """Pose at which the robot was put."""
+
+    pose: Pose
 
 
 class SimulatedRobot:
@@ -57,8 +64,8 @@ class SimulatedRobot:
         """Pose of the last placement, from which the progress along walls counts."""
         self._followed: Pose | None = None
         """Pose in a batch; None for a robot that drives itself."""
-        self._passed: list[Pose] = []
-        """Poses that were followed and whose progress was not asked for yet."""
+        self._passed: list[Pose | _Put] = []
+        """Poses that were followed, and whose progress was not asked for yet."""
         self._pressed = 0
         self.lifted = False
         """Whether the robot stands on a block: its wheels turn in the air and the body rests."""
@@ -102,8 +109,7 @@ class SimulatedRobot:
 
     def carry(self, pose: Pose) -> None:
         """Be at a pose where the robot was put that a batch simulates; no lap is counted on the way there."""
-        assert self.laps is not None  # enters the poses so far
-        self._progress.reset(pose)
+        self._passed.append(_Put(pose))
         self._followed = pose
 
     def place(self, pose: Pose) -> None:
@@ -151,8 +157,11 @@ class SimulatedRobot:
     @property
     def laps(self) -> float:
         """Progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
-        for pose in self._passed:
-            self._progress.update(*pose)
+        for passed in self._passed:
+            if isinstance(passed, _Put):
+                self._progress.reset(passed.pose)
+            else:
+                self._progress.update(*passed)
         self._passed.clear()
         return self._progress.laps
 

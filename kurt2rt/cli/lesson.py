@@ -21,7 +21,7 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson
+from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson

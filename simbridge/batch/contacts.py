@@ -1,6 +1,5 @@
 """Bodies of a batch at walls: there the physics engine moves the body, as it does on the CAN bus."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,11 +7,9 @@ from numpy.typing import NDArray
 
 from hal.batch_refusal import BatchRefusedError
 from hal.simulation import Pose
+from simbridge.robot.body import BodyState
 from simbridge.simulated_robot import SimulatedRobot
 
-_FAR_M = 1.5
-"""Distance from which on the boxes that the engine keeps around a body at two poses have nothing in common: half a
-metre for the body, and a tenth of a second of its way."""
 REMEMBERED_TICKS = 5
 """Ticks without a touch after which the engine has forgotten a contact; it keeps one for three steps."""
 
@@ -39,15 +36,17 @@ class ContactBody:
         Raises:
             BatchRefusedError: engine and compiled loop do not agree on this machine.
         """
-        for left_cm_s, right_cm_s in behind[:-1]:
+        *missed, present = self._left_out(record, behind)
+        for left_cm_s, right_cm_s in missed:
             self._step(left_cm_s, right_cm_s)
         if self._body.pose != (record["last_x_m"], record["last_y_m"], record["last_heading_rad"]):
             raise BatchRefusedError("the physics engine moves a free robot otherwise here", do="give --exams bus")
-        self._step(*behind[-1])
+        self._step(*present)
         body = self._body
         record["x_m"], record["y_m"], record["heading_rad"] = body.pose
         record["vx_m_s"], record["vy_m_s"], record["yaw_rad_s"] = body.velocity
         record["left_slip"], record["right_slip"] = body.slip
+        record["box_is_new"] = 0
         record["bumpers"], record["touching"] = 0, body.touching
         remembers = int(record["engine_ticks"])
         if body.touching:
@@ -59,27 +58,25 @@ class ContactBody:
             record["free_cycles"] += 1
             record["engine_ticks"] = max(0, remembers - 1)
 
-    def put(self, record: np.record, pose: Pose, behind: Sequence[tuple[int, int]]) -> None:
-        """Put the body at a pose in m and rad, wheels still.
+    def put(self, pose: Pose, record: np.record, behind: Sequence[tuple[int, int]]) -> None:
+        """Put the body at a pose in m and rad near the one before, wheels still; it drives what it lags behind first.
 
-        Far away from all that it met, the engine's answer depends on the new place alone, so the ticks that the body
-        lags behind are left out.
-
-        Args:
-            record: of the robot, still at its old pose.
-            pose: new pose.
-            behind: set points of the ticks that the body lags behind, left and right, in cm/s.
+        `record`: of the robot, still at its old pose. `behind`: set points of the ticks that it lags behind, in cm/s.
         """
-        here = record["x_m"], record["y_m"]
-        if record["engine_ticks"] or math.dist(here, pose[:2]) < _FAR_M:
-            for left_cm_s, right_cm_s in behind:
-                self._step(left_cm_s, right_cm_s)
-        else:
-            for left_cm_s, right_cm_s in behind[:1]:  # an engine that never stepped has no time of its last step
-                self._step(left_cm_s, right_cm_s)
-            self._body.skip(max(0, len(behind) - 1), (record["left_slip"], record["right_slip"]))
+        for left_cm_s, right_cm_s in self._left_out(record, behind):
+            self._step(left_cm_s, right_cm_s)
         self._body.place(pose)
         self._wheels.halt()
+
+    def _left_out(self, record: np.record, behind: Sequence[tuple[int, int]]) -> Sequence[tuple[int, int]]:
+        """Jump to the newest box around the body, and return the set points of the ticks since then."""
+        if not record["box_is_new"]:
+            return behind
+        state = BodyState(*record["box_state"].tolist())
+        cycles = len(behind) - (int(record["tick"]) - int(record["box_tick"]))
+        self._body.jump(cycles, state)
+        self._wheels.run_at(state.left_m_s, state.right_m_s)
+        return behind[cycles:]
 
     def _step(self, left_cm_s: int, right_cm_s: int) -> None:
         self._wheels.turn(left_cm_s / 100.0, right_cm_s / 100.0)

@@ -1,5 +1,6 @@
 """The loop of a batch: each robot drives some ticks, in the order of events of the loop over the CAN bus."""
 
+from simbridge.batch.boxes import keep_box, meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.motion import move, turn_wheels
@@ -35,6 +36,7 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
     robot.tick += 1
     k = robot.at
     robot.last_x_m, robot.last_y_m, robot.last_heading_rad = robot.x_m, robot.y_m, robot.heading_rad
+    robot.last_vx_m_s, robot.last_vy_m_s = robot.vx_m_s, robot.vy_m_s
     robot.track_left_cm_s[k], robot.track_right_cm_s[k] = robot.left_cm_s, robot.right_cm_s
     turn_wheels(robot, laws)
     if robot.engine_ticks > 0:
@@ -48,6 +50,7 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
     if not grips or may_touch(robot, world.reach_m, laws.body):
         robot.waits = 1
         return
+    keep_box(robot, laws.body)
     robot.bumpers = robot.touching = 0
     robot.free_cycles += 1
 
@@ -83,15 +86,20 @@ def sense_tick(robot: Robot, world: World, laws: Laws) -> bool:
 
 
 @compiled
-def put_down(robot: Robot, world: World, laws: Laws) -> None:
-    """Let a robot stand at the pose where it was put: wheels still, sensors settled, nothing touched."""
+def put_down(robot: Robot, world: World, laws: Laws) -> bool:
+    """Let a robot stand at the pose where it was put: wheels still, sensors settled, nothing touched.
+
+    Return whether the engine makes a new box around its body, so that what was before does not matter.
+    """
+    robot.last_vx_m_s = robot.last_vy_m_s = 0.0
     robot.vx_m_s = robot.vy_m_s = robot.yaw_rad_s = 0.0
     robot.left_m_s = robot.right_m_s = robot.left_carry = robot.right_carry = 0.0
     robot.bumpers = robot.touching = 0
     if has_moved(robot) and not gather(robot, world):
         robot.left = CROWDED
-    else:
-        measure_all(robot, laws.sensor)
+        return False
+    measure_all(robot, laws.sensor)
+    return keep_box(robot, laws.body)
 
 
 @compiled
@@ -108,4 +116,5 @@ def finish_waiting(r: int, robots: Robots, world: World, laws: Laws, knowledge: 
     """Run the rest of a tick for robot `r`, whose body the physics engine has moved."""
     robot = robots[r]
     robot.waits = 0
+    meet_box(robot, laws.body)
     finish_tick(robot, world, laws, knowledge)

@@ -1,5 +1,7 @@
 """Robot of a lesson in a batch: it drives compiled stretches, which can be taken back."""
 
+from itertools import starmap
+
 import numpy as np
 
 from hal.batch import DriveSettings, PolicyMind
@@ -153,7 +155,7 @@ class CompiledLesson(RobotBatch):
     def keep(self) -> list[Pose]:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
         record, end = self._robots[0], int(self._robots[0]["at"])
-        poses = [Pose(*each) for each in self.log.poses[self._kept + 1 : self.tick + 1].tolist()]
+        poses = list(starmap(Pose, self.log.poses[self._kept + 1 : self.tick + 1].tolist()))
         if poses:
             self._simulated.follow(poses)
         self._keep_set_points(_ALONE, end)
@@ -168,11 +170,12 @@ class CompiledLesson(RobotBatch):
     def put(self, pose: Pose) -> None:
         """Put the robot, standing, at this pose; only after `keep`, and not while it waits for the engine."""
         assert not self.waits
-        record = self._robots[0]
-        self._bodies[0].put(record, pose, self._set_points.take(0))
+        record, before = self._robots[0], self._robots.copy()[0]
         record["x_m"], record["y_m"], record["heading_rad"] = pose
         record["free_cycles"] = self._gap_cycles + 1
-        put_down(record, self._world, self._laws)
+        if not put_down(record, self._world, self._laws):
+            self._bodies[0].put(pose, before, self._set_points.take(0))
+            record["box_is_new"] = 0
         self._simulated.carry(pose)
         self._keep_state()
 

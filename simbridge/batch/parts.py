@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from behaviors.policies import circle, eight, fleeing, wall_following
 from hal.batch import TRACED_TICKS
 from hal.infrared_law import InfraredLawNumbers
+from simbridge.robot.body import BodyState
 from simbridge.robot.wheels import SideLaw
 
 Floats = NDArray[np.float64]
@@ -29,6 +30,7 @@ SEEN = 15
 """Sensors that policies look at."""
 MOST_KEPT = 256
 """Most positions that the rule of being stuck keeps."""
+BOX_STATE = len(BodyState._fields)
 SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 """Random numbers that lie ahead of a robot at the begin of a stretch: of slip, of its sensors."""
 
@@ -64,6 +66,19 @@ class Robot:
     """Pose before the present tick, which the engine must agree with."""
     last_y_m: float
     last_heading_rad: float
+    last_vx_m_s: float
+    """Velocity before the present tick, by which the engine keeps a box around the body."""
+    last_vy_m_s: float
+
+    # Box that the engine keeps around the body (simbridge.batch.boxes)
+    box: Annotated[Floats, (4,)]
+    """Left, lower, right and upper edge in m."""
+    box_is_new: int
+    """1 if the engine has not met this box yet."""
+    box_tick: int
+    """Tick in which the engine made the box."""
+    box_state: Annotated[Floats, (BOX_STATE,)]
+    """State of the body at the end of that tick, in the order of simbridge.robot.body.BodyState."""
 
     # Contacts, which the engine finds
     engine_ticks: int

@@ -22,6 +22,7 @@ from hal.robot_settings import BumperEnd, RobotSettings
 from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
+from simbridge.batch.boxes import keep_box
 from simbridge.batch.parts import (
     BodyLaw,
     Floats,
@@ -198,13 +199,21 @@ def build_robots(
     robots["kind"] = [kind_of(mind) for mind in minds]
     robots["knowledge"] = knowledge_of
     world, robots["world"] = _world(simulated)
-    for record, each in zip(robots, simulated, strict=True):
+    law = build_body_law(robot, simulated[0].body)
+    for place, each in enumerate(simulated):
+        record = robots[place]
+        # The engine made its box where the robot was put first, unless the second place is outside of it.
+        for pose in (each.world.settings.start_poses[0].pose, each.body.pose):
+            record["x_m"], record["y_m"], record["heading_rad"] = pose
+            keep_box(record, law)
+        record["box_is_new"] = 0
         _copy_body(record, each.body)
         _copy_sensors(record, each.infrared)
     return robots, world
 
 
 def _copy_body(record: np.record, body: Body) -> None:
+
     record["x_m"], record["y_m"], record["heading_rad"] = body.pose
     record["vx_m_s"], record["vy_m_s"], record["yaw_rad_s"] = body.velocity
     record["left_slip"], record["right_slip"] = body.slip

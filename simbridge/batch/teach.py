@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from hal.batch_lesson import LessonCause, LessonLog
 from hal.slow_way import advance_way
+from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.drive import STAYS, begin_tick, sense_tick
 from simbridge.batch.minds import feature_of, hold_or_change, right_action, scan_nearest, step_action
@@ -83,7 +84,9 @@ def teach(
 def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: Table, log: LessonLog) -> None:
     """Run a tick of the only robot of a batch from its new pose up to its situation, and log what it perceives."""
     robot = robots[0]
-    robot.waits = 0
+    if robot.waits:
+        robot.waits = 0
+        meet_box(robot, laws.body)
     if not sense_tick(robot, world, laws):
         return
     tick, numbers, features = robot.tick, learner.numbers, table.features

@@ -15,6 +15,7 @@ SLIP_FRACTION = 0.03
 """Standard deviation of each side's slip ratio."""
 SLIP_TIME_S = 0.3
 """Correlation time of slip: patches of floor; our choice."""
+_FAR_M = 1e4
 _TRACTION_M_S2 = 6.0
 """Traction of rubber on an office floor, 0.6 g; the motors brake less, so only walls exhaust it."""
 
@@ -26,6 +27,25 @@ class Contact(NamedTuple):
     y_m: float
     toward_x: float
     toward_y: float
+
+
+class BodyState(NamedTuple):
+    """State of a free body and its wheels at the end of a cycle, from which a body in the engine can go on."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+    from_vx_m_s: float
+    """Velocity before the cycle, by which the engine made its box around the body."""
+    from_vy_m_s: float
+    vx_m_s: float
+    vy_m_s: float
+    yaw_rad_s: float
+    left_slip: float
+    right_slip: float
+    left_m_s: float
+    """Rim speed of the left wheels."""
+    right_m_s: float
 
 
 class Body:
@@ -99,10 +119,21 @@ class Body:
         self.rest()
         self._space.reindex_shapes_for_body(body)
 
-    def skip(self, cycles: int, slip: tuple[float, float]) -> None:
-        """Leave out cycles before the body is placed elsewhere; `slip`: of both sides after them, dimensionless."""
+    def jump(self, cycles: int, state: BodyState) -> None:
+        """Be in a state after so many cycles that were left out, in the last of which the engine made a new box.
+
+        The engine keeps the walls near a box in a list, until the body leaves the box. So this list is the same.
+        """
+        body = self._body
         self._noise.normals(2 * cycles)
-        self._left_slip, self._right_slip = slip
+        self._left_slip, self._right_slip = state.left_slip, state.right_slip
+        for x_m in (state.x_m + _FAR_M, state.x_m):  # far away, so that the engine makes a new box in any case
+            body.position, body.angle = (x_m, state.y_m), state.heading_rad
+            body.velocity = (state.from_vx_m_s, state.from_vy_m_s)
+            self._space.reindex_shapes_for_body(body)
+        body.velocity, body.angular_velocity = (state.vx_m_s, state.vy_m_s), state.yaw_rad_s
+        self.pose = Pose(state.x_m, state.y_m, state.heading_rad)
+        self._points.clear()
 
     def rest(self) -> None:
         """Simulate one cycle at rest without contacts."""

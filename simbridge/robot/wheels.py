@@ -68,6 +68,10 @@ class Wheels:
         self._left_carry, self._right_carry = left - left_ticks, right - right_ticks
         return left_ticks, right_ticks
 
+    def run_at(self, left_m_s: float, right_m_s: float) -> None:
+        """Turn at these rim speeds in m/s, after cycles that were left out."""
+        self.left_m_s, self.right_m_s = left_m_s, right_m_s
+
     def halt(self) -> None:
         """Stop the wheels at once, for a repositioned robot."""
         self.left_m_s = self.right_m_s = self._left_carry = self._right_carry = 0.0

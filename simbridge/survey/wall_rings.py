@@ -81,7 +81,11 @@ class WallRings:
         best, least_m = None, math.inf
         for corner_x, corner_y, along_x, along_y, face_m, before_m, ring in self._near:
             dx, dy = x_m - corner_x, y_m - corner_y
-            on_face_m = min(max(dx * along_x + dy * along_y, 0.0), face_m)
+            on_face_m = dx * along_x + dy * along_y
+            if on_face_m < 0.0:
+                on_face_m = 0.0
+            elif on_face_m > face_m:
+                on_face_m = face_m
             away_m = math.hypot(dx - on_face_m * along_x, dy - on_face_m * along_y)
             if away_m > _NEAR_M:
                 continue

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import Annotated, NamedTuple, Self
 
 import numpy as np
@@ -231,10 +232,11 @@ class ObstacleMemory:
         return _Sweep(poses, (highest + lowest) / 2, (highest - lowest) / 2 + 1e-6)
 
 
+@lru_cache(maxsize=64)
 def _seen_m(law: InfraredSettings, sensor: SensorSettings, farthest_m: float) -> Values:
     """Return the place of what a sensor sees at each count, ahead and aside in m, shape (2, counts).
 
-    `farthest_m`: distance beyond which a reading is no obstacle.
+    `farthest_m`: distance beyond which a reading is no obstacle. Do not change the result: all robots share it.
     """
     heading_rad = math.radians(sensor.heading_deg)
     distance_m = np.array([law.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1)])

@@ -11,23 +11,20 @@ from functools import partial
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from behaviors.metrics.task_metric import StretchMetric
-from hal.batch import TabledPolicy
-from hal.batch_lesson import LessonCause, LessonDriveSettings, LessonFactory, LessonRobot
+from hal.batch_lesson import LessonCause, LessonFactory, LessonRobot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import HoldAction
-from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
+from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_settings
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
 from kurt2rt.experiments.lockstep.lesson import TrainingRun
+from kurt2rt.experiments.lockstep.lesson_ahead import LessonAhead
 from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
@@ -79,82 +76,13 @@ def open_batch_lesson(
     Raises BatchRefusedError, hal.settings.SettingsError.
     """
     plan, store = plan_of(task), InMemoryEventStore()
-    lesson = _drive_settings(settings, task, plan)
+    lesson = build_lesson_settings(settings, task)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
         recent = LoggedDecisions(robot.log, lesson.average_steps)
         runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
         mind = LessonMind(runtime, robot, recent, store)
         session = f"{plan.purpose}-{seed}-after-0"
         yield BatchTrainingRun(robot, mind, plan, seed=seed, session=session, on_progress=on_progress)
-
-
-def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
-    """Check that a batch can teach a task with its teacher. Raises BatchRefusedError."""
-    _drive_settings(settings, task, plan_of(task))
-
-
-def _drive_settings(settings: RobotSettings, task: TaskSettings, plan: LessonPlan) -> LessonDriveSettings:
-    require_known_task(task)
-    profile, doubt = task.teaching.profile, task.learning.doubt
-    if doubt is not None and doubt.asks:
-        raise refused(task, "a robot that asks at a doubt")
-    if profile.shows.times:
-        raise refused(task, "a teacher who drives by hand")
-    if task.teaching.teacher.delete_after:
-        raise refused(task, "a teacher who deletes RLAs")
-    policy = task.policy.build(settings.infrared)
-    if not isinstance(policy, TabledPolicy):
-        raise refused(task, f"policy {task.policy.kind}")
-    definition = load_situation(task.situation, settings.infrared.names)
-    changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
-    width = len(definition.features)
-    if weights[width:].any():
-        raise refused(task, "averages that count in a distance")
-    drive = build_drive_settings(settings, task)
-    return LessonDriveSettings(
-        actions=dict(drive.actions),
-        minimum_ticks=drive.minimum_ticks,
-        policy=policy,
-        features=feature_table(definition, settings, weights[:width].tolist(), task),
-        average_steps=definition.history_steps,
-        ticks=round(plan.duration_s / settings.can.cycle_s),
-    )
-
-
-class _Ahead:
-    """Ticks of the log that the teacher has not seen yet (kurt2rt.teacher.scripted.basic_teacher.Ahead)."""
-
-    def __init__(self, questions: NDArray[np.intp], differences: NDArray[np.intp], changes: NDArray[np.intp]) -> None:
-        """Know the ticks of questions and so on, ascending, each (n,)."""
-        self._questions, self._differences, self._changes = questions, differences, changes
-        self._tick = 0
-        self.ticks = 0
-        """Number of known ticks."""
-
-    def after(self, tick: int, until: int) -> "_Ahead":
-        """Look from the tick after `tick` on, up to `until`."""
-        self._tick, self.ticks = tick, until - tick
-        return self
-
-    @property
-    def until_question(self) -> int:
-        """Number of ticks before the first in which the robot asks; all without one."""
-        return self._until(self._questions)
-
-    @property
-    def until_difference(self) -> int:
-        """Number of ticks before the first in which it asks or does another action than the policy's."""
-        return self._until(self._differences)
-
-    @property
-    def until_change(self) -> int:
-        """Number of ticks before the first with another action, or another right action, than in the tick before."""
-        return self._until(self._changes)
-
-    def _until(self, ticks: NDArray[np.intp]) -> int:
-        place = ticks.searchsorted(self._tick, side="right")
-        return min(ticks.item(place) - 1 - self._tick, self.ticks) if place < len(ticks) else self.ticks
 
 
 class BatchTrainingRun(TrainingRun):
@@ -277,7 +205,7 @@ class BatchTrainingRun(TrainingRun):
         differs = asks | ((actions[1:] >= 0) & (actions[1:] != right[1:]))
         # A question has no action, and a robot without an action asks or was stopped.
         changes = (actions[1:] != actions[:-1]) | (right[1:] != right[:-1])
-        ahead = _Ahead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
+        ahead = LessonAhead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
         held_to = self._mind.held_to
         tick, until = begin, last if held_to is None else min(last, held_to)
         while tick < until:
@@ -333,8 +261,9 @@ class BatchTrainingRun(TrainingRun):
 
     def _measure_all(self, poses: list[Pose]) -> None:
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
-        for before, after in pairwise([self._pose, *poses]):
-            self.distance_travelled_m += math.hypot(after.x_m - before.x_m, after.y_m - before.y_m)
+        path = self.robot.log.poses[self.ticks - len(poses) + 1 : self.ticks + 1, :2]
+        for step_m in map(math.hypot, *np.diff(path, axis=0, prepend=[self._pose[:2]]).T.tolist()):
+            self.distance_travelled_m += step_m
         self._pose = poses[-1]
         if self._stretch_metric is not None:
             self._stretch_metric.update_all(poses)

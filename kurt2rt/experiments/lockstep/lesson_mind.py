@@ -16,6 +16,7 @@ from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.teaching.commands import Command, CommandResult, HoldAction, Resume, Stream
 from kurt2rt.core.teaching.system_events import SystemEvent
+from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.runtime import Runtime
 
 _UNKNOWN = int(LessonCause.UNKNOWN)
@@ -158,6 +159,8 @@ class LessonMind:
     def _taught_rlas(self) -> TaughtRlas:
         system, width = self.runtime.level.system, self._width
         rlas = system.rlas
+        if any(len(system.competitors(rla)) > 1 for rla in rlas):
+            raise refused(self.runtime.task, "RLAs on one condition, among which a choice is drawn")
         for rla in rlas:
             if rla.rla_id not in self._conditions:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson
+from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.exam import ExamSetup

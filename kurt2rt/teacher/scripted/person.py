@@ -167,8 +167,11 @@ class ScriptedPerson(BasicTeacher):
 
     def skip(self, ahead: Ahead) -> int:
         """Let the ticks pass before the next picture, press or arrival of a command."""
-        due = [self._next_picture, self._pictures.next_due, self._sent.next_due, self._press_due]
-        ticks = min(ahead.ticks, *(max(0, each - 1 - self._now) for each in due if each is not None))
+        due = self._next_picture
+        for each in (self._pictures.next_due, self._sent.next_due, self._press_due):
+            if each is not None and each < due:
+                due = each
+        ticks = min(ahead.ticks, max(0, due - 1 - self._now))
         self._now += ticks
         return ticks
 

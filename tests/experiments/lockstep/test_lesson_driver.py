@@ -10,7 +10,8 @@ from hal.batch_refusal import BatchRefusedError
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep import curriculum
-from kurt2rt.experiments.lockstep.batch_lesson import require_known_lesson, teach_in_batch
+from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
+from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.lockstep.lesson_driver import (

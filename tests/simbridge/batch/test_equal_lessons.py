@@ -70,6 +70,14 @@ def test_lesson_is_equal_in_the_batch(name: str, teacher: str) -> None:
     assert lesson.given.events
 
 
+@pytest.mark.deep
+@pytest.mark.skipif(not IS_COMPILED, reason="plain Python takes minutes")
+@pytest.mark.parametrize("teacher", ["superhuman", "answers_only", "attentive", "ordinary", "slow"])
+@pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight"])
+def test_lesson_of_two_minutes_is_equal_in_the_batch(name: str, teacher: str) -> None:
+    assert_equal(lesson_task(name, teacher, {"teaching.supervised_s": "30", "teaching.corrections_s": "90"}), 11)
+
+
 def test_lesson_by_rewind_is_equal_in_the_batch() -> None:
     longer = {"teaching.corrections_s": "28"} if IS_COMPILED else {}
     lesson = assert_equal(lesson_task("wall_following", "slow", longer), 2)

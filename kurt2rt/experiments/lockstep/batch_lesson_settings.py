@@ -1,0 +1,54 @@
+"""Settings of a lesson in a batch, and the refusal of lessons that a batch does not know."""
+
+from hal.batch import TabledPolicy
+from hal.batch_lesson import LessonDriveSettings
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.weights import feature_weights
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
+from kurt2rt.experiments.lockstep.lesson_plan import plan_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+
+
+def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch can teach a task with its teacher. Raises BatchRefusedError."""
+    build_lesson_settings(settings, task)
+
+
+def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> LessonDriveSettings:
+    """Return what a batch needs to know of a robot that is taught a task by its teacher.
+
+    Raises:
+        BatchRefusedError: the batch does not know the task or its teacher.
+        hal.settings.SettingsError: settings of the task do not fit each other.
+    """
+    require_known_task(task)
+    profile, doubt = task.teaching.profile, task.learning.doubt
+    if doubt is not None and doubt.asks:
+        raise refused(task, "a robot that asks at a doubt")
+    if profile.shows.times:
+        raise refused(task, "a teacher who drives by hand")
+    if task.teaching.teacher.delete_after:
+        raise refused(task, "a teacher who deletes RLAs")
+    policy = task.policy.build(settings.infrared)
+    if not isinstance(policy, TabledPolicy):
+        raise refused(task, f"policy {task.policy.kind}")
+    definition = load_situation(task.situation, settings.infrared.names)
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    width = len(definition.features)
+    if weights[width:].any():
+        raise refused(task, "averages that count in a distance")
+    drive = build_drive_settings(settings, task)
+    unknown = sorted(set(load_task_repertoire(task, settings)) - set(drive.actions))
+    if unknown:
+        raise refused(task, f"action {', '.join(unknown)}")
+    return LessonDriveSettings(
+        actions=dict(drive.actions),
+        minimum_ticks=drive.minimum_ticks,
+        policy=policy,
+        features=feature_table(definition, settings, weights[:width].tolist(), task),
+        average_steps=definition.history_steps,
+        ticks=round(plan_of(task).duration_s / settings.can.cycle_s),
+    )
