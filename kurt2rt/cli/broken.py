@@ -109,7 +109,10 @@ def broken(options: _Options) -> None:
         healthy_s=options.healthy,
     )
     parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
-    plan, command = make_plan(task, drives, parts), typed_command("broken", options)
+    plan, command = (
+        make_plan(task, drives, parts),
+        typed_command("broken", options, {"task": options.task, "seeds": options.seeds}),
+    )
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return

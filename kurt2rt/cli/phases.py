@@ -133,4 +133,4 @@ def _seeds(options: _Options) -> str:
 
 
 def _command(options: _Options) -> str:
-    return typed_command("phases", options, {"seeds": _seeds(options)})
+    return typed_command("phases", options, {"task": options.task, "seeds": _seeds(options)})

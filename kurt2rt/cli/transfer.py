@@ -135,7 +135,10 @@ def transfer(options: _Options) -> None:
         (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
         JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
     )
-    figure, command = options.out / "transfer.png", typed_command("transfer", options)
+    figure, command = (
+        options.out / "transfer.png",
+        typed_command("transfer", options, {"task": options.task, "seeds": options.seeds}),
+    )
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return

@@ -22,12 +22,14 @@ def typed_command(command: str, options: "DataclassInstance", instead: Mapping[s
     Args:
         command: its name.
         options: its options, as `takes_options` makes them; those with their default are left out.
-        instead: values of fields that stand in place of the typed ones.
+        instead: values of fields in place of the typed ones; they are stated also if they are the default, None never.
     """
+    stated = instead or {}
     words = [f"kurt2rt {command}"]
     for each in fields(options):
-        value = (instead or {}).get(each.name, getattr(options, each.name))
-        if each.name not in _LEFT_OUT and value != (None if each.default is MISSING else each.default):
+        value = stated.get(each.name, getattr(options, each.name))
+        default = None if each.default is MISSING or each.name in stated else each.default
+        if each.name not in _LEFT_OUT and value != default:
             words += _words(each, value)
     return " ".join(words)
 

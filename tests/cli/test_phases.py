@@ -48,4 +48,4 @@ def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLin
     assert again.out == first.out
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
     assert changed == [place == 4 for place in range(14)]
-    assert f"kurt2rt phases --quick --task {task} --seeds 0" in (folder / "report.html").read_text()
+    assert f"kurt2rt phases --task {task} --quick --seeds 0" in (folder / "report.html").read_text()

@@ -33,6 +33,11 @@ def test_typed_command_leaves_out_defaults_and_paths() -> None:
     )
 
 
+def test_typed_command_states_given_values_that_are_defaults() -> None:
+    given = {"set_down": 1.0, "taught": None}
+    assert typed_command("try", Options(Path("made")), given) == "kurt2rt try --set-down 1"
+
+
 def test_typed_command_quotes_values_for_a_shell() -> None:
     options = LessonOptions(task="/x/mine.yaml", changes=["learning.weights=[{weight: 1.0}]"], seeds="1-3", plain=True)
     assert typed_command("lesson", options, {"seeds": "1,2,3"}) == (
