@@ -158,13 +158,13 @@ def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path)
 
 @pytest.mark.deep
 def test_all_runs_in_the_batch_have_the_outcomes_of_the_bus(tmp_path: Path) -> None:
-    lesson = teach(tmp_path / "k", short_task(supervised_s=60.0, corrections_s=120.0, exam_s=60.0))
+    lesson = teach(tmp_path / "k", short_task(supervised_s=60.0, corrections_s=120.0, exam_s=40.0))
     subject = Subject(ROBOT, lesson.task, lesson.events)
-    runs = draw_runs(21_000, 30, ("a", "b", "c", "rooms-SEED", "floors-SEED"))
+    runs = draw_runs(21_000, 20, ("a", "b", "c", "rooms-SEED", "floors-SEED"))
     compared = 0
     for run, in_batch in zip(runs, drive_in_batch(STAGE, subject, runs, ignore), strict=True):
         if in_batch is not None:
             on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
             assert in_batch.differing(on_bus) == []
             compared += 1
-    assert compared >= 24
+    assert compared >= 16
