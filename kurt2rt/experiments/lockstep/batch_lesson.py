@@ -32,7 +32,7 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 
 _UNKNOWN = int(LessonCause.UNKNOWN)
-_STRETCH_TICKS = 200
+_STRETCH_TICKS = 120
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
 _ENGINE_TICKS = 50
 """Ticks in a row in the physics engine after which a stretch ends."""
