@@ -119,7 +119,7 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
 def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Orders, log: LessonLog) -> None:
     """Decide the tick that was sensed, and send CONTROL."""
     learner.numbers[SENSED] = 0
-    tick, cause = robot.tick, _choose(robot, laws, table, orders)
+    tick, cause = robot.tick, _choose(robot, laws, table, orders, log)
     left_m_s = right_m_s = 0.0
     drives = robot.action >= 0
     if drives:
@@ -139,7 +139,7 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
 
 
 @compiled
-def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders) -> int:
+def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonLog) -> int:
     """Let the nearest RLA or the teacher choose the action; return the cause, a number of LessonCause."""
     if orders.held >= 0:
         robot.action = orders.held
@@ -147,9 +147,8 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders) -> int:
     if orders.stopped:
         robot.action = robot.rla = -1
         return STOPPED
-    features = table.features
-    for i in range(features.kind.shape[0]):
-        robot.situation[i] = feature_of(robot.counts, features, i) * features.weights[i]
+    for i in range(table.features.weights.shape[0]):
+        robot.situation[i] = log.features[robot.tick, i] * table.features.weights[i]
     row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
     robot.nearest = row
     if row < 0 or not distance <= table.radius[row]:

@@ -32,8 +32,10 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 
 _UNKNOWN = int(LessonCause.UNKNOWN)
-_STRETCH_TICKS = 200
+_STRETCH_TICKS = 120
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
+_ENGINE_TICKS = 50
+"""Ticks in a row in the physics engine after which a stretch ends."""
 
 
 def teach_in_batch(
@@ -103,7 +105,6 @@ class BatchTrainingRun(TrainingRun):
         self._actions = robot.actions
         # Asked once, because it reads all members of the protocol.
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
-        self._over = False
         self._messages: list[tuple[int, HoldAction]] = []
         """Messages of a hold that goes on in the present stretch, with their ticks."""
 
@@ -113,7 +114,7 @@ class BatchTrainingRun(TrainingRun):
 
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
-        while self.ticks < self._planned_ticks and not self._over:
+        while self.ticks < self._planned_ticks:
             if not self._drive_stretch():
                 return False
         self._mind.count(self.ticks)
@@ -130,20 +131,42 @@ class BatchTrainingRun(TrainingRun):
         if due:
             results = self._mind.take(begin + 1)
             self._refused += require_accepted(results, begin + 1, self.task, self._teacher.may_be_refused)
-        reached = robot.drive(self._stretch_end(begin))
-        if reached == begin:
-            return not robot.reason_to_leave
-        stuck = self._stuck_tick(begin, reached)
-        cut = self._ask_teacher(begin, reached if stuck is None else stuck)
-        if cut == reached and robot.reason_to_leave:
+        cut = self._drive_on(begin)
+        if cut is None:
             return False
-        if cut < reached or cut == stuck or self._repositions_at(cut):
-            robot.go_back(cut)
         poses = robot.keep()
         if self._mind.holds:
             self._hold_on(begin + 1 + due, cut)
         self._pass(begin, cut, poses)
         return True
+
+    def _drive_on(self, begin: int) -> int | None:
+        """Drive until the teacher says something or the stretch ends, and return that tick.
+
+        While the physics engine moves the body the teacher sees each tick at once, because the engine cannot go back.
+        Returns None if the robot leaves the batch.
+        """
+        robot, seen = self.robot, begin
+        while True:
+            reached = robot.drive(self._stretch_end(seen))
+            if reached > seen:
+                stuck = self._stuck_tick(begin, reached)
+                seen = self._ask_teacher(seen, reached if stuck is None else stuck)
+                if seen < reached or seen == stuck or self._repositions_at(seen):
+                    robot.go_back(seen)
+                    return seen
+            if robot.reason_to_leave:
+                return None
+            if seen > begin and not self._goes_on_in_engine(begin, seen):
+                return seen
+            robot.sense()
+            if robot.reason_to_leave:
+                return None
+
+    def _goes_on_in_engine(self, begin: int, tick: int) -> bool:
+        """Return whether the stretch goes on after a tick, with the next one in the physics engine."""
+        due = self._mind.is_due(tick + 1) or self._mind.holds
+        return self.robot.waits and not due and tick - begin < _ENGINE_TICKS
 
     def _hold_on(self, first: int, cut: int) -> None:
         """Carry out the messages of a hold up to a tick; a later one is sent."""
@@ -256,8 +279,6 @@ class BatchTrainingRun(TrainingRun):
             tick = second * self.ticks_per_second
             self._note_second(tick, self._mind.rlas_after(tick))
             self._on_progress(tick * self.period_s)
-        most = self._plan.most_presses
-        self._over = most is not None and len(self._workload.press_ticks) > most
 
     def _measure_all(self, poses: list[Pose]) -> None:
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
