@@ -1,6 +1,7 @@
 """Work of the service after each tick, with a real journal and its thread, on ticks that the test makes."""
 
-from collections.abc import Iterator
+import threading
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
@@ -224,14 +226,25 @@ def test_post_tick_early_question_is_delayed(shift: Shift) -> None:
     assert shift.questions[1].nearest_rla == 1
 
 
-async def test_post_tick_channel_lesson_is_answered_once_durable(tmp_path: Path) -> None:
+async def test_post_tick_channel_lesson_is_answered_once_durable(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk_answers = threading.Event()
+    append = Journal.append
+
+    def append_late(journal: Journal, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        assert disk_answers.wait(30.0)
+        return append(journal, entries)
+
+    monkeypatch.setattr(Journal, "append", append_late)
     shift = Shift(tmp_path / "lessons.knowledge", with_channel=True)
     desk = shift.desk
     task = await desk.send(desk.answer())
-    shift.run()
-    shift.write()
+    shift.run(2)
     await turns()
     assert not task.done()
+    disk_answers.set()
+    shift.write()
     shift.run()
     reply = await reply_of(task)
     assert (reply.status, reply.body["row"], reply.body["code"]) == (ReplyStatus.DONE, 1, ResultCode.RLA_TAUGHT)

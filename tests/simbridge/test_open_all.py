@@ -6,7 +6,7 @@ import pytest
 
 from hal.batch import Start
 from hal.settings import SettingsError
-from simbridge.simulation import Kurt2Simulation
+from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.simbridge.batch.both_ways import FACTORY
 
 
