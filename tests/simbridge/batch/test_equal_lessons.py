@@ -75,7 +75,12 @@ def test_lesson_is_equal_in_the_batch(name: str, teacher: str) -> None:
 @pytest.mark.parametrize("teacher", ["superhuman", "answers_only", "attentive", "ordinary", "slow"])
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight"])
 def test_lesson_of_two_minutes_is_equal_in_the_batch(name: str, teacher: str) -> None:
-    assert_equal(lesson_task(name, teacher, {"teaching.supervised_s": "30", "teaching.corrections_s": "90"}), 11)
+    task = lesson_task(name, teacher, {"teaching.supervised_s": "30", "teaching.corrections_s": "90"})
+    with batch_lesson(task, 11) as run:
+        if not run.drive_stretches():  # a sensor looks broken, as of the eight by `answers_only`
+            assert run.robot.reason_to_leave
+            return
+    assert_equal(task, 11)
 
 
 def test_lesson_by_rewind_is_equal_in_the_batch() -> None:
