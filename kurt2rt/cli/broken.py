@@ -8,11 +8,11 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption, open_executor
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, results_option, task_option
-from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task
@@ -20,9 +20,7 @@ from kurt2rt.experiments.broken.plan import BrokenDrives, chosen_sensors, make_p
 from kurt2rt.experiments.broken.tables import all_tables
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
@@ -116,13 +114,7 @@ def broken(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, command, options.jobs, options.on):
         study = read_study(plan, results)
     tables = list(all_tables(study))
     if options.as_json:

@@ -8,15 +8,15 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
 from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
 from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_options, teaches_route
 from kurt2rt.cli.options import changes_of
-from kurt2rt.cli.progress import job_bars, one_bar
+from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.shards import run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
@@ -31,10 +31,8 @@ from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curri
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
@@ -180,13 +178,7 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(out, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, setup.command, options.jobs, options.on):
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 

@@ -3,11 +3,10 @@
 import typer
 
 from behaviors.metrics.errands import ErrandsSettings
-from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
-from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.shards import run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
@@ -15,9 +14,7 @@ from kurt2rt.experiments.navigation.plan import make_plan, read_outcomes
 from kurt2rt.experiments.navigation.tables import all_tables
 from kurt2rt.experiments.route.plan import basic_task_of
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
@@ -56,13 +53,7 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, setup.command, options.jobs, options.on) as bar:
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []

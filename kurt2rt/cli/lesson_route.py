@@ -4,11 +4,11 @@ import anyio
 import typer
 
 from behaviors.metrics.route import RouteSettings
-from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ROUTES, LessonOptions, LessonSetup
-from kurt2rt.cli.progress import job_bars, one_bar
+from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.shards import run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, print_study, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -20,9 +20,7 @@ from kurt2rt.experiments.route.tables import all_tables, robot_table
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
@@ -116,13 +114,7 @@ def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
     if options.shard is not None:
         run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, setup.command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, setup.command, options.jobs, options.on) as bar:
         bar.say("pictures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, factory, results.folder))

@@ -8,7 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption, open_executor
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -20,8 +20,8 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
 
@@ -93,9 +93,7 @@ def _run_study(options: _Options) -> None:
     from kurt2rt.experiments.paper.summary import read_study
     from kurt2rt.experiments.paper.tables import all_tables
     from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
-    from kurt2rt.experiments.study.study_record import record_study
     from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
@@ -116,13 +114,7 @@ def _run_study(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, command, options.jobs, options.on) as bar:
         bar.say("figures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, stage, results.folder))

@@ -8,7 +8,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption, open_executor
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -21,8 +21,8 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.teacher_settings import SUPERHUMAN
@@ -80,20 +80,12 @@ def phases(options: _Options) -> None:
     # Late imports: the simulator is an extra that `kurt2rt run` on the robot does not need.
     from kurt2rt.experiments.phases.report import reasons_not_to_judge
     from kurt2rt.experiments.phases.tables import all_tables
-    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
-    from kurt2rt.experiments.study.study_record import record_study
 
     plan, results = _plan(options)
     if options.shard is not None:
         run_shard(plan, results, _command(options), options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, _command(options))
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, _command(options), options.jobs, options.on) as bar:
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))

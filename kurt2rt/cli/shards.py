@@ -4,14 +4,12 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
-from kurt2rt.experiments.study.plan import StudyPlan, missing_time_s, run_missing
+from kurt2rt.experiments.study.plan import StudyPlan
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.shard import Shard, shard_of
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.platform.text_table import print_whole
 
 ShardOption = Annotated[
@@ -51,9 +49,8 @@ def run_shard(
         ClusterError: no scheduler answers, or its address is not safe.
     """
     own = shard_of(plan, Shard.parse(shard))
-    with open_executor(on, jobs) as executor, results.held(), one_bar(missing_time_s(own, results)) as bar:
-        record_study(results.folder, plan, command)
-        run_missing(own, results, jobs, bar.update, executor)
+    with study_run(plan, results, command, jobs, on, part=own):
+        pass
     count = sum(map(len, own.waves))
     if as_json:
         print_json({"shard": shard, "seeds": own.seeds, "jobs": count, "folder": results.folder})

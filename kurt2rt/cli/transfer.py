@@ -9,7 +9,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption, open_executor
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -22,17 +22,15 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_record import record_study
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
 from kurt2rt.experiments.transfer.tables import all_tables
@@ -142,13 +140,7 @@ def transfer(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    with (
-        open_executor(options.on, options.jobs) as executor,
-        results.held(),
-        one_bar(missing_time_s(plan, results)) as bar,
-    ):
-        record_study(results.folder, plan, command)
-        run_missing(plan, results, options.jobs, bar.update, executor)
+    with study_run(plan, results, command, options.jobs, options.on) as bar:
         bar.say("figure")
         study = read_study(plan, results)
         draw_curves(study, figure)
