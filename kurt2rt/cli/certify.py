@@ -9,6 +9,7 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
@@ -194,13 +195,11 @@ def _task(options: _Options) -> TaskSettings:
 
 def _loop(options: _Options, refusal: str) -> DriveLoop:
     """Return the loop that drives the runs, and say why if it is slow; `refusal`: of the batch, empty for none."""
-    from simbridge.batch.compiled import IS_COMPILED
-
     if options.exams is DriveLoop.BATCH and refusal:
         typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
         return DriveLoop.BUS
-    if options.exams is DriveLoop.BATCH and not IS_COMPILED:
-        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
+    if options.exams is DriveLoop.BATCH:
+        say_if_interpreted()
     return options.exams
 
 

@@ -1,4 +1,4 @@
-"""`kurt2rt lesson --exams batch`."""
+"""`kurt2rt lesson --exams batch` and `--lessons batch`."""
 
 import json
 
@@ -9,9 +9,10 @@ from tests.cli.helpers import CommandLine
 SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
 
 
-def test_lesson_has_the_same_exams_in_a_batch(kurt2rt: CommandLine) -> None:
+@pytest.mark.parametrize("driven", ["--exams", "--lessons"])
+def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: str) -> None:
     told = [
-        json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", "--exams", each).out)
+        json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", driven, each).out)
         for each in ("batch", "bus")
     ]
     assert told[0]["robots"] == told[1]["robots"]
@@ -30,14 +31,6 @@ def test_lesson_refuses_exams_that_a_batch_does_not_know(
     kurt2rt: CommandLine, words: tuple[str, ...], why: str
 ) -> None:
     assert why in kurt2rt.refused("lesson", *SHORT, "--exams", "batch", *words)
-
-
-def test_lesson_is_the_same_in_a_batch(kurt2rt: CommandLine) -> None:
-    told = [
-        json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", "--lessons", each).out)
-        for each in ("batch", "bus")
-    ]
-    assert told[0]["robots"] == told[1]["robots"]
 
 
 @pytest.mark.parametrize(

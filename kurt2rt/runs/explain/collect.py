@@ -1,8 +1,9 @@
 """Collection of a decision's facts from a runtime and the record of its newest tick."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -215,18 +216,11 @@ class _Reader:
                 driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf)
             )
         others: list[RlaFacts] = []
-        passed_over = None
-        nearer = True
         for rla_id, distance in ranking:
             rla = self._system.get(rla_id)
-            if rla is None:
+            if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
-            if match is not None and rla_id == match.rla.rla_id:
-                nearer = False
-                continue
-            if level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla):
-                if nearer and passed_over is None and match is not None:
-                    passed_over = self._rla_facts(rla, self._radius_of(rla), distance)
+            if self._passes_over(rla, level_name):
                 continue
             if self._most is not None and len(others) >= self._most:
                 break
@@ -243,8 +237,20 @@ class _Reader:
             others=tuple(others),
             count=self._system.candidate_count(behaviour, level_name),
             radius_share=self._system.radius_share if level_name == BASIC else 1.0,
-            passed_over=passed_over,
+            passed_over=None if match is None else self._passed_over(level_name, ranking, match),
         )
+
+    def _passes_over(self, rla: Rla, level_name: str) -> bool:
+        """Return whether neighbours answer in place of an RLA, because no teacher can be asked."""
+        return level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla)
+
+    def _passed_over(self, level_name: str, ranking: Sequence[tuple[int, float]], match: Match) -> RlaFacts | None:
+        """Return the nearest RLA of a ranking that is passed over, if it is nearer than the match; None without one."""
+        for rla_id, distance in takewhile(lambda each: each[0] != match.rla.rla_id, ranking):
+            rla = self._system.get(rla_id)
+            if rla is not None and self._passes_over(rla, level_name):
+                return self._rla_facts(rla, self._radius_of(rla), distance)
+        return None
 
     def _ranking(
         self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
