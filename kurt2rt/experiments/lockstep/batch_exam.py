@@ -35,7 +35,8 @@ def examine_in_batch(
 ) -> list[ExamResult | None]:
     """Drive all exams at once, and return their results in order; None for one that belongs on the CAN bus.
 
-    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch.
+    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch, and so does a stuck one
+    that is rescued.
 
     Raises:
         BatchRefusedError: the batch does not know the task, its policy or an action.
@@ -112,13 +113,14 @@ class _Drive:
         self._trail += [Position(pose.x_m, pose.y_m) for pose in poses[first::_TRAIL_STRIDE]]
         self._pose = poses[-1]
         self._ticks += ticks
+        self._left = self._is_stuck and not self._setup.stuck_ends
         return not self._is_stuck
 
     def result(self) -> ExamResult | None:
         """Return the result of the exam; None if the robot left the batch."""
         if self._left:
             return None
-        if self._is_stuck and self._setup.stuck_ends:
+        if self._is_stuck:
             self._metric.abort()
         duration_s = self._ticks * self._period_s
         return ExamResult(
