@@ -5,7 +5,7 @@ import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise, starmap
+from itertools import groupby, pairwise, starmap
 
 from behaviors.metrics.task_metric import StretchMetric, TaskMetric
 from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Stretch
@@ -161,18 +161,18 @@ class _Drive:
         return ticks
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
-        before = self._action
-        for action, pose in zip(stretch.actions[:ticks], stretch.poses, strict=False):
-            if action == before:
-                self._unknown_ticks += action == STANDS
-                continue
-            # A robot that asks in its first tick has not changed its action: before, it had none.
-            self._action_changes += not (before is None and action == STANDS)
-            if action == STANDS:
-                self._unknown_ticks += 1
-                self._ask_positions.append(Position(pose.x_m, pose.y_m))
-            before = action
-        self._action = before
+        place = 0
+        for action, run in groupby(stretch.actions[:ticks]):
+            if action != self._action:
+                # A robot that asks in its first tick has not changed its action: before, it had none.
+                self._action_changes += not (self._action is None and action == STANDS)
+                if action == STANDS:
+                    pose = stretch.poses[place]
+                    self._ask_positions.append(Position(pose.x_m, pose.y_m))
+                self._action = action
+            length = len(list(run))
+            self._unknown_ticks += length if action == STANDS else 0
+            place += length
 
 
 def _step_m(before: Pose, after: Pose) -> float:
