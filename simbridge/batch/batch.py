@@ -12,7 +12,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.contacts import ContactBody, SetPoints
 from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting
-from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
+from simbridge.batch.record import NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import build_knowledge, require_known

@@ -2,9 +2,10 @@
 
 from simbridge.batch.boxes import keep_box, meet_box
 from simbridge.batch.compiled import compiled
+from simbridge.batch.laws import Integers, Knowledge, Laws, World
 from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.motion import move, turn_wheels
-from simbridge.batch.parts import Integers, Knowledge, Laws, Robot, Robots, World
+from simbridge.batch.record import Robot, Robots
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure, measure_all
 from simbridge.batch.sight import gather, has_moved, may_touch

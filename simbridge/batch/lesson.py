@@ -12,7 +12,7 @@ from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick, put_down
 from simbridge.batch.minds import LANES
-from simbridge.batch.parts import STRETCH
+from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
 from simbridge.batch.tables import build_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach

@@ -6,7 +6,8 @@ from behaviors.keep_distance import KeepDistanceNumbers, steer
 from behaviors.policies import circle, eight, fleeing, wall_following
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import Conditions, Features, Floats, Integers, Knowledge, MindLaw, Robot
+from simbridge.batch.laws import Conditions, Features, Floats, Integers, Knowledge, MindLaw
+from simbridge.batch.record import Robot
 
 KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
 """Kinds of minds."""

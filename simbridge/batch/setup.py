@@ -23,20 +23,8 @@ from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
 from simbridge.batch.boxes import keep_box
-from simbridge.batch.parts import (
-    BodyLaw,
-    Floats,
-    GuardLaw,
-    Laws,
-    MindLaw,
-    Robots,
-    SensorLaw,
-    Sizes,
-    StuckLaw,
-    WatchLaw,
-    World,
-    empty_robots,
-)
+from simbridge.batch.laws import BodyLaw, Floats, GuardLaw, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
+from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
 from simbridge.robot.body import Body

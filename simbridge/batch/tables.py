@@ -12,8 +12,9 @@ from behaviors.policies.wall_following import WallFollowing
 from hal.batch import CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings, SpeedMode
+from simbridge.batch.laws import Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, LANES, WALL_FOLLOWING
-from simbridge.batch.parts import MOST_KEPT, MOST_VALUES, Conditions, Features, Floats, Integers, Knowledge
+from simbridge.batch.record import MOST_KEPT, MOST_VALUES
 from simbridge.simulated_robot import SimulatedRobot
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT}

@@ -7,8 +7,9 @@ from hal.slow_way import advance_way
 from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.drive import STAYS, begin_tick, sense_tick
+from simbridge.batch.laws import Features, Floats, Integers, Laws, World
 from simbridge.batch.minds import feature_of, hold_or_change, right_action, scan_nearest, step_action
-from simbridge.batch.parts import Features, Floats, Integers, Laws, Robot, Robots, World
+from simbridge.batch.record import Robot, Robots
 from simbridge.batch.safety import drive_guarded
 
 BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER = (int(cause) for cause in LessonCause)

@@ -20,8 +20,8 @@ from hal.simulation import Pose
 from hal.wheel_watch import WheelWatch
 from kurt2rt.core.rla.matching import exact_distances
 from kurt2rt.core.task_settings import load_task
+from simbridge.batch.laws import GuardLaw, World
 from simbridge.batch.minds import nearest
-from simbridge.batch.parts import GuardLaw, World
 from simbridge.batch.safety import looks_broken, slewed
 from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
