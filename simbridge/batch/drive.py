@@ -1,5 +1,6 @@
 """The loop of a batch: each robot drives some ticks, in the order of events of the loop over the CAN bus."""
 
+from simbridge.batch.borders import area_of, crosses
 from simbridge.batch.boxes import keep_box, meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Integers, Knowledge, Laws, World
@@ -19,11 +20,11 @@ STAYS, FROZEN, BROKEN, CROWDED = range(4)
 def drive(active: Integers, ticks: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
     """Drive the robots of the indexes `active` to the end of a stretch of so many ticks.
 
-    A robot ends sooner that leaves the batch, is stuck, or waits for the physics engine.
+    A robot ends sooner that leaves the batch, is stuck, crosses a border, or waits for the physics engine.
     """
     for place in range(active.shape[0]):
         robot = robots[active[place]]
-        while robot.at < ticks and robot.left == STAYS and not robot.stuck:
+        while robot.at < ticks and robot.left == STAYS and not robot.stuck and not robot.crossed:
             begin_tick(robot, world, laws)
             if robot.waits:
                 break
@@ -66,6 +67,7 @@ def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) ->
         count_tick(robot, asked, laws.stuck)
         if robot.kind == COMMANDED:
             trace(robot, robot.at)
+        robot.crossed = crosses(robot)
         robot.at += 1
 
 
@@ -96,6 +98,7 @@ def put_down(robot: Robot, world: World, laws: Laws) -> bool:
     robot.vx_m_s = robot.vy_m_s = robot.yaw_rad_s = 0.0
     robot.left_m_s = robot.right_m_s = robot.left_carry = robot.right_carry = 0.0
     robot.bumpers = robot.touching = 0
+    robot.area = area_of(robot)
     if has_moved(robot) and not gather(robot, world):
         robot.left = CROWDED
         return False

@@ -3,13 +3,14 @@
 import math
 
 from behaviors.keep_distance import KeepDistanceNumbers, steer
-from behaviors.policies import circle, eight, fleeing, wall_following
+from behaviors.policies import circle, eight, fleeing, streets, wall_following
+from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Conditions, Features, Floats, Integers, Knowledge, MindLaw
 from simbridge.batch.record import Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED = range(7)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
 LANES = 8
@@ -23,11 +24,14 @@ _flee = compiled(fleeing.choose_action)
 _circle = compiled(circle.choose_action)
 _view_column = compiled(eight.view_column)
 _drive_eight = compiled(eight.choose_action)
+_turn_in_streets = compiled(streets.turn_at_once)
+_wall_away_m = compiled(streets.wall_away_m)
+_keep_middle = compiled(streets.keep_middle)
 
 
 @compiled
-def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
-    """Return the index of a policy's answer among its actions.
+def policy_answer(kind: int, behaviour: int, seen: Floats, law: MindLaw) -> int:
+    """Return the index of a policy's answer among its actions, for a taught behaviour.
 
     `seen`: distances in m, (15,), of front (3), front edges (2), left (4), right (4), rear edges (2), in the order of
     `behaviors.policies.distances`.
@@ -40,9 +44,17 @@ def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
         return _flee(front_m, seen[3], seen[4], law.fleeing)
     if kind == CIRCLE:
         return _circle(left, law.circle)
-    left_column = _view_column((seen[3], seen[5], seen[6], seen[7], seen[8], seen[13]), law.eight)
-    right_column = _view_column((seen[4], seen[9], seen[10], seen[11], seen[12], seen[14]), law.eight)
-    return _drive_eight(front_m, left_column, right_column, law.eight)
+    left_side = (seen[3], seen[5], seen[6], seen[7], seen[8], seen[13])
+    right_side = (seen[4], seen[9], seen[10], seen[11], seen[12], seen[14])
+    if kind == STREETS:
+        turn, want = law.turns[behaviour], law.streets
+        action = _turn_in_streets((seen[0], seen[1], seen[2]), left_side, right_side, turn, want)
+        if action == KEEPS_MIDDLE:
+            to_left_m = _wall_away_m(left_side, want.left_rays, turn, want)
+            to_right_m = _wall_away_m(right_side, want.right_rays, turn, want)
+            action = _keep_middle(left_side, right_side, to_left_m, to_right_m, want)
+        return action
+    return _drive_eight(front_m, _view_column(left_side, law.eight), _view_column(right_side, law.eight), law.eight)
 
 
 @compiled
@@ -212,14 +224,15 @@ def right_action(robot: Robot, law: MindLaw) -> int:
     """Return the index of the action that the policy takes for right."""
     for i in range(law.seen.shape[0]):
         robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
-    return int(law.actions[policy_answer(robot.kind, robot.seen, law)])
+    return int(law.actions[policy_answer(robot.kind, robot.behaviour, robot.seen, law)])
 
 
 @compiled
 def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     """Let the nearest RLA answer, or stand outside its radius."""
     fill_features(robot.counts, knowledge.features, robot.situation)
-    first, end = knowledge.first[robot.knowledge], knowledge.first[robot.knowledge + 1]
+    table = robot.knowledge + robot.behaviour
+    first, end = knowledge.first[table], knowledge.first[table + 1]
     row, distance = nearest(first, end, robot.nearest, knowledge.conditions, robot.situation)
     robot.nearest = row
     robot.track_distance[k] = distance

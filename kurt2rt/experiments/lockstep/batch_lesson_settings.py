@@ -47,6 +47,7 @@ def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> Lesson
     return LessonDriveSettings(
         actions=dict(drive.actions),
         minimum_ticks=drive.minimum_ticks,
+        behaviours=task.behaviours,
         policy=policy,
         features=feature_table(definition, settings, weights[:width].tolist(), task),
         average_steps=definition.history_steps,

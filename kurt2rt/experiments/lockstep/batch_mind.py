@@ -31,8 +31,10 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
 
-_COURSES = ("laps", "way", "rounds", "eights")
-"""Courses that never reposition the robot and want one behaviour."""
+_BORDER_COURSES = ("junctions",)
+"""Courses that reposition the robot, or want another behaviour, at borders."""
+_COURSES = ("laps", "way", "rounds", "eights", *_BORDER_COURSES)
+"""Courses that never reposition the robot nor want another behaviour, or at borders only."""
 _ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
 
 
@@ -45,8 +47,12 @@ def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
         raise refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
     if task.mid is not None and not by_policy:
         raise refused(task, "a mid level")
-    if len(task.behaviours) > 1:
-        raise refused(task, "several behaviours")
+
+
+def require_no_borders(task: TaskSettings) -> None:
+    """Check that the course of a task does not reposition the robot on the way. Raises BatchRefusedError."""
+    if task.course.kind in _BORDER_COURSES:
+        raise refused(task, f"runs of course {task.course.kind}, which guides the robot on its way")
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
@@ -76,6 +82,7 @@ def build_drive_settings(
         minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s)
         if minimum_ticks is None
         else minimum_ticks,
+        behaviours=task.behaviours,
     )
 
 
@@ -127,8 +134,8 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     system, width = level.system, len(definition.features)
     if system.weights[width:].any():
         raise refused(task, "averages that count in a distance")
-    behaviour = runtime.active_behaviour.behaviour
-    rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not system.passes_over(rla)]
+    known = [rla for rla in system.rlas if not system.passes_over(rla)]
+    rlas = [rla for behaviour in task.behaviours for rla in known if rla.behaviour == behaviour]
     place = {rla.rla_id: index for index, rla in enumerate(rlas)}
     groups = [system.competitors(rla) for rla in rlas]
     answers = [
@@ -136,6 +143,7 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     ]
     conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:width].tolist() for rla in rlas]
     return TaughtMind(
+        sizes=tuple(sum(rla.behaviour == behaviour for rla in rlas) for behaviour in task.behaviours),
         rla_ids=tuple(place),
         conditions=conditions,
         radii=tuple(system.whole_radius(rla) for rla in rlas),
