@@ -27,12 +27,16 @@ class FeatureKind(IntEnum):
 
 
 class FeatureTable(NamedTuple):
-    """Recent features that count in a distance, in the order of the situation; a weight of 0 counts for nothing."""
+    """Features of a situation, in its order; a weight of 0 counts for nothing in a distance."""
 
     kinds: tuple[FeatureKind, ...]
     sensors: tuple[tuple[int, ...], ...]
     """Places of each feature's sensors in the sensor table."""
     weights: tuple[float, ...]
+    average_steps: int
+    """Steps of the averages."""
+    average_weights: tuple[float, ...] = ()
+    """Weights of the averages; empty if they count for nothing."""
 
 
 @runtime_checkable
@@ -64,7 +68,7 @@ class TaughtMind:
     """Number of RLAs of each taught behaviour, in the order of `DriveSettings.behaviours` and of all fields below."""
     rla_ids: tuple[int, ...]
     conditions: Sequence[Sequence[float]]
-    """Weighted recent features of each RLA."""
+    """Weighted features of each RLA, the recent ones first; averages if they count."""
     radii: tuple[float, ...]
     answers: tuple[int, ...]
     """Place of the RLA that answers where RLAs share a condition; most places name themselves."""

@@ -63,7 +63,7 @@ class TaughtRlas(NamedTuple):
 
     rla_ids: Sequence[int]
     conditions: Sequence[NDArray[np.float64]]
-    """Weighted recent features of each RLA, (features,)."""
+    """Weighted features of each RLA, the recent ones first, and averages if they count, (values,)."""
     radii: Sequence[float]
     """Distances within which they answer now."""
     actions: Sequence[str]
@@ -93,8 +93,6 @@ class LessonDriveSettings:
     policy: TabledPolicy
     """Policy of the teacher."""
     features: FeatureTable
-    average_steps: int
-    """Steps of the averages in a situation."""
     ticks: int
     """Length of the lesson."""
 

@@ -18,7 +18,7 @@ from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_
 from simbridge.batch.record import MOST_AREAS, NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
-from simbridge.batch.tables import ON_THE_BUS, build_knowledge, require_known
+from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedRobot, hash_state
 
@@ -71,6 +71,7 @@ class RobotBatch:
         self.actions, self._behaviours = tuple(settings.actions), settings.behaviours
         self._laws = build_laws(robot, simulated[0], minds, settings)
         self._knowledge, tables = build_knowledge(minds, self.actions)
+        self._averages = empty_averages(len(simulated), self._knowledge.features)
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
         # The bodies in the engine draw their slip themselves, when they catch up.
@@ -102,7 +103,7 @@ class RobotBatch:
         self._robots["at"][chosen] = self._robots["crossed"][chosen] = self._caught_up[chosen] = 0
         active = chosen
         while len(active):
-            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge)
+            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge, self._averages)
             active = active[self._robots["waits"][active] != 0]
             for r in active.tolist():
                 self._move_in_engine(r)
@@ -130,7 +131,7 @@ class RobotBatch:
 
     def _finish(self, r: int) -> None:
         """Finish the tick of a robot whose body the engine has moved."""
-        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
+        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge, self._averages)
 
     def _keep_set_points(self, chosen: NDArray[np.int64]) -> None:
         """Keep the set points of the present stretch for the bodies in the engine that lag behind."""

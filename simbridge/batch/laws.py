@@ -113,7 +113,7 @@ class MindLaw(NamedTuple):
 
 
 class Features(NamedTuple):
-    """Recent features of a situation."""
+    """Features of a situation."""
 
     kind: Integers
     """Kind of each feature (simbridge.batch.minds)."""
@@ -121,6 +121,23 @@ class Features(NamedTuple):
     """Sensors of each feature, (features, sensors)."""
     sensor_count: Integers
     weights: Floats
+    average_steps: int
+    average_weights: Floats
+    """Weights of the averages, (features,); (0,) if they count for nothing."""
+
+
+class Averages(NamedTuple):
+    """Steps of the averages of robots, as in kurt2rt.core.perception; the first index is the robot.
+
+    All arrays are empty if averages count for nothing.
+    """
+
+    ring: NDArray[np.int16]
+    """Features of the newest steps in counts, (robots, steps, features)."""
+    sums: Integers
+    """Sums of them, (robots, features)."""
+    newest: Integers
+    """Place of the next step in the ring, (robots,)."""
 
 
 class Conditions(NamedTuple):

@@ -12,10 +12,9 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick
-from simbridge.batch.minds import LANES
 from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
-from simbridge.batch.tables import build_features
+from simbridge.batch.tables import build_features, padded_width, require_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
 from simbridge.simulated_robot import SimulatedRobot
 
@@ -37,11 +36,12 @@ class CompiledLesson(RobotBatch):
         drive = DriveSettings(
             actions=settings.actions, minimum_ticks=settings.minimum_ticks, behaviours=settings.behaviours
         )
+        require_features(settings.features)
         super().__init__(robot, [simulated], [PolicyMind(settings.policy)], drive)
         self._simulated = simulated
         width, rows, sensors = len(settings.features.kinds), settings.ticks + 1, len(robot.infrared.sensors)
         self._minimum_ticks = settings.minimum_ticks
-        self._width = width
+        self._values = width + len(settings.features.average_weights)
         self.log = LessonLog(
             features=np.zeros((rows, width), dtype=np.int16),
             sums=np.zeros((rows, width), dtype=np.int32),
@@ -56,16 +56,14 @@ class CompiledLesson(RobotBatch):
             touching=np.zeros(rows, dtype=np.bool_),
             collisions=np.zeros(rows, dtype=np.int32),
         )
-        padded = -(-width // LANES) * LANES
         self._table = Table(
             rows=np.zeros(1, dtype=np.int64),
             rla_ids=np.zeros(_MOST_RLAS, dtype=np.int64),
-            conditions=np.zeros((_MOST_RLAS, padded)),
+            conditions=np.zeros((_MOST_RLAS, padded_width(settings.features))),
             radius=np.zeros(_MOST_RLAS),
             action=np.zeros(_MOST_RLAS, dtype=np.int64),
             features=build_features(settings.features),
             added=np.zeros(rows, dtype=np.int64),
-            average_steps=settings.average_steps,
         )
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
         self._orders = Orders(False, -1, 1.0)
@@ -100,7 +98,7 @@ class CompiledLesson(RobotBatch):
         table.rows[0] = count
         if count:
             table.rla_ids[:count] = rlas.rla_ids
-            table.conditions[:count, : self._width] = rlas.conditions
+            table.conditions[:count, : self._values] = rlas.conditions
             table.radius[:count] = rlas.radii
             table.action[:count] = [place[name] for name in rlas.actions]
         self._robots[0]["action_ticks"] = self._minimum_ticks

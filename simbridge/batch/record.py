@@ -34,6 +34,8 @@ SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 class Robot:
     """Record of one robot; arrays have the shape that is annotated, in `Sizes` or in numbers."""
 
+    number: int
+    """Its index among the robots."""
     tick: int
     at: int
     """Place of the present tick in the stretch."""

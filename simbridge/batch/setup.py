@@ -192,6 +192,7 @@ def build_robots(
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
     robots["command"] = robots["action"] = robots["rla"] = STANDS
     robots["area"] = OUTSIDE
+    robots["number"] = range(len(robots))
     robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
     robots["way_counts"] = 1
     robots["kind"] = [kind_of(mind) for mind in minds]

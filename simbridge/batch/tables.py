@@ -13,7 +13,7 @@ from behaviors.policies.wall_following import WallFollowing
 from hal.batch import CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings, SpeedMode
-from simbridge.batch.laws import Conditions, Features, Floats, Integers, Knowledge
+from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, LANES, STREETS, WALL_FOLLOWING
 from simbridge.batch.record import MOST_KEPT, MOST_VALUES
 from simbridge.simulated_robot import SimulatedRobot
@@ -21,7 +21,7 @@ from simbridge.simulated_robot import SimulatedRobot
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}
 _MOST_NEIGHBOURS = 128
 """Neighbours of a condition that are kept, so that thousands of RLAs need no square of their number."""
-_NO_FEATURES = FeatureTable((), (), ())
+_NO_FEATURES = FeatureTable((), (), (), 1)
 
 
 def kind_of(mind: Mind) -> int:
@@ -58,12 +58,24 @@ def require_known(
     tables = {mind.features for mind in minds if isinstance(mind, TaughtMind)}
     if len(tables) > 1:
         raise BatchRefusedError("two situations in one batch", do="give each task a batch of its own")
-    if any(2 * len(table.kinds) > MOST_VALUES for table in tables):
-        raise BatchRefusedError(f"a situation has at most {MOST_VALUES // 2} features in a batch", do=ON_THE_BUS)
+    for table in tables:
+        require_features(table)
     _require_actions(minds, settings)
 
 
 ON_THE_BUS = "drive it on the CAN bus"
+
+
+def require_features(table: FeatureTable) -> None:
+    """Check that the batch adds the squares of a situation in the order of numpy. Raises BatchRefusedError."""
+    values = 2 * len(table.kinds)
+    if values > MOST_VALUES:
+        raise BatchRefusedError(f"a situation has at most {MOST_VALUES // 2} features in a batch", do=ON_THE_BUS)
+    if table.average_weights and values % LANES:
+        raise BatchRefusedError(
+            f"averages of {len(table.kinds)} features count in a distance (a batch knows multiples of {LANES // 2})",
+            do=ON_THE_BUS,
+        )
 
 
 def _require_actions(minds: Sequence[Mind], settings: DriveSettings) -> None:
@@ -99,17 +111,16 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
             of.append(-1)
     known = [mind for _, mind in taught.values()]
     features = known[0].features if known else _NO_FEATURES
-    width = -(-len(features.kinds) // LANES) * LANES
+    values = len(features.kinds) + len(features.average_weights)
     sizes = [size for mind in known for size in mind.sizes]
     first = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
     rows = int(first[-1])
-    conditions = np.zeros((rows, width))
+    conditions = np.zeros((rows, padded_width(features)))
     answer = np.zeros(rows, dtype=np.int64)
     for table, mind in taught.values():
         start = int(first[table])
         end = start + len(mind.rla_ids)
-        shape = (end - start, len(features.kinds))
-        conditions[start:end, : len(features.kinds)] = np.array(mind.conditions).reshape(shape)
+        conditions[start:end, :values] = np.array(mind.conditions).reshape(end - start, values)
         answer[start:end] = np.array(mind.answers, dtype=np.int64) + start
     place = {name: index for index, name in enumerate(actions)}
     knowledge = Knowledge(
@@ -154,4 +165,22 @@ def build_features(table: FeatureTable) -> Features:
         sensors=sensors,
         sensor_count=np.array([len(each) for each in table.sensors], dtype=np.int64),
         weights=np.array(table.weights, dtype=np.float64),
+        average_steps=table.average_steps,
+        average_weights=np.array(table.average_weights, dtype=np.float64),
+    )
+
+
+def padded_width(table: FeatureTable) -> int:
+    """Return the number of values of a weighted condition, with zeros up to a multiple of eight."""
+    return -(-(len(table.kinds) + len(table.average_weights)) // LANES) * LANES
+
+
+def empty_averages(robots: int, features: Features) -> Averages:
+    """Return the averages of robots that have not driven yet; without room for any where they count for nothing."""
+    width = len(features.average_weights)
+    count, steps = (robots, features.average_steps) if width else (0, 0)
+    return Averages(
+        ring=np.zeros((count, steps, width), dtype=np.int16),
+        sums=np.zeros((count, width), dtype=np.int64),
+        newest=np.zeros(count, dtype=np.int64),
     )

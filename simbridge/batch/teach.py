@@ -51,7 +51,6 @@ class Table(NamedTuple):
     features: Features
     added: Integers
     """Ticks whose features were added to the averages, (ticks + 1,)."""
-    average_steps: int
 
 
 STEPS, SENSED, DROVE = range(3)
@@ -98,7 +97,7 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
     tick, numbers, features = robot.tick, learner.numbers, table.features
     # As kurt2rt.core.perception: the averages stand still while the robot stands, and in ticks that do not count.
     moves = numbers[DROVE] and robot.way_counts
-    steps = table.average_steps
+    steps = features.average_steps
     for i in range(features.kind.shape[0]):
         value = feature_of(robot.counts, features, i)
         log.features[tick, i] = value
@@ -155,8 +154,12 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonL
     if orders.stopped:
         robot.action = robot.rla = -1
         return STOPPED
-    for i in range(table.features.weights.shape[0]):
-        robot.situation[i] = log.features[robot.tick, i] * table.features.weights[i]
+    features, tick = table.features, robot.tick
+    width = features.kind.shape[0]
+    for i in range(width):
+        robot.situation[i] = log.features[tick, i] * features.weights[i]
+    for i in range(features.average_weights.shape[0]):
+        robot.situation[width + i] = log.sums[tick, i] / features.average_steps * features.average_weights[i]
     row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
     robot.nearest = row
     if row < 0 or not distance <= table.radius[row]:

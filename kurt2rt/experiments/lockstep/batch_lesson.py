@@ -80,7 +80,7 @@ def open_batch_lesson(
     plan, store = plan_of(task), InMemoryEventStore()
     lesson = build_lesson_settings(settings, task)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
-        recent = LoggedDecisions(robot.log, lesson.average_steps, task.behaviours)
+        recent = LoggedDecisions(robot.log, lesson.features.average_steps, task.behaviours)
         runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
         mind = LessonMind(runtime, robot, recent, store)
         session = f"{plan.purpose}-{seed}-after-0"

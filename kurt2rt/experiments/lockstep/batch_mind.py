@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from behaviors.behaviour import Behaviour
 from behaviors.keep_distance import KeepDistance
@@ -107,7 +108,7 @@ def build_minds(
     """Return the mind of each exam, given by its lessons and setup; equal knowledge makes one mind.
 
     Raises:
-        BatchRefusedError: the batch does not know the policy, or averages count in a distance.
+        BatchRefusedError: the batch does not know the policy or a feature.
         SettingsError: settings do not fit each other.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
@@ -131,9 +132,8 @@ def build_minds(
 def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) -> TaughtMind:
     """Return the RLAs that answer in an exam: without withdrawn ones, and guesses that a task passes over."""
     level, definition = runtime.level, runtime.definition
-    system, width = level.system, len(definition.features)
-    if system.weights[width:].any():
-        raise refused(task, "averages that count in a distance")
+    system, features = level.system, feature_table(definition, settings, level.system.weights, task)
+    values = len(features.weights) + len(features.average_weights)
     known = [rla for rla in system.rlas if not system.passes_over(rla)]
     rlas = [rla for behaviour in task.behaviours for rla in known if rla.behaviour == behaviour]
     place = {rla.rla_id: index for index, rla in enumerate(rlas)}
@@ -141,7 +141,7 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
     answers = [
         place[level.would_answer(group).rla_id] if len(group) > 1 else index for index, group in enumerate(groups)
     ]
-    conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:width].tolist() for rla in rlas]
+    conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:values].tolist() for rla in rlas]
     return TaughtMind(
         sizes=tuple(sum(rla.behaviour == behaviour for rla in rlas) for behaviour in task.behaviours),
         rla_ids=tuple(place),
@@ -149,21 +149,23 @@ def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) 
         radii=tuple(system.whole_radius(rla) for rla in rlas),
         answers=tuple(answers),
         actions=tuple(rla.action for rla in rlas),
-        features=feature_table(definition, settings, system.weights[:width].tolist(), task),
+        features=features,
     )
 
 
 def feature_table(
-    definition: SituationDefinition, settings: RobotSettings, weights: Sequence[float], task: TaskSettings
+    definition: SituationDefinition, settings: RobotSettings, weights: NDArray[np.float64], task: TaskSettings
 ) -> FeatureTable:
-    """Return the recent features of a situation with their weights, dimensionless. Raises BatchRefusedError."""
+    """Return the features of a situation with their weights (d,), dimensionless. Raises BatchRefusedError."""
     place = {name: index for index, name in enumerate(settings.infrared.names)}
     kinds, sensors = [], []
     for feature in definition.features:
         kind, names = _kind_and_sensors(feature, definition, task)
         kinds.append(kind)
         sensors.append(tuple(place[name] for name in names))
-    return FeatureTable(tuple(kinds), tuple(sensors), tuple(weights))
+    recent, averages = weights[: len(kinds)].tolist(), weights[len(kinds) :].tolist()
+    average_weights = tuple(averages) if any(averages) else ()
+    return FeatureTable(tuple(kinds), tuple(sensors), tuple(recent), definition.history_steps, average_weights)
 
 
 def _kind_and_sensors(

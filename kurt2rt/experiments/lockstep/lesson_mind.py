@@ -32,9 +32,11 @@ class LessonMind:
         self.runtime = runtime
         self._robot, self._recent, self._store = robot, recent, store
         self._handler = runtime.handler
-        self._width = len(runtime.definition.features)
+        width, weights = len(runtime.definition.features), runtime.level.system.weights
+        self._values = len(weights) if weights[width:].any() else width
+        """Values of a situation that the robot compares."""
         self._conditions: dict[int, NDArray[np.float64]] = {}
-        """Weighted recent features of each RLA that was created."""
+        """Weighted features of each RLA that was created."""
         self._known = 0
         """Newest tick that was counted."""
         self._decided = 0
@@ -164,14 +166,14 @@ class LessonMind:
             self._robot.set_mode(mode)
 
     def _taught_rlas(self) -> TaughtRlas:
-        system, width = self.runtime.level.system, self._width
+        system, values = self.runtime.level.system, self._values
         rlas = [rla for rla in system.rlas if rla.behaviour == self._behaviour]
         if any(len(system.competitors(rla)) > 1 for rla in rlas):
             raise refused(self.runtime.task, "RLAs on one condition, among which a choice is drawn")
         for rla in rlas:
             if rla.rla_id not in self._conditions:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights
-                self._conditions[rla.rla_id] = weighted[:width]
+                self._conditions[rla.rla_id] = weighted[:values]
         return TaughtRlas(
             [rla.rla_id for rla in rlas],
             [self._conditions[rla.rla_id] for rla in rlas],

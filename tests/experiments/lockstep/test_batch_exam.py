@@ -30,11 +30,10 @@ def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequ
     ]
 
 
-def streets_task(name: str) -> TaskSettings:
-    """Return a task of the streets with a short lesson and exam."""
-    times = {"supervised_s": EXAM_S / 2, "corrections_s": EXAM_S}
-    changes = {f"teaching.{key}": str(seconds) for key, seconds in times.items()}
-    return load_task(name, changes={**changes, "exam.duration_s": str(EXAM_S)})
+def taught_shortly(name: str, *, plain: bool) -> TaskSettings:
+    """Return a task with a short lesson and exam."""
+    times = {"teaching.supervised_s": EXAM_S / 2, "teaching.corrections_s": EXAM_S, "exam.duration_s": EXAM_S}
+    return load_task(name, plain=plain, changes={key: str(seconds) for key, seconds in times.items()})
 
 
 def test_results_are_those_of_the_bus(tmp_path: Path) -> None:
@@ -68,13 +67,21 @@ def test_policy_in_streets_has_the_results_of_the_bus(name: str) -> None:
     assert examine_in_batch(STAGE, ROBOT, task, exams) == [exam_on_bus(task, exam) for exam in exams]
 
 
-@pytest.mark.parametrize(("name", "seed"), [("streets", 1), ("straight_on", 2)])
-def test_robot_taught_in_streets_has_the_results_of_the_bus(name: str, seed: int) -> None:
-    task = streets_task(name)
-    with batch_lesson(task, seed) as run:
+@pytest.mark.parametrize(
+    ("name", "plain", "worlds"),
+    [
+        ("streets", False, ("manhattan", "streets-5")),
+        ("straight_on", False, ("manhattan", "streets-5")),
+        ("wall_following", True, ("a", "b")),
+        ("streets", True, ("manhattan", "streets-5")),
+    ],
+)
+def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds: Sequence[str]) -> None:
+    task = taught_shortly(name, plain=plain)
+    with batch_lesson(task, 2) as run:
         assert run.drive_stretches()
         events = run.given().events
-    exams = [BatchExam(ExamSetup(world, seed), events) for world in ("manhattan", "streets-5")]
+    exams = [BatchExam(ExamSetup(world, 2), events) for world in worlds]
     results = examine_in_batch(STAGE, ROBOT, task, exams)
     for exam, result in zip(exams, results, strict=True):
         assert result is None or result == exam_on_bus(task, exam)
@@ -96,7 +103,6 @@ def test_robot_without_a_way_on_is_put_elsewhere_as_on_the_bus() -> None:
     [
         ("route", {}, False),
         ("errands", {}, True),
-        ("wall_following", {"learning.past_weight": "0.5"}, False),
         ("wall_following", {"learning.doubt.asks": "true", "learning.doubt.alone": "true"}, False),
     ],
 )

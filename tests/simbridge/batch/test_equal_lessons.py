@@ -15,10 +15,12 @@ BLIND_TEACHER = dict.fromkeys(("policy.front_m", "policy.edge_m", "policy.wary_m
 """Thresholds of a teacher who does not turn away in time."""
 
 
-def lesson_task(name: str, teacher: str, changes: Mapping[str, str] | None = None) -> TaskSettings:
+def lesson_task(
+    name: str, teacher: str, changes: Mapping[str, str] | None = None, *, plain: bool = False
+) -> TaskSettings:
     """Return a short lesson; a third of it without corrections."""
     times = {"teaching.supervised_s": f"{SECONDS / 3:.2f}", "teaching.corrections_s": f"{SECONDS * 2 / 3:.2f}"}
-    return taught_by(load_task(name, changes={**times, **(changes or {})}), load_teacher(teacher))
+    return taught_by(load_task(name, plain=plain, changes={**times, **(changes or {})}), load_teacher(teacher))
 
 
 def equal_lesson(task: TaskSettings, seed: int) -> GivenLesson:
@@ -32,6 +34,12 @@ def equal_lesson(task: TaskSettings, seed: int) -> GivenLesson:
 @pytest.mark.parametrize("name", TASKS)
 def test_lesson_is_equal_in_the_batch(name: str, teacher: str) -> None:
     assert equal_lesson(lesson_task(name, teacher), 7).events
+
+
+@pytest.mark.parametrize("teacher", ["superhuman", "ordinary"])
+@pytest.mark.parametrize("name", ["wall_following", "circle", "streets"])
+def test_lesson_of_the_plain_reading_is_equal_in_the_batch(name: str, teacher: str) -> None:
+    assert equal_lesson(lesson_task(name, teacher, plain=True), 7).events
 
 
 @pytest.mark.deep
