@@ -8,7 +8,7 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.experiments.study.provenance import settings_hash
-from tests.cli.helpers import CommandLine, unknown_name
+from tests.cli.helpers import CommandLine, results_in, unknown_name
 
 COMMAND = "kurt2rt paper --seeds 100 --task short.yaml --no-plain"
 
@@ -92,12 +92,6 @@ def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine
     assert [path.read_bytes() for path in results] == contents
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
     assert changed == [place == 3 for place in range(28)]
-
-
-def results_in(folder: str) -> dict[str, bytes]:
-    """Contents of all results but witnesses, by their path in the folder."""
-    paths = Path(folder, "results").rglob("*.json")
-    return {str(path.relative_to(folder)): path.read_bytes() for path in paths if "witnesses" not in path.parts}
 
 
 def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:

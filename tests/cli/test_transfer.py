@@ -38,7 +38,11 @@ def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) 
         told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
         assert told.exit_code == 0, told.err
     results = [
-        {path.name: path.read_bytes() for path in Path(loop, "results").rglob("*.json") if "witnesses" not in path.parts}
+        {
+            path.name: path.read_bytes()
+            for path in Path(loop, "results").rglob("*.json")
+            if "witnesses" not in path.parts
+        }
         for loop in ("batch", "bus")
     ]
     assert results[0] == results[1]

@@ -99,7 +99,7 @@ class Examiner:
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
         exam = self._exam(self.task.teaching.world, events, saved, None)
-        setup = replace(exam.setup, on_tick=lambda record, _metric: scoring.on_tick(record))
+        setup = replace(exam.setup, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
         # A batch has no record of each tick.
         await self._run([replace(exam, setup=setup)], DriveLoop.BUS)
         return tuple(scoring.judgements)

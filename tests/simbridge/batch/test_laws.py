@@ -44,15 +44,29 @@ def test_nearest_equals_the_match_to_the_last_bit(rows: int, seed: int, twice: b
     distances = exact_distances(conditions, situation)
     packed = np.zeros((rows, 40))
     packed[:, :36] = conditions[:, :36]
-    ahead = np.zeros(64)
+    ahead = np.zeros(128)
     ahead[:36] = situation[:36]
     guess = int(chance.integers(-1, rows))
     conditions_of = build_conditions(packed, np.array([0, rows]))
     assert nearest(0, rows, guess, conditions_of, ahead) == (int(distances.argmin()), float(distances.min()))
 
 
+@given(rows=st.integers(1, 200), seed=st.integers(0, 2**32 - 1))
+def test_nearest_with_averages_equals_the_match(rows: int, seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    conditions = np.zeros((rows, 72))
+    conditions[:, :36] = chance.integers(0, 1024, (rows, 36))
+    conditions[:, 36:] = chance.integers(0, 1_024_000, (rows, 36)) / 1000.0
+    situation = np.zeros(128)
+    situation[:36] = chance.integers(0, 1024, 36)
+    situation[36:72] = chance.integers(0, 1_024_000, 36) / 1000.0
+    distances = exact_distances(conditions, situation[:72])
+    found = nearest(0, rows, -1, build_conditions(conditions, np.array([0, rows])), situation)
+    assert found == (int(distances.argmin()), float(distances.min()))
+
+
 def test_nearest_of_no_condition_is_none() -> None:
-    assert nearest(3, 3, 3, build_conditions(np.zeros((3, 40)), np.array([0, 3])), np.zeros(64)) == (-1, math.inf)
+    assert nearest(3, 3, 3, build_conditions(np.zeros((3, 40)), np.array([0, 3])), np.zeros(128)) == (-1, math.inf)
 
 
 def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
