@@ -108,6 +108,9 @@ class MindLaw(NamedTuple):
     circle: circle.Thresholds
     eight: eight.Thresholds
     streets: streets.Thresholds
+    left_rays: Floats
+    """Rays of the sensors at the left side of a robot in streets (behaviors.policies.streets.Rays), (6, 4)."""
+    right_rays: Floats
     turns: Integers
     """Turn of each taught behaviour in streets (behaviors.policies.streets.turn_of)."""
 

@@ -50,11 +50,25 @@ def policy_answer(kind: int, behaviour: int, seen: Floats, law: MindLaw) -> int:
         turn, want = law.turns[behaviour], law.streets
         action = _turn_in_streets((seen[0], seen[1], seen[2]), left_side, right_side, turn, want)
         if action == KEEPS_MIDDLE:
-            to_left_m = _wall_away_m(left_side, want.left_rays, turn, want)
-            to_right_m = _wall_away_m(right_side, want.right_rays, turn, want)
+            to_left_m = _wall_away_m(left_side, _rays(law.left_rays), turn, want)
+            to_right_m = _wall_away_m(right_side, _rays(law.right_rays), turn, want)
             action = _keep_middle(left_side, right_side, to_left_m, to_right_m, want)
         return action
     return _drive_eight(front_m, _view_column(left_side, law.eight), _view_column(right_side, law.eight), law.eight)
+
+
+@compiled
+def _rays(rays: Floats) -> streets.Rays:
+    """Return the rays of one side's sensors (6, 4) as the policy takes them.
+
+    The table keeps them as an array, because each number of a tuple takes time to be passed to compiled code.
+    """
+    return _ray(rays, 0), _ray(rays, 1), _ray(rays, 2), _ray(rays, 3), _ray(rays, 4), _ray(rays, 5)
+
+
+@compiled
+def _ray(rays: Floats, i: int) -> streets.Ray:
+    return rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
 
 
 @compiled
