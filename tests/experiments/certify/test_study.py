@@ -146,6 +146,15 @@ def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_p
     assert certificate.on_bus == {20_000, 20_001, 20_002}
 
 
+@pytest.mark.parametrize(("runs", "witnesses"), [(1000, 9), (50, 3), (2, 2)])
+def test_witnesses_are_a_share_of_the_runs_without_a_break(
+    taught: Taught, tmp_path: Path, runs: int, witnesses: int
+) -> None:
+    plan = plan_in(tmp_path, taught, EXTENT._replace(first=0, runs=runs, broken=BrokenShare(0.2, ("s3",))))
+    assert len(plan.witnesses) == witnesses
+    assert {job.witness for job in plan.witnesses} <= {run for run in plan.runs if not run.broken}
+
+
 def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path) -> None:
     from kurt2rt.knowledge.journal.loading import open_knowledge
 
