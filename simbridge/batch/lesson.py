@@ -11,7 +11,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick, put_down
-from simbridge.batch.minds import LANES
+from simbridge.batch.matching import LANES
 from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
 from simbridge.batch.tables import build_features
