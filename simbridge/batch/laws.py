@@ -152,6 +152,8 @@ class Conditions(NamedTuple):
     """Rows of the same table, the nearest first, which is the row itself; (rows, neighbours)."""
     apart: Floats
     """Their distances from the row in counts, (rows, neighbours); infinite beyond the last one."""
+    is_whole: bool
+    """True if no sum of squared differences is rounded, as where all values are multiples of half a count."""
 
 
 class Knowledge(NamedTuple):
