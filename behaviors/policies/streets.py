@@ -25,8 +25,6 @@ Side = tuple[float, float, float, float, float, float]
 Ray = tuple[float, float, float, float]
 """Sensor's place ahead and towards its side, in m, and the same of its direction, dimensionless."""
 Rays = tuple[Ray, Ray, Ray, Ray, Ray, Ray]
-_NO_RAY: Ray = (0.0, 0.0, 0.0, 0.0)
-_NO_RAYS: Rays = (_NO_RAY, _NO_RAY, _NO_RAY, _NO_RAY, _NO_RAY, _NO_RAY)
 _FIRST_BESIDE, _BEHIND_BESIDE, _SENSORS = 1, 5, 6
 
 ACTIONS = (
@@ -88,8 +86,6 @@ class Thresholds(NamedTuple):
     """Infinite where every line is a wall."""
     half_across: float
     """Half the share of a front edge sensor's distance that lies across the robot's course."""
-    left_rays: Rays = _NO_RAYS
-    right_rays: Rays = _NO_RAYS
 
 
 def wall_away_m(side: Side, rays: Rays, turn: int, want: Thresholds) -> float:
@@ -185,9 +181,9 @@ class Streets:
             askew_m=settings.askew_m or 0.0,
             straight_m=settings.straight_m or math.inf,
             half_across=0.5 * math.sin(math.radians(edge.heading_deg)),
-            left_rays=_rays(infrared, LEFT_WITH_EDGES, 1.0),
-            right_rays=_rays(infrared, RIGHT_WITH_EDGES, -1.0),
         )
+        self.left_rays = _rays(infrared, LEFT_WITH_EDGES, 1.0)
+        self.right_rays = _rays(infrared, RIGHT_WITH_EDGES, -1.0)
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
         """Return the name of the action for the counts of all sensors and the selected taught behaviour."""
@@ -196,8 +192,8 @@ class Streets:
         left, right = _side(self._left(infrared_counts)), _side(self._right(infrared_counts))
         action = turn_at_once((front_left, ahead, front_right), left, right, turn, want)
         if action == KEEPS_MIDDLE:
-            to_left_m = wall_away_m(left, want.left_rays, turn, want)
-            action = keep_middle(left, right, to_left_m, wall_away_m(right, want.right_rays, turn, want), want)
+            to_left_m = wall_away_m(left, self.left_rays, turn, want)
+            action = keep_middle(left, right, to_left_m, wall_away_m(right, self.right_rays, turn, want), want)
         return ACTIONS[action]
 
 

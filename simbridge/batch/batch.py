@@ -85,6 +85,9 @@ class RobotBatch:
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
+        names = (("slip_noise", "slip_used"), ("noise", "noise_used"))
+        self._ahead = [(np.asarray(self._robots[numbers]), np.asarray(self._robots[used])) for numbers, used in names]
+        """Numbers that lie ahead of all robots, and how many are used of them: of slip, of the sensors."""
         self._longest = TRACED_TICKS if any(isinstance(mind, CommandedMind) for mind in minds) else STRETCH
 
     def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
@@ -233,12 +236,13 @@ class RobotBatch:
 
     def _draw_noise(self, robot: int, ticks: int) -> None:
         """Draw random numbers, after those that are left, unless enough for so many ticks lie ahead."""
-        record, drawn = self._robots[robot], self._drawn[robot]
-        for place, (name, stream) in enumerate(zip(("slip", "noise"), self._streams[robot], strict=True)):
-            numbers, used = record["slip_noise" if name == "slip" else "noise"], int(record[f"{name}_used"])
-            if (len(numbers) - used) * STRETCH >= len(numbers) * ticks:
+        drawn = self._drawn[robot]
+        for place, (stream, (ahead, used_of)) in enumerate(zip(self._streams[robot], self._ahead, strict=True)):
+            numbers, used = ahead[robot], int(used_of[robot])
+            left = len(numbers) - used
+            if left * STRETCH >= len(numbers) * ticks:
                 continue
-            numbers[: len(numbers) - used] = numbers[used:].copy()
-            numbers[len(numbers) - used :] = stream.normals(used)
-            record[f"{name}_used"] = 0
+            numbers[:left] = numbers[used:]
+            stream.fill(numbers[left:])
+            used_of[robot] = 0
             drawn[place] += used

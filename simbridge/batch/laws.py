@@ -108,6 +108,9 @@ class MindLaw(NamedTuple):
     circle: circle.Thresholds
     eight: eight.Thresholds
     streets: streets.Thresholds
+    left_rays: Floats
+    """Rays of the sensors at the left side of a robot in streets (behaviors.policies.streets.Rays), (6, 4)."""
+    right_rays: Floats
     turns: Integers
     """Turn of each taught behaviour in streets (behaviors.policies.streets.turn_of)."""
 
@@ -149,6 +152,8 @@ class Conditions(NamedTuple):
     """Rows of the same table, the nearest first, which is the row itself; (rows, neighbours)."""
     apart: Floats
     """Their distances from the row in counts, (rows, neighbours); infinite beyond the last one."""
+    is_whole: bool
+    """True if no sum of squared differences is rounded, as where all values are multiples of half a count."""
 
 
 class Knowledge(NamedTuple):

@@ -1,4 +1,4 @@
-"""Decisions in a batch: the policies' laws, the exact match, and the minimum time of a held action."""
+"""Decisions in a batch: the policies' laws, the nearest RLA, and the minimum time of a held action."""
 
 import math
 
@@ -7,17 +7,13 @@ from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
-from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge, MindLaw
+from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
+from simbridge.batch.matching import nearest_rla
 from simbridge.batch.record import Robot
 
 KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED = range(7)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
-LANES = 8
-"""Partial sums of numpy's pairwise sum: the value at place i belongs to sum i % 8."""
-
-_SLACK = 1.000001
-"""Factor beyond which a sum of some squares is larger than another sum of all, whatever was rounded."""
 _steer = compiled(steer)
 _follow_wall = compiled(wall_following.choose_action)
 _flee = compiled(fleeing.choose_action)
@@ -50,11 +46,25 @@ def policy_answer(kind: int, behaviour: int, seen: Floats, law: MindLaw) -> int:
         turn, want = law.turns[behaviour], law.streets
         action = _turn_in_streets((seen[0], seen[1], seen[2]), left_side, right_side, turn, want)
         if action == KEEPS_MIDDLE:
-            to_left_m = _wall_away_m(left_side, want.left_rays, turn, want)
-            to_right_m = _wall_away_m(right_side, want.right_rays, turn, want)
+            to_left_m = _wall_away_m(left_side, _rays(law.left_rays), turn, want)
+            to_right_m = _wall_away_m(right_side, _rays(law.right_rays), turn, want)
             action = _keep_middle(left_side, right_side, to_left_m, to_right_m, want)
         return action
     return _drive_eight(front_m, _view_column(left_side, law.eight), _view_column(right_side, law.eight), law.eight)
+
+
+@compiled
+def _rays(rays: Floats) -> streets.Rays:
+    """Return the rays of one side's sensors (6, 4) as the policy takes them.
+
+    The table keeps them as an array, because each number of a tuple takes time to be passed to compiled code.
+    """
+    return _ray(rays, 0), _ray(rays, 1), _ray(rays, 2), _ray(rays, 3), _ray(rays, 4), _ray(rays, 5)
+
+
+@compiled
+def _ray(rays: Floats, i: int) -> streets.Ray:
+    return rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
 
 
 @compiled
@@ -102,97 +112,6 @@ def feature_of(counts: Integers, features: Features, i: int) -> int:
             other = counts[features.sensors[i, k]]
             value = max(value, other) if kind == MAXIMUM else min(value, other)
     return int(value)
-
-
-@compiled
-def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
-    """Return the sum of squared differences in counts squared, added as numpy's pairwise sum of up to 128 values.
-
-    `row`: of the condition in `conditions`, (rows, values); values are a multiple of eight. `situation`: (128,).
-    """
-    a = b = c = d = e = f = g = h = 0.0
-    for i in range(0, conditions.shape[1], LANES):
-        a += (conditions[row, i] - situation[i]) * (conditions[row, i] - situation[i])
-        b += (conditions[row, i + 1] - situation[i + 1]) * (conditions[row, i + 1] - situation[i + 1])
-        c += (conditions[row, i + 2] - situation[i + 2]) * (conditions[row, i + 2] - situation[i + 2])
-        d += (conditions[row, i + 3] - situation[i + 3]) * (conditions[row, i + 3] - situation[i + 3])
-        e += (conditions[row, i + 4] - situation[i + 4]) * (conditions[row, i + 4] - situation[i + 4])
-        f += (conditions[row, i + 5] - situation[i + 5]) * (conditions[row, i + 5] - situation[i + 5])
-        g += (conditions[row, i + 6] - situation[i + 6]) * (conditions[row, i + 6] - situation[i + 6])
-        h += (conditions[row, i + 7] - situation[i + 7]) * (conditions[row, i + 7] - situation[i + 7])
-    return ((a + b) + (c + d)) + ((e + f) + (g + h))
-
-
-@compiled
-def _least_square(row: int, conditions: Floats, situation: Floats) -> float:
-    """Return a lower bound of `exact_square`, but for rounding: of the first eight values."""
-    a = (conditions[row, 0] - situation[0]) * (conditions[row, 0] - situation[0])
-    b = (conditions[row, 1] - situation[1]) * (conditions[row, 1] - situation[1])
-    c = (conditions[row, 2] - situation[2]) * (conditions[row, 2] - situation[2])
-    d = (conditions[row, 3] - situation[3]) * (conditions[row, 3] - situation[3])
-    e = (conditions[row, 4] - situation[4]) * (conditions[row, 4] - situation[4])
-    f = (conditions[row, 5] - situation[5]) * (conditions[row, 5] - situation[5])
-    g = (conditions[row, 6] - situation[6]) * (conditions[row, 6] - situation[6])
-    h = (conditions[row, 7] - situation[7]) * (conditions[row, 7] - situation[7])
-    return float(((a + b) + (c + d)) + ((e + f) + (g + h)))
-
-
-@compiled
-def nearest(first: int, end: int, guess: int, conditions: Conditions, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the condition nearest to a situation among rows `first` to `end`; -1 without rows.
-
-    `guess`: a row that is probably near, which spares most sums.
-
-    `situation`: (128,). Of equally near conditions the older one wins.
-    """
-    if first == end:
-        return -1, math.inf
-    if not first <= guess < end:
-        guess = first
-    square = exact_square(guess, conditions.values, situation)
-    best, least, bound = guess, math.sqrt(square), _SLACK * square
-    guess_away = least
-    for k in range(1, min(conditions.neighbours.shape[1], end - first)):
-        # By the triangle inequality this row and all further ones are farther away than the best.
-        if conditions.apart[guess, k] > _SLACK * (guess_away + least):
-            return best, least
-        row = conditions.neighbours[guess, k]
-        if _least_square(row, conditions.values, situation) > bound:
-            continue
-        square = exact_square(row, conditions.values, situation)
-        distance = math.sqrt(square)
-        if distance < least or (distance == least and row < best):
-            best, least = row, distance
-            bound = min(bound, _SLACK * square)
-    if conditions.neighbours.shape[1] < end - first:
-        return _nearest_of_all(first, end, bound, conditions.values, situation)
-    return best, least
-
-
-@compiled
-def scan_nearest(end: int, guess: int, values: Floats, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the nearest condition among the rows up to `end`; -1 and infinity without rows.
-
-    For conditions that change too often for a table of their neighbours. Else as `nearest`; `values`: (rows, values).
-    """
-    bound = _SLACK * exact_square(guess, values, situation) if 0 <= guess < end else math.inf
-    return _nearest_of_all(0, end, bound, values, situation)
-
-
-@compiled
-def _nearest_of_all(first: int, end: int, bound: float, values: Floats, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the nearest condition by comparing all rows, (rows, values), in counts.
-
-    `bound`: square of a distance in counts squared, within which there is a condition. `situation`: (128,).
-    """
-    best, least = -1, math.inf
-    for row in range(first, end):
-        if _least_square(row, values, situation) > bound:
-            continue
-        distance = math.sqrt(exact_square(row, values, situation))
-        if distance < least:
-            best, least = row, distance
-    return best, least
 
 
 @compiled
@@ -257,8 +176,7 @@ def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     """Let the nearest RLA answer, or stand outside its radius."""
     table = robot.knowledge + robot.behaviour
     first, end = knowledge.first[table], knowledge.first[table + 1]
-    row, distance = nearest(first, end, robot.nearest, knowledge.conditions, robot.situation)
-    robot.nearest = row
+    row, distance = nearest_rla(robot, first, end, knowledge.conditions)
     robot.track_distance[k] = distance
     if row < 0 or not distance <= knowledge.radius[row]:
         robot.action = robot.rla = -1

@@ -24,6 +24,8 @@ MOST_AREAS = 64
 """Most areas of a world whose borders end a stretch."""
 SEEN = 15
 """Sensors that policies look at."""
+CANDIDATES = 16
+"""RLAs that a search for the nearest one keeps."""
 MOST_KEPT = 256
 """Most positions that the rule of being stuck keeps."""
 BOX_STATE = len(BodyState._fields)
@@ -195,6 +197,15 @@ class Robot:
     """Distances in m that a policy looks at."""
     situation: Annotated[Floats, (MOST_VALUES,)]
     """Weighted situation."""
+    searched: Annotated[Floats, (1, MOST_VALUES)]
+    """Weighted situation of the newest search for the nearest RLA (simbridge.batch.matching)."""
+    candidates: int
+    """RLAs that the search kept; 0: there was none."""
+    candidate_row: Annotated[Integers, (CANDIDATES,)]
+    candidate_away: Annotated[Floats, (CANDIDATES,)]
+    """Their distances from it in counts, ascending."""
+    others_away: float
+    """Distance from it in counts that no other RLA is nearer than."""
 
     # Counts of the whole drive (hal.batch.Tally)
     unknown_ticks: int

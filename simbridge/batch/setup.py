@@ -143,6 +143,8 @@ def _mind_law(robot: RobotSettings, minds: Sequence[Mind], settings: DriveSettin
         circle=_thresholds(policy, circle.Thresholds),
         eight=_thresholds(policy, eight.Thresholds),
         streets=_thresholds(policy, streets.Thresholds),
+        left_rays=np.array(policy.left_rays) if isinstance(policy, streets.Streets) else np.zeros((6, 4)),
+        right_rays=np.array(policy.right_rays) if isinstance(policy, streets.Streets) else np.zeros((6, 4)),
         turns=np.array([streets.turn_of(name) for name in settings.behaviours], dtype=np.int64),
     )
 
@@ -167,8 +169,7 @@ def _action_tables(actions: Sequence[Action]) -> dict[str, Any]:
 def _thresholds(policy: object, kind: type[_ThresholdsT]) -> _ThresholdsT:
     """Return the thresholds of the policy that drives; zeros for another policy."""
     found = getattr(policy, "thresholds", None)
-    nothing: dict[str, Any] = {name: 0.0 for name in kind._fields if name not in kind._field_defaults}
-    return found if isinstance(found, kind) else kind(**nothing)
+    return found if isinstance(found, kind) else kind(*[0.0] * len(kind._fields))
 
 
 def build_robots(

@@ -12,15 +12,19 @@ from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
 from hal.batch import CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
+from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import RobotSettings, SpeedMode
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
-from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, LANES, STREETS, WALL_FOLLOWING
+from simbridge.batch.matching import LANES
+from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
 from simbridge.batch.record import MOST_KEPT, MOST_VALUES
 from simbridge.simulated_robot import SimulatedRobot
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}
 _MOST_NEIGHBOURS = 128
 """Neighbours of a condition that are kept, so that thousands of RLAs need no square of their number."""
+_PARTS, _MOST_COUNTS = 64, 2**14
+"""Numbers of this part of a count, up to so many counts: 2 * (14 + 1 + 6) bits for a square, and 7 for the sum."""
 _NO_FEATURES = FeatureTable((), (), (), 1)
 
 
@@ -123,9 +127,10 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
         conditions[start:end, :values] = np.array(mind.conditions).reshape(end - start, values)
         answer[start:end] = np.array(mind.answers, dtype=np.int64) + start
     place = {name: index for index, name in enumerate(actions)}
+    steps = (*features.weights, *(weight / features.average_steps for weight in features.average_weights))
     knowledge = Knowledge(
         first=first,
-        conditions=build_conditions(conditions, first),
+        conditions=build_conditions(conditions, first, steps),
         radius=np.array([radius for mind in known for radius in mind.radii], dtype=np.float64),
         answer=answer,
         action=np.array([place[name] for mind in known for name in mind.actions], dtype=np.int64),
@@ -134,12 +139,13 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
     return knowledge, of
 
 
-def build_conditions(values: Floats, first: Integers) -> Conditions:
+def build_conditions(values: Floats, first: Integers, steps: Sequence[float]) -> Conditions:
     """Return conditions with their neighbours.
 
     Args:
         values: weighted conditions in counts, (rows, values).
         first: first row of each table, and the end of the last one, (tables + 1,).
+        steps: in counts by which each value may change; those of averages are no whole parts.
     """
     most = min(_MOST_NEIGHBOURS, int(np.diff(first).max(initial=0)))
     neighbours = np.zeros((len(values), most), dtype=np.int64)
@@ -151,7 +157,13 @@ def build_conditions(values: Floats, first: Integers) -> Conditions:
             order = np.argsort(away, kind="stable")[:most]
             neighbours[row, : len(order)] = order + begin
             apart[row, : len(order)] = away[order]
-    return Conditions(values, neighbours, apart)
+    changes = np.array(steps)
+    return Conditions(values, neighbours, apart, all(map(_is_whole, (values, changes, changes * HIGHEST_COUNTS))))
+
+
+def _is_whole(numbers: Floats) -> bool:
+    """Return whether no sum of 128 squares of differences of such numbers, in counts, needs more than 53 bits."""
+    return bool((numbers * _PARTS == np.rint(numbers * _PARTS)).all() and (abs(numbers) <= _MOST_COUNTS).all())
 
 
 def build_features(table: FeatureTable) -> Features:

@@ -9,7 +9,8 @@ from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.drive import STAYS, begin_tick, sense_tick
 from simbridge.batch.laws import Features, Floats, Integers, Laws, World
-from simbridge.batch.minds import feature_of, hold_or_change, right_action, scan_nearest, step_action
+from simbridge.batch.matching import scan_nearest
+from simbridge.batch.minds import feature_of, hold_or_change, right_action, step_action
 from simbridge.batch.record import Robot, Robots
 from simbridge.batch.safety import drive_guarded
 
