@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, results_in
 
 SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
@@ -37,13 +37,5 @@ def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) 
     for loop in ("batch", "bus"):
         told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
         assert told.exit_code == 0, told.err
-    results = [
-        {
-            path.name: path.read_bytes()
-            for path in Path(loop, "results").rglob("*.json")
-            if "witnesses" not in path.parts
-        }
-        for loop in ("batch", "bus")
-    ]
-    assert results[0] == results[1]
+    assert results_in("batch") == results_in("bus")
     assert len(list(Path("batch/results/witnesses").rglob("*.json"))) == 2
