@@ -72,6 +72,9 @@ def paper(options: _Options) -> None:
     these has changed, what is in the folder is refused and not mixed in: give a
     new folder. Other seeds and other tasks may share a folder.
 
+    Compiled loops drive the tasks that they know, if the extra fast is installed
+    and the study is long, with equal results (--lessons, --exams).
+
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
     robots and worlds are others. With one of those, or with fewer than 20
     robots, nothing is judged. Which generated worlds a robot drives in follows
