@@ -19,7 +19,7 @@ _MARGIN = 100.0
 def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
     """Return the sum of squared differences in counts squared, added as numpy's pairwise sum of up to 128 values.
 
-    `row`: of the condition in `conditions`, (rows, values); values are a multiple of eight. `situation`: (64,).
+    `row`: of the condition in `conditions`, (rows, values); values are a multiple of eight. `situation`: (128,).
     """
     a = b = c = d = e = f = g = h = 0.0
     for i in range(0, conditions.shape[1], LANES):
@@ -38,7 +38,7 @@ def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
 def sum_of_squares(row: int, values: int, conditions: Floats, situation: Floats) -> float:
     """Return the sum of squared differences of the first `values` values in counts squared, rounded in any way.
 
-    `row`: of the condition in `conditions`, (rows, values). `situation`: (64,).
+    `row`: of the condition in `conditions`, (rows, values). `situation`: (128,).
     """
     square = 0.0
     for i in range(values):
@@ -48,7 +48,7 @@ def sum_of_squares(row: int, values: int, conditions: Floats, situation: Floats)
 
 @compiled
 def _away(row: int, conditions: Conditions, situation: Floats) -> float:
-    """Return the distance of a condition from a situation, (64,), in counts, to the last bit of the match."""
+    """Return the distance of a condition from a situation, (128,), in counts, to the last bit of the match."""
     if conditions.is_whole:  # nothing is rounded, so the order of the sum does not matter
         return math.sqrt(sum_of_squares(row, conditions.values.shape[1], conditions.values, situation))
     return math.sqrt(exact_square(row, conditions.values, situation))
@@ -173,7 +173,7 @@ def scan_nearest(end: int, guess: int, values: Floats, situation: Floats) -> tup
 def _nearest_of_all(first: int, end: int, bound: float, values: Floats, situation: Floats) -> tuple[int, float]:
     """Return row and distance of the nearest condition by comparing all rows, (rows, values), in counts.
 
-    `bound`: square of a distance in counts squared, within which there is a condition. `situation`: (64,).
+    `bound`: square of a distance in counts squared, within which there is a condition. `situation`: (128,).
     """
     best, least = -1, math.inf
     for row in range(first, end):

@@ -3,14 +3,15 @@
 import math
 
 from behaviors.keep_distance import KeepDistanceNumbers, steer
-from behaviors.policies import circle, eight, fleeing, wall_following
+from behaviors.policies import circle, eight, fleeing, streets, wall_following
+from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
-from simbridge.batch.laws import Features, Floats, Integers, Knowledge, MindLaw
+from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
 from simbridge.batch.matching import nearest_rla
 from simbridge.batch.record import Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED = range(7)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
 _steer = compiled(steer)
@@ -19,11 +20,14 @@ _flee = compiled(fleeing.choose_action)
 _circle = compiled(circle.choose_action)
 _view_column = compiled(eight.view_column)
 _drive_eight = compiled(eight.choose_action)
+_turn_in_streets = compiled(streets.turn_at_once)
+_wall_away_m = compiled(streets.wall_away_m)
+_keep_middle = compiled(streets.keep_middle)
 
 
 @compiled
-def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
-    """Return the index of a policy's answer among its actions.
+def policy_answer(kind: int, behaviour: int, seen: Floats, law: MindLaw) -> int:
+    """Return the index of a policy's answer among its actions, for a taught behaviour.
 
     `seen`: distances in m, (15,), of front (3), front edges (2), left (4), right (4), rear edges (2), in the order of
     `behaviors.policies.distances`.
@@ -36,16 +40,62 @@ def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
         return _flee(front_m, seen[3], seen[4], law.fleeing)
     if kind == CIRCLE:
         return _circle(left, law.circle)
-    left_column = _view_column((seen[3], seen[5], seen[6], seen[7], seen[8], seen[13]), law.eight)
-    right_column = _view_column((seen[4], seen[9], seen[10], seen[11], seen[12], seen[14]), law.eight)
-    return _drive_eight(front_m, left_column, right_column, law.eight)
+    left_side = (seen[3], seen[5], seen[6], seen[7], seen[8], seen[13])
+    right_side = (seen[4], seen[9], seen[10], seen[11], seen[12], seen[14])
+    if kind == STREETS:
+        turn, want = law.turns[behaviour], law.streets
+        action = _turn_in_streets((seen[0], seen[1], seen[2]), left_side, right_side, turn, want)
+        if action == KEEPS_MIDDLE:
+            to_left_m = _wall_away_m(left_side, _rays(law.left_rays), turn, want)
+            to_right_m = _wall_away_m(right_side, _rays(law.right_rays), turn, want)
+            action = _keep_middle(left_side, right_side, to_left_m, to_right_m, want)
+        return action
+    return _drive_eight(front_m, _view_column(left_side, law.eight), _view_column(right_side, law.eight), law.eight)
 
 
 @compiled
-def fill_features(counts: Integers, features: Features, situation: Floats) -> None:
-    """Write the weighted recent features of a robot's counts (sensors,) to `situation`, (64,), in counts."""
+def _rays(rays: Floats) -> streets.Rays:
+    """Return the rays of one side's sensors (6, 4) as the policy takes them.
+
+    The table keeps them as an array, because each number of a tuple takes time to be passed to compiled code.
+    """
+    return _ray(rays, 0), _ray(rays, 1), _ray(rays, 2), _ray(rays, 3), _ray(rays, 4), _ray(rays, 5)
+
+
+@compiled
+def _ray(rays: Floats, i: int) -> streets.Ray:
+    return rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
+
+
+@compiled
+def perceive(robot: Robot, features: Features, averages: Averages) -> None:
+    """Write the weighted situation of a robot, in counts; call it once in each tick."""
+    width = features.kind.shape[0]
+    for i in range(width):
+        robot.situation[i] = feature_of(robot.counts, features, i) * features.weights[i]
+    if features.average_weights.shape[0] > 0:
+        _add_step(robot, features, averages)
+        for i in range(width):
+            average = averages.sums[robot.number, i] / features.average_steps
+            robot.situation[width + i] = average * features.average_weights[i]
+
+
+@compiled
+def _add_step(robot: Robot, features: Features, averages: Averages) -> None:
+    """Add a step to the averages of a robot, if it moves; its first tick stands for all earlier ones."""
+    r, steps = robot.number, features.average_steps
+    at, moves = averages.newest[r], robot.action >= 0
     for i in range(features.kind.shape[0]):
-        situation[i] = feature_of(counts, features, i) * features.weights[i]
+        value = feature_of(robot.counts, features, i)
+        if robot.tick == 1:
+            averages.sums[r, i] = steps * value
+            for step in range(steps):
+                averages.ring[r, step, i] = value
+        if moves:
+            averages.sums[r, i] += value - averages.ring[r, at, i]
+            averages.ring[r, at, i] = value
+    if moves:
+        averages.newest[r] = (at + 1) % steps
 
 
 @compiled
@@ -98,10 +148,11 @@ def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
 
 
 @compiled
-def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[float, float]:
+def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge, averages: Averages) -> tuple[float, float]:
     """Return the wheel speeds in m/s that a robot decides in tick `k` of the stretch, and enter the decision."""
     robot.track_distance[k] = math.inf
     if robot.kind == KNOWLEDGE:
+        perceive(robot, knowledge.features, averages)
         _match(robot, k, law, knowledge)
     elif robot.kind == COMMANDED:
         if robot.command >= 0:
@@ -117,14 +168,14 @@ def right_action(robot: Robot, law: MindLaw) -> int:
     """Return the index of the action that the policy takes for right."""
     for i in range(law.seen.shape[0]):
         robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
-    return int(law.actions[policy_answer(robot.kind, robot.seen, law)])
+    return int(law.actions[policy_answer(robot.kind, robot.behaviour, robot.seen, law)])
 
 
 @compiled
 def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     """Let the nearest RLA answer, or stand outside its radius."""
-    fill_features(robot.counts, knowledge.features, robot.situation)
-    first, end = knowledge.first[robot.knowledge], knowledge.first[robot.knowledge + 1]
+    table = robot.knowledge + robot.behaviour
+    first, end = knowledge.first[table], knowledge.first[table + 1]
     row, distance = nearest_rla(robot, first, end, knowledge.conditions)
     robot.track_distance[k] = distance
     if row < 0 or not distance <= knowledge.radius[row]:

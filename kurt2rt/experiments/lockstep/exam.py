@@ -101,6 +101,8 @@ class ExamSetup:
     """False: a stuck robot is rescued and drives on, so that collisions are counted over the whole time."""
     broken: SensorBreak | None = None
     """Sensor that breaks; None: all sensors work."""
+    appraises: bool = False
+    """True if `on_tick` reads the features of the critic."""
     on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
     """Called in every tick with the record and the updated metric."""
 
@@ -158,7 +160,7 @@ class ExamRun(Episode):
                 round(task.learning.minimum_action_s / settings.can.cycle_s),
                 behaviour,
             )
-        options = RuntimeOptions(level_override=level, active_behaviour=behaviour)
+        options = RuntimeOptions(level_override=level, active_behaviour=behaviour, appraises=setup.appraises)
         runtime = build_exam_runtime(simulation, settings, task, events, setup, options)
         # Learner and teacher get the same random choices; their drives diverge at the first different action.
         chance = random.Random(setup.chance_seed)

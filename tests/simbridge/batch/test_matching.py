@@ -13,7 +13,7 @@ from simbridge.batch.matching import nearest_rla, scan_nearest
 from simbridge.batch.record import CANDIDATES, Robots, Sizes, empty_robots
 from simbridge.batch.tables import build_conditions
 
-FEATURES = 36
+FEATURES, AVERAGE_STEPS = 36, 1000
 HALVES, TENTHS = (0.0, 0.5, 1.0, 1.5, 2.0), (0.0, 0.1, 0.7, 1.3)
 
 
@@ -86,5 +86,43 @@ def test_conditions_are_whole_if_no_sum_is_rounded(scale: float, weight: float, 
 
 
 def test_conditions_with_averages_are_not_whole() -> None:
-    packed = np.ones((2, 40))
-    assert not build_conditions(packed, np.array([0, 2]), [1.0] * FEATURES).is_whole
+    steps = [1.0] * FEATURES + [1.0 / AVERAGE_STEPS] * FEATURES
+    assert not build_conditions(np.ones((2, 2 * FEATURES)), np.array([0, 2]), steps).is_whole
+
+
+@given(rows=st.integers(1, 200), seed=st.integers(0, 2**32 - 1), most_step=st.sampled_from([3, 1024]))
+def test_nearest_with_averages_is_that_of_the_match(rows: int, seed: int, most_step: int) -> None:
+    chance = np.random.default_rng(seed)
+    counts, sums = chance.integers(0, 1024, (rows, FEATURES)), chance.integers(0, 1_024_000, (rows, FEATURES))
+    values: Floats = np.concatenate((counts, sums / AVERAGE_STEPS), axis=1)
+    steps = [1.0] * FEATURES + [1.0 / AVERAGE_STEPS] * FEATURES
+    conditions, robots = build_conditions(values, np.array([0, rows]), steps), one_robot()
+    present, past = chance.integers(0, 1024, FEATURES), chance.integers(0, 1_024_000, FEATURES)
+    for _ in range(8):
+        present = np.clip(present + chance.integers(-most_step, most_step + 1, FEATURES), 0, 1023)
+        past += chance.integers(-most_step, most_step + 1, FEATURES)
+        situation = np.concatenate((present, past / AVERAGE_STEPS))
+        robots["situation"][0, : 2 * FEATURES] = situation
+        distances = exact_distances(values, situation)
+        assert nearest_rla(robots[0], 0, rows, conditions) == (int(distances.argmin()), float(distances.min()))
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+def test_nearest_is_of_the_table_of_the_wanted_behaviour(seed: int) -> None:
+    chance, weights, robots = np.random.default_rng(seed), np.ones(FEATURES), one_robot()
+    first = np.array([0, 20, 20, 50])
+    values = chance.integers(0, 1024, (50, FEATURES)).astype(np.float64)
+    packed = np.zeros((50, 40))
+    packed[:, :FEATURES] = values
+    conditions = build_conditions(packed, first, weights.tolist())
+    counts = chance.integers(0, 1024, FEATURES)
+    for table in chance.integers(0, 3, 30).tolist():
+        counts = np.clip(counts + chance.integers(-9, 10, FEATURES), 0, 1023)
+        robots["situation"][0, :FEATURES] = counts
+        begin, end = int(first[table]), int(first[table + 1])
+        found = nearest_rla(robots[0], begin, end, conditions)
+        if begin == end:
+            assert found == (-1, math.inf)
+            continue
+        row, distance = matched(values[begin:end], counts.astype(np.float64))
+        assert found == (begin + row, distance)
