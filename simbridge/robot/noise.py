@@ -1,5 +1,7 @@
 """Random numbers of the simulation, drawn in blocks because single draws cost 1 µs each."""
 
+import copy
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -20,6 +22,12 @@ class Noise:
         self._fractions: list[float] = []
         self.drawn = 0
         """Numbers drawn so far; with the seed the whole state of the stream."""
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Noise":
+        # Numbers that lie ahead are replaced and never changed, so copies share them; copying each took 0.5 ms.
+        twin = copy.copy(self)
+        twin._generator, twin._fractions = copy.deepcopy(self._generator, memo), self._fractions.copy()
+        return twin
 
     def normal(self) -> float:
         """Return the next standard normal number, dimensionless."""
