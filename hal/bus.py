@@ -1,13 +1,14 @@
 """CAN bus: opening, draining without waiting, and the two ports through which frames are sent."""
 
 import contextlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import can
 
 from hal.can_interface import CanInterface
 from hal.errors import UserError
+from hal.frame import Frame
 from hal.in_process_bus import InProcessBus
 from hal.shared_bus import SharedBus
 from hal.socketcan_bus import SocketCanBus
@@ -43,7 +44,10 @@ class CanBus:
         self.tap: Tap | None = None
         """Observer of all frames, also after `reopen`; None for no observer."""
         self._open_can_interface = open_interface
-        self._can_interface: CanInterface | None = open_interface(name)
+        self._can_interface: CanInterface | None = None
+        self._in_process: InProcessBus | None = None
+        """The interface, if it takes and gives many frames in one call; a subclass may want to see each frame."""
+        self._connect(open_interface(name))
         self._filter_ids: frozenset[int] | None = None
         self._control_taken = False
         # Two counters, because each has one writer: the watchdog's thread may send while the loop drains.
@@ -75,25 +79,16 @@ class CanBus:
         return self._usable().now_s()
 
     def drain(self) -> list[can.Message]:
-        """Return the waiting frames of other senders, oldest first, without blocking. Raises BusError."""
+        """Return the waiting frames of other senders, oldest first, without blocking. Raises BusError.
+
+        Their sender may keep them, so they must not change.
+        """
         interface = self._usable()
-        messages: list[can.Message] = []
         try:
-            for _ in range(_DRAIN_FRAMES):
-                message = interface.recv(0)
-                if message is None:
-                    break
-                if message.is_rx:
-                    messages.append(message)
-                    if message.is_error_frame and message.arbitration_id & _CONTROLLER_RESET:
-                        self._carried_controls = self._sent_controls
-                        self._forgotten = False
-                elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
-                    self._note_carried(message)
-            if interface.overruns != self._overruns:
-                self._overruns = interface.overruns
-                self._carried_controls = self._sent_controls  # their confirmations may be among the lost
-                self._forgotten = False
+            if self._in_process is not None:
+                messages = self._in_process.recv_all(_DRAIN_FRAMES)  # an end that confirms no frames and loses none
+            else:
+                messages = self._receive(interface)
         except (can.CanError, OSError, ValueError) as error:
             raise BusError(
                 f"receiving failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power"
@@ -125,16 +120,42 @@ class CanBus:
         except BusError:
             _close(interface)
             raise
-        self._can_interface = interface
+        self._connect(interface)
 
     def shutdown(self) -> None:
         """Close the bus; may be called twice."""
-        interface, self._can_interface = self._can_interface, None
+        interface = self._can_interface
+        self._connect(None)
         self._carried_controls = self._sent_controls
         self._forgotten = False
         self._overruns = 0
         if interface is not None:
             _close(interface)
+
+    def _connect(self, interface: CanInterface | None) -> None:
+        """Use an interface from now on; None: none."""
+        self._can_interface = interface
+        self._in_process = interface if type(interface) is InProcessBus else None
+
+    def _receive(self, interface: CanInterface) -> list[can.Message]:
+        """Return the waiting frames of other senders, and count own CONTROL frames that come back."""
+        messages: list[can.Message] = []
+        for _ in range(_DRAIN_FRAMES):
+            message = interface.recv(0)
+            if message is None:
+                break
+            if message.is_rx:
+                messages.append(message)
+                if message.is_error_frame and message.arbitration_id & _CONTROLLER_RESET:
+                    self._carried_controls = self._sent_controls
+                    self._forgotten = False
+            elif message.arbitration_id == CONTROL_ID and not message.is_extended_id:
+                self._note_carried(message)
+        if interface.overruns != self._overruns:
+            self._overruns = interface.overruns
+            self._carried_controls = self._sent_controls  # their confirmations may be among the lost
+            self._forgotten = False
+        return messages
 
     def _usable(self) -> CanInterface:
         if self._can_interface is None:
@@ -175,11 +196,23 @@ class CanBus:
                 self._sent_controls -= 1
             if first_since:
                 self._first_since = None  # a frame that did not go out is never confirmed
-            raise BusError(
-                f"sending failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power"
-            ) from error
+            raise self._sending_failed(error) from error
         if self.tap is not None:
             self.tap.on_tx(frame)
+
+    def _send_all(self, frames: Sequence[Frame]) -> None:
+        """Send frames that are not CONTROL, in order."""
+        if self._in_process is None or self.tap is not None:
+            for frame in frames:
+                self._send(frame, is_control=False)
+            return
+        try:
+            self._in_process.send_all(frames)
+        except (can.CanError, OSError, ValueError) as error:
+            raise self._sending_failed(error) from error
+
+    def _sending_failed(self, error: Exception) -> BusError:
+        return BusError(f"sending failed ({error})", where=f"bus {self.name}", do="check adapter, cable and power")
 
 
 class FramePort:
@@ -206,7 +239,28 @@ class FramePort:
 
     def send(self, frame: can.Message) -> None:
         """Send without waiting. Raises BusError if it fails, ValueError for a frame that this port does not carry."""
+        self._require_carried(frame)
+        self._bus._send(frame, is_control=self._is_control)
+
+    def send_all(self, frames: Sequence[Frame]) -> None:
+        """Send frames in order, as so many calls of `send`, but check all of them first.
+
+        Raises BusError at the first that fails, ValueError for a frame that this port does not carry.
+        """
+        for frame in frames:
+            self._require_carried(frame)
+        if self._is_control:
+            for frame in frames:
+                self._bus._send(frame, is_control=True)
+        else:
+            self._bus._send_all(frames)
+
+    def _require_carried(self, frame: can.Message) -> None:
+        """Raise ValueError for a frame that this port does not carry."""
         frame_id = frame.arbitration_id
+        is_plain = type(frame) is Frame and CONTROL_ID < frame_id < 0x800 and frame.dlc <= _LONGEST_FRAME
+        if is_plain and not self._is_control:
+            return  # nearly all frames: a simulated robot sends eight in each tick
         # Wider identifiers would lose their upper bits on the way out and could come out as CONTROL.
         if not 0 <= frame_id < (0x2000_0000 if frame.is_extended_id else 0x800):
             raise ValueError(f"identifier 0x{frame_id:X} does not fit its frame")
@@ -215,7 +269,6 @@ class FramePort:
             raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} refused, this port carries {carries}")
         if len(frame.data) > _LONGEST_FRAME or frame.dlc > _LONGEST_FRAME or frame.is_fd:
             raise ValueError(f"bus {self._bus.name}: frame 0x{frame_id:X} is not of classic CAN")
-        self._bus._send(frame, is_control=self._is_control)
 
 
 def open_bus(spec: str) -> CanBus:

@@ -85,6 +85,9 @@ class RuntimeOptions:
     """Rules by which broken sensors are noticed; those of before for recordings of before."""
     asks_at_bumper: bool = True
     """Ask if an RLA pushes on toward what a bumper touches; False for recordings of before this question."""
+    appraises: bool = True
+    """Compute the critic's features in each tick. False: only if the knowledge has RLAs of the critic, for a drive in
+    which nothing else reads them."""
     recent: DecisionHistory | None = None
     """History of recent decisions; an empty one by default, which the tick writes."""
 
@@ -254,6 +257,7 @@ class _Assembly:
     def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:
         """Return the parts of the tick."""
         infrared, checks = self._settings.infrared, self._options.checks_sensors
+        appraises = self._options.appraises or self._system.rlas_at(CRITIC)
         return TickParts(
             robot=robot,
             perception=Perception(self.definition, self._settings.infrared.names),
@@ -263,7 +267,7 @@ class _Assembly:
             event_store=event_store,
             statistics=self.statistics,
             timer=TickTimer(),
-            appraisal_perception=AppraisalPerception(self.critic, self._settings),
+            appraisal_perception=AppraisalPerception(self.critic, self._settings) if appraises else None,
             expectations=self.expectations,
             sensor_watch=SensorWatch(self._settings, self._options.sensor_rules) if checks else None,
             substitute=SubstituteReadings(infrared) if checks else None,

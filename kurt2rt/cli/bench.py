@@ -40,6 +40,8 @@ def bench(
 
     lateness  how late ticks begin in a minute of driving; with asyncio.sleep
     tick      what each stage of these ticks takes
+    program   what share of a core the robot's program takes in real time, with its
+              simulated robot in a process of its own; with an empty loop
     match     how long the nearest RLA is sought; with a brute force
     loop      how many times real time a lesson in lockstep runs on one core
     lesson    how long a teacher waits until a lesson is durable; with fsync

@@ -57,6 +57,6 @@ def run_shard(
         return
     print_whole(
         console_of(),
-        f"shard {shard} is done: {len(own.seeds)} robots, {count} jobs in {results.folder}",
+        f"shard {shard} is done: {count} jobs in {results.folder}",
         f"next: the other shards, then kurt2rt results merge OUT {results.folder} ..., then {command} --out OUT",
     )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from behaviors.policies import circle, eight, fleeing, wall_following
+from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from hal.infrared_law import InfraredLawNumbers
 from simbridge.robot.wheels import SideLaw
 
@@ -107,10 +107,16 @@ class MindLaw(NamedTuple):
     fleeing: fleeing.Thresholds
     circle: circle.Thresholds
     eight: eight.Thresholds
+    streets: streets.Thresholds
+    left_rays: Floats
+    """Rays of the sensors at the left side of a robot in streets (behaviors.policies.streets.Rays), (6, 4)."""
+    right_rays: Floats
+    turns: Integers
+    """Turn of each taught behaviour in streets (behaviors.policies.streets.turn_of)."""
 
 
 class Features(NamedTuple):
-    """Recent features of a situation."""
+    """Features of a situation."""
 
     kind: Integers
     """Kind of each feature (simbridge.batch.minds)."""
@@ -118,6 +124,23 @@ class Features(NamedTuple):
     """Sensors of each feature, (features, sensors)."""
     sensor_count: Integers
     weights: Floats
+    average_steps: int
+    average_weights: Floats
+    """Weights of the averages, (features,); (0,) if they count for nothing."""
+
+
+class Averages(NamedTuple):
+    """Steps of the averages of robots, as in kurt2rt.core.perception; the first index is the robot.
+
+    All arrays are empty if averages count for nothing.
+    """
+
+    ring: NDArray[np.int16]
+    """Features of the newest steps in counts, (robots, steps, features)."""
+    sums: Integers
+    """Sums of them, (robots, features)."""
+    newest: Integers
+    """Place of the next step in the ring, (robots,)."""
 
 
 class Conditions(NamedTuple):
@@ -126,16 +149,19 @@ class Conditions(NamedTuple):
     values: Floats
     """Weighted conditions in counts, (rows, values); the number of values is a multiple of eight."""
     neighbours: Integers
-    """Rows of the same knowledge, the nearest first, which is the row itself; (rows, neighbours)."""
+    """Rows of the same table, the nearest first, which is the row itself; (rows, neighbours)."""
     apart: Floats
     """Their distances from the row in counts, (rows, neighbours); infinite beyond the last one."""
+    is_whole: bool
+    """True if no sum of squared differences is rounded, as where all values are multiples of half a count."""
 
 
 class Knowledge(NamedTuple):
-    """Taught RLAs of all knowledges of a batch, oldest first; withdrawn ones are left out."""
+    """Taught RLAs of all knowledges of a batch, oldest first in each table; withdrawn ones are left out."""
 
     first: Integers
-    """First row of each knowledge, and the end of the last one, (knowledges + 1,)."""
+    """First row of each table, and the end of the last one, (tables + 1,); a knowledge has a table for each
+    behaviour."""
     conditions: Conditions
     radius: Floats
     answer: Integers

@@ -18,10 +18,14 @@ NEAR_FACES, NEAR_POSTS = 64, 16
 SIGNS = 14
 """Numbers of the state of one sensor in its watch."""
 MOST_RAYS = 3
-MOST_VALUES = 64
-"""Most recent features: numpy adds the squares of more than twice as many in another order."""
+MOST_VALUES = 128
+"""Most values of a situation, recent and averaged: numpy adds the squares of more values in another order."""
+MOST_AREAS = 64
+"""Most areas of a world whose borders end a stretch."""
 SEEN = 15
 """Sensors that policies look at."""
+CANDIDATES = 16
+"""RLAs that a search for the nearest one keeps."""
 MOST_KEPT = 256
 """Most positions that the rule of being stuck keeps."""
 BOX_STATE = len(BodyState._fields)
@@ -32,6 +36,8 @@ SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 class Robot:
     """Record of one robot; arrays have the shape that is annotated, in `Sizes` or in numbers."""
 
+    number: int
+    """Its index among the robots."""
     tick: int
     at: int
     """Place of the present tick in the stretch."""
@@ -41,7 +47,7 @@ class Robot:
     """Reason that the robot must drive on the bus (simbridge.batch.drive); 0: none."""
     world: int
     knowledge: int
-    """Its table of RLAs; -1 for a policy."""
+    """Its first table of RLAs, that of the first behaviour; -1 for a policy."""
 
     # Body
     x_m: float
@@ -158,9 +164,23 @@ class Robot:
     limits: int
     """Limits of the guard that were met in the newest tick, as bits (simbridge.batch.safety)."""
 
+    # Borders (simbridge.batch.borders)
+    areas: Annotated[Floats, (MOST_AREAS, 4)]
+    """Centre and half extents of each area in m."""
+    area_count: int
+    area_every: int
+    """Ticks between two looks at the robot's position."""
+    area_margin_m: float
+    area: int
+    """Area that the robot is in; -1: none."""
+    crossed: int
+    """1 if the robot crossed a border in the newest tick, which ends its stretch."""
+
     # Mind
     kind: int
     """Kind of mind (simbridge.batch.minds)."""
+    behaviour: int
+    """Taught behaviour that is wanted, by its index."""
     command: int
     """Action that was commanded last; -1: none."""
     action: int
@@ -177,6 +197,15 @@ class Robot:
     """Distances in m that a policy looks at."""
     situation: Annotated[Floats, (MOST_VALUES,)]
     """Weighted situation."""
+    searched: Annotated[Floats, (1, MOST_VALUES)]
+    """Weighted situation of the newest search for the nearest RLA (simbridge.batch.matching)."""
+    candidates: int
+    """RLAs that the search kept; 0: there was none."""
+    candidate_row: Annotated[Integers, (CANDIDATES,)]
+    candidate_away: Annotated[Floats, (CANDIDATES,)]
+    """Their distances from it in counts, ascending."""
+    others_away: float
+    """Distance from it in counts that no other RLA is nearer than."""
 
     # Counts of the whole drive (hal.batch.Tally)
     unknown_ticks: int

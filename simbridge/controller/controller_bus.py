@@ -1,8 +1,11 @@
 """Bus interface of the simulated micro-controller."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import can
+
+from hal.frame import Frame
 
 
 class SendingPort(Protocol):
@@ -10,6 +13,10 @@ class SendingPort(Protocol):
 
     def send(self, frame: can.Message) -> None:
         """Send a frame without blocking. Raises hal.bus.BusError."""
+        ...
+
+    def send_all(self, frames: Sequence[Frame]) -> None:
+        """Send frames in order without blocking. Raises hal.bus.BusError."""
         ...
 
 

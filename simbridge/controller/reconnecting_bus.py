@@ -1,11 +1,12 @@
 """Bus of the simulated controller that survives the loss of its interface."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import can
 
 from hal.bus import BusError, CanBus, FramePort
+from hal.frame import Frame
 
 REOPEN_PERIOD_S = 1.0
 
@@ -76,3 +77,8 @@ class ReconnectingPort:
         except BusError as error:
             self._bus.lost += 1
             self._bus._record(error)
+
+    def send_all(self, frames: Sequence[Frame]) -> None:
+        """Send frames as so many calls of `send`, each of which may be lost. Raises ValueError for CONTROL."""
+        for frame in frames:
+            self.send(frame)

@@ -62,19 +62,19 @@ class Telemetry:
         Raises:
             hal.bus.BusError: the bus is closed or down.
         """
-        send, frames = self._port.send, self._analog.frames
-        for number in self._analog.with_sensor:
-            send(frames[number])
+        analog = self._analog.frames
+        frames = [analog[number] for number in self._analog.with_sensor]
         turn = self._instruments.cycles % SLOW_CYCLES
         for message, source in self._slow_turns[turn]:
-            send(message.pack(*source()))
+            frames.append(message.pack(*source()))
         for number in self._idle_turns[turn]:
-            send(frames[number])
+            frames.append(analog[number])
         if bumpers != self._bumpers:
             self._bumpers = bumpers
             self._bumper_frame = self._bumperc.pack(bumpers, 0)
-        send(self._encoder.pack(left_ticks, right_ticks))
-        send(self._bumper_frame)  # last: old hosts take it as the end of a cycle
+        frames.append(self._encoder.pack(left_ticks, right_ticks))
+        frames.append(self._bumper_frame)  # last: old hosts take it as the end of a cycle
+        self._port.send_all(frames)
 
     def _info(self) -> tuple[int, ...]:
         return SIMULATED_HARDWARE_ID, _FIRMWARE_VERSION, self._instruments.cycles % (1 << 32)

@@ -32,15 +32,23 @@ class Noise:
 
     def normals(self, count: int) -> NDArray[np.float64]:
         """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""
+        numbers = np.empty(count)
+        self.fill(numbers)
+        return numbers
+
+    def fill(self, numbers: NDArray[np.float64]) -> None:
+        """Fill an array, shape (count,), with the next standard normal numbers, as so many calls of `normal` would."""
         if self._used < len(self._block):
             self._ahead = np.concatenate((self._block[self._used :], self._ahead))
         self._block, self._used = [], 0
-        blocks = -(-(count - len(self._ahead)) // _BLOCK)
-        if blocks > 0:
-            self._ahead = np.concatenate((self._ahead, self._generator.standard_normal(_BLOCK * blocks)))
-        numbers, self._ahead = self._ahead[:count], self._ahead[count:]
-        self.drawn += count
-        return numbers
+        self.drawn += len(numbers)
+        begun = min(len(self._ahead), len(numbers))
+        numbers[:begun], self._ahead = self._ahead[:begun], self._ahead[begun:]
+        whole = begun + (len(numbers) - begun) // _BLOCK * _BLOCK
+        self._generator.standard_normal(out=numbers[begun:whole])
+        if whole < len(numbers):
+            block = self._generator.standard_normal(_BLOCK)
+            numbers[whole:], self._ahead = block[: len(numbers) - whole], block[len(numbers) - whole :]
 
     def fraction(self) -> float:
         """Return the next uniform number from 0 up to 1, 1 excluded."""

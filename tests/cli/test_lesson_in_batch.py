@@ -22,7 +22,6 @@ def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: st
     ("words", "why"),
     [
         ((), "give --seeds"),
-        (("--seeds", "1-2", "--task", "streets"), "course junctions"),
         (("--seeds", "1-2", "--task", "route"), "course route"),
         (("--seeds", "1-2", "--wire", "lossy"), "no wire"),
     ],
@@ -37,7 +36,7 @@ def test_lesson_refuses_exams_that_a_batch_does_not_know(
     ("words", "why"),
     [
         ((), "give --seeds"),
-        (("--seeds", "1-2", "--task", "streets"), "course junctions"),
+        (("--seeds", "1-2", "--task", "route"), "course route"),
         (("--seeds", "1-2", "--wire", "lossy"), "no wire"),
         (("--seeds", "1-2", "--teacher", "ordinary", "--controls"), "drives by hand"),
     ],

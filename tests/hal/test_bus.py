@@ -8,7 +8,9 @@ import can
 import pytest
 
 from hal.bus import BusError, open_bus
+from hal.control import encode_brake
 from hal.frame import Frame
+from hal.in_process_bus import InProcessBus
 from tests.hal.bus_conformance import Ends, ErrorFrameConformance, Join, joining
 from tests.hal.helpers import CODEC, cycle, send
 
@@ -23,19 +25,53 @@ class TestInProcessBus(ErrorFrameConformance):
             yield join
 
 
-def test_each_end_gets_its_own_frame_with_shared_payload(ends: Ends) -> None:
+def test_all_ends_of_a_process_share_a_frame(ends: Ends) -> None:
     robot_end, far_end = ends
     listener = open_bus(robot_end.name)
     frame = cycle()[0]
     far_end.telemetry_port().send(frame)
     (first,), (second,) = robot_end.drain(), listener.drain()
     listener.shutdown()
-    assert first is not second
-    assert first is not frame
-    assert isinstance(first, Frame)
-    assert first.data is second.data is frame.data
-    assert first.equals(second, timestamp_delta=None)
+    assert first is second is frame
     assert (first.is_extended_id, first.is_fd, first.is_error_frame, first.dlc) == (False, False, False, 8)
+
+
+def test_a_reader_of_single_frames_gets_a_copy_with_a_time_stamp(ends: Ends) -> None:
+    robot_end, far_end = ends
+    reader = InProcessBus(robot_end.name.removeprefix("virtual:"))
+    frame = cycle()[0]
+    far_end.telemetry_port().send(frame)
+    read = reader.recv(0)
+    assert reader.recv(0) is None
+    reader.shutdown()
+    assert isinstance(read, Frame)
+    assert read is not frame
+    assert read.data is frame.data
+    assert read.timestamp > 0.0 == frame.timestamp
+    assert read.channel == reader.channel_id
+
+
+def test_a_burst_is_as_so_many_single_frames(ends: Ends) -> None:
+    robot_end, far_end = ends
+    port, frame = far_end.telemetry_port(), CODEC.message("ENCODER").pack(1, 1)
+    port.send_all(cycle())
+    assert [message.data for message in robot_end.drain()] == [each.data for each in cycle()]
+    for _ in range(4094):
+        port.send(frame)
+    with pytest.raises(BusError, match="sending failed"):
+        port.send_all([frame] * 3)
+    assert len(robot_end.drain()) == 4096
+    with pytest.raises(ValueError, match="refused"):
+        port.send_all([frame, encode_brake()])
+    assert robot_end.drain() == []
+
+
+def test_a_kind_of_frame_never_changes() -> None:
+    frame = CODEC.message("ENCODER").pack(1, 2)
+    with pytest.raises(AttributeError):
+        frame.is_extended_id = True
+    with pytest.raises(AttributeError):
+        frame.is_fd = True
 
 
 def test_a_copied_frame_is_the_same_frame() -> None:

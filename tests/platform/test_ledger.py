@@ -41,3 +41,17 @@ def test_only_the_last_ticks_are_kept() -> None:
     tick(ledger, 0.002)
     assert ledger.lateness().worst_us == pytest.approx(2e3)
     assert ledger.ticks == 11
+
+
+def test_times_of_the_last_ticks_come_oldest_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_ns = 0
+    monkeypatch.setattr("kurt2rt.platform.ledger.time.perf_counter_ns", lambda: now_ns)
+    ledger = TickTimer(capacity=3)
+    for took_ns in (10, 20, 30, 40):
+        ledger.begin(0.0)
+        now_ns += took_ns
+        ledger.lap(Stage.SENSE)
+        now_ns += 1
+        ledger.lap(Stage.PUBLISH)
+        ledger.end()
+    assert ledger.ticks_ns().tolist() == [21, 31, 41]

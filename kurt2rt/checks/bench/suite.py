@@ -12,6 +12,7 @@ from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
 from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.match import SIZES, Size, measure_match
+from kurt2rt.checks.bench.program import ProgramTurns, measure_program
 from kurt2rt.checks.bench.real_time import RealTimeTurns, run_in_real_time
 from kurt2rt.checks.bench.recording import measure_recording
 from kurt2rt.checks.bench.result import BenchResult
@@ -24,6 +25,7 @@ class BenchName(StrEnum):
 
     LATENESS = "lateness"
     TICK = "tick"
+    PROGRAM = "program"
     MATCH = "match"
     LOOP = "loop"
     LESSON = "lesson"
@@ -39,6 +41,7 @@ class Lengths:
     learning_s: float
     """Simulated duration of the preceding lesson."""
     turns: RealTimeTurns
+    program: ProgramTurns
     sizes: tuple[Size, ...]
     loop_blocks: int
     loop_block_s: int
@@ -53,6 +56,7 @@ class Lengths:
 FULL = Lengths(
     learning_s=345.0,  # as long as the paper took: some 90 RLAs
     turns=RealTimeTurns(rounds=12, ticks=500, reference_ticks=250),
+    program=ProgramTurns(rounds=6, ticks=500, empty_ticks=200),
     sizes=SIZES,
     loop_blocks=15,
     loop_block_s=20,
@@ -65,6 +69,7 @@ FULL = Lengths(
 QUICK = Lengths(
     learning_s=90.0,
     turns=RealTimeTurns(rounds=4, ticks=125, reference_ticks=50),
+    program=ProgramTurns(rounds=2, ticks=200, empty_ticks=100),
     sizes=tuple(Size(size.rlas, size.limit_us, size.calls // 4) for size in SIZES),
     loop_blocks=4,
     loop_block_s=20,
@@ -104,6 +109,10 @@ async def run_suite(
             results.append(lateness_result(run))
         if BenchName.TICK in benches:
             results.extend(tick_results(run, fixture.settings.can.cycle_s))
+    if BenchName.PROGRAM in benches:
+        results.extend(
+            await measure_program(fixture, folder / "program", lengths.program, start_job("running the program"))
+        )
     if BenchName.MATCH in benches:
         results.extend(measure_match(lengths.sizes, start_job("matching")))
     if BenchName.LOOP in benches:

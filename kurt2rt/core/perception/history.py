@@ -12,8 +12,8 @@ class History:
         self._sums = np.zeros(width)
         self._next = 0
         self._filled = 0
-        self._divisor = np.ones(())
-        """Number of steps held, at least 1, as an array: numpy divides by a Python number in twice the time."""
+        self._divisor = np.ones(width)
+        """Number of steps held, at least 1, for each value: numpy divides by a single number in twice the time."""
 
     @property
     def filled(self) -> int:

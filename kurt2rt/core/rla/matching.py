@@ -1,10 +1,12 @@
 """Search for the nearest condition: one matrix product in float32, then exact distances in float64."""
 
 import math
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from kurt2rt.core.rla.near_conditions import NearConditions, NearestCondition, bound_of_others
 
 _sum = np.add.reduce
 """Pairwise sum, in an order that numpy fixes (loops_utils) for all processors."""
@@ -30,16 +32,12 @@ _CHUNK = 8192
 """Numbers per chunk of exact distances: a chunk stays in the cache."""
 
 
-class NearestCondition(NamedTuple):
-    """Nearest condition and the runner-up."""
+_NEAR = 8
+"""Conditions that are tried first. With 8 a robot that drives finds the nearest among them in 97 of 100 ticks, with 4
+in 93, with 16 in 98."""
 
-    position: int
-    distance: float
-    """Euclidean distance in float64, equal to `exact_distances` to the last bit."""
-    runner_up: int
-    """Second nearest; -1 if there is only one condition."""
-    runner_up_distance: float
-    """Distance of the runner-up; infinite without a runner-up."""
+_SEARCHES = 16
+"""Searches without a try, after conditions that served no situation: situations that do not follow one another."""
 
 
 def exact_distances(conditions: NDArray[np.float64], situation: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -76,7 +74,8 @@ class ConditionIndex:
 
     |c|^2/2 - c.s orders the rows as the distance does; one matrix product computes it for all rows. The product runs
     in float32, twice as fast as float64. Rows that its rounding error could have hidden are compared in float64, so
-    the winner equals that of a float64 brute force; of equally near conditions the older one wins.
+    the winner equals that of a float64 brute force; of equally near conditions the older one wins. The conditions that
+    were near lately are tried first, which spares most searches.
     """
 
     def __init__(self, dimensions: int) -> None:
@@ -88,6 +87,10 @@ class ConditionIndex:
         self._norms = np.zeros(64)
         self._pair, self._squares = np.empty((2, dimensions)), np.empty(2)
         self._largest_norm = _SMALLEST_NORM
+        self._near: NearConditions | None = None
+        """Conditions to try first; None: a search has to find them."""
+        self._searches_left = 0
+        """Searches before others are kept to try first."""
         self._update_views()
 
     def __len__(self) -> int:
@@ -136,10 +139,20 @@ class ConditionIndex:
 
         Returns None without conditions; of equally near conditions the older one is nearer.
         """
+        if self._near is not None:
+            nearest = self._near.nearest(situation)
+            if nearest is not None:
+                return nearest
+            self._searches_left = 0 if self._near.has_served else _SEARCHES
+            self._near = None
         if self._count == 0:
             return None
         if self._count == 1:
             return NearestCondition(0, self._distance(0, situation), -1, math.inf)
+        return self._search(situation)
+
+    def _search(self, situation: NDArray[np.float64]) -> NearestCondition:
+        """Return the nearest of all conditions, at least two, and the runner-up; keep those that are near."""
         square = float(situation.dot(situation))
         reach = math.sqrt(square) + self._largest_norm
         if not reach < _FLOAT32_REACH:  # true for NaN as well
@@ -147,6 +160,11 @@ class ConditionIndex:
         scores = self._scores
         self._rough_rows.dot(situation.astype(np.float32), scores)
         np.subtract(self._half_squares_rows, scores, scores)
+        error = _ERROR_FACTOR * (self._dimensions + 4) * reach * (self._largest_norm + _FLOAT64_FACTOR * reach)
+        if self._searches_left > 0:
+            self._searches_left -= 1
+        else:
+            self._keep_near(situation, error, square, reach)
         best = int(scores.argmin())
         best_score = scores.item(best)
         scores[best] = math.inf
@@ -154,11 +172,20 @@ class ConditionIndex:
         second_score = scores.item(second)
         scores[second] = math.inf
         third_score = scores.item(int(scores.argmin()))
-        error = _ERROR_FACTOR * (self._dimensions + 4) * reach * (self._largest_norm + _FLOAT64_FACTOR * reach)
         if second_score - best_score > error and third_score - second_score > error:
             return self._nearest_two(best, second, situation)
         scores[best], scores[second] = best_score, second_score
         return self._nearest_exact(situation, np.flatnonzero(scores <= second_score + error))
+
+    def _keep_near(self, situation: NDArray[np.float64], error: float, square: float, reach: float) -> None:
+        """Keep the conditions of the least scores, to try them first."""
+        others_beyond = math.inf
+        near = np.arange(min(self._count, _NEAR))
+        if self._count > _NEAR:
+            order = self._scores.argpartition(_NEAR)
+            others_beyond = bound_of_others(self._scores.item(int(order[_NEAR])), error, square, reach)
+            near = np.sort(order[:_NEAR])
+        self._near = NearConditions(near, self._exact[near], situation, others_beyond)
 
     def _nearest_exact(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> NearestCondition:
         distances = exact_distances(self._exact[candidates], situation)
@@ -188,6 +215,7 @@ class ConditionIndex:
         self._norms = _doubled(self._norms)
 
     def _update_views(self) -> None:
+        self._near = None
         self._rough_rows = self._rough[: self._count]
         self._half_squares_rows = self._half_squares[: self._count]
         self._scores = np.empty(self._count, dtype=np.float32)

@@ -5,7 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.matching import NearestCondition, validated_row
+from kurt2rt.core.rla.matching import validated_row
+from kurt2rt.core.rla.near_conditions import NearestCondition
 
 
 def hamming_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -104,6 +104,8 @@ class ExamSetup:
     """Sensor that breaks; None: all sensors work."""
     learners: LearnerTeam | None = None
     """Taught learners that decide in place of the RLAs; None: RLAs decide."""
+    appraises: bool = False
+    """True if `on_tick` reads the features of the critic."""
     on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
     """Called in every tick with the record and the updated metric."""
 
@@ -162,7 +164,9 @@ class ExamRun(Episode):
                 behaviour,
             )
         learners = None if setup.teacher_policy else setup.learners
-        options = RuntimeOptions(level_override=level, active_behaviour=behaviour, learners=learners)
+        options = RuntimeOptions(
+            level_override=level, active_behaviour=behaviour, learners=learners, appraises=setup.appraises
+        )
         runtime = build_exam_runtime(simulation, settings, task, events, setup, options)
         # Learner and teacher get the same random choices; their drives diverge at the first different action.
         chance = random.Random(setup.chance_seed)

@@ -138,7 +138,7 @@ async def teach(
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     plan = plan or plan_of(task)
-    runtime = build_training_runtime(simulation, settings, task, training)
+    runtime = build_training_runtime(simulation, settings, task, training, appraises=plan.appraises)
     session = f"{plan.purpose}-{seed}-after-{len(training.events)}"
     run = TrainingRun(simulation, runtime, plan, seed=seed, session=session, on_progress=on_progress)
     await run.drive()

@@ -9,6 +9,9 @@ from kurt2rt.core.task_settings import TaskSettings
 Signs = Literal["none", "judge", "unknown", "chance"]
 """Source of the teacher's rewards: none, the task's judge, unknown situations, or random penalties."""
 
+_CORRECTED_ONLY = (Phase.SUPERVISED, Phase.CORRECTIONS)
+"""Phases without rewards and critic."""
+
 
 @dataclass(frozen=True, slots=True)
 class SignalTimes:
@@ -54,6 +57,11 @@ class LessonPlan:
     """Number of presses after which the next one ends the run and teaches nothing; None: no limit."""
     corrects_basic: bool = True
     """True if the basic level is corrected under a mid level, too; questions are answered in any case."""
+
+    @property
+    def appraises(self) -> bool:
+        """True if critic or teacher appraise situations: in phases 3 to 5, and with rewards."""
+        return self.signs != "none" or any(phase not in _CORRECTED_ONLY for phase, _ in self.phases)
 
     @property
     def duration_s(self) -> float:

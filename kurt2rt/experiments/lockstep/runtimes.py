@@ -47,8 +47,18 @@ def build_training_runtime(
     task: TaskSettings,
     training: TrainingStore,
     recent: DecisionHistory | None = None,
+    *,
+    appraises: bool = True,
 ) -> Runtime:
-    """Build the runtime for a scripted teacher; `recent`: history of decisions, None: an empty one.
+    """Build the runtime for a scripted teacher.
+
+    Args:
+        simulation: that the robot drives in.
+        settings: of the robot.
+        task: to teach.
+        training: destination of the lessons, and the knowledge to continue from.
+        recent: history of decisions; None: an empty one.
+        appraises: whether critic or teacher appraise situations.
 
     Raises:
         hal.settings.SettingsError: settings do not fit each other.
@@ -66,6 +76,7 @@ def build_training_runtime(
             checkpoint=training.saved,
             # The scripted teacher has no bumper input: at a wall its answer is the action that led there.
             asks_at_bumper=False,
+            appraises=appraises,
             recent=recent,
             learners=training.learners,
         ),

@@ -117,6 +117,7 @@ class Examiner:
             autonomous_values,
             # A robot without knowledge only stands: its exam need not last.
             stuck_ends=not events and not teacher_policy,
+            appraises=True,
             on_tick=lambda record, _metric: on_record(record),
         )
         with closing(self.factory.open(world, self.seed, "exam")) as simulation:

@@ -3,7 +3,8 @@
 import pytest
 
 from kurt2rt.checks.bench.match import SIZES, Size, WrongWinnerError, measure_match
-from kurt2rt.core.rla.matching import ConditionIndex, NearestCondition
+from kurt2rt.core.rla.matching import ConditionIndex
+from kurt2rt.core.rla.near_conditions import NearestCondition
 
 
 def test_each_size_has_its_row_with_reference_and_goal() -> None:

@@ -9,6 +9,7 @@ from kurt2rt.checks.bench.batch_lesson import BatchLessonLengths
 from kurt2rt.checks.bench.channel import ChannelLengths
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.match import Size
+from kurt2rt.checks.bench.program import ProgramTurns
 from kurt2rt.checks.bench.real_time import RealTimeTurns
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
@@ -16,6 +17,7 @@ from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suit
 TINY = Lengths(
     learning_s=3.0,
     turns=RealTimeTurns(rounds=1, ticks=20, reference_ticks=2),
+    program=ProgramTurns(rounds=1, ticks=20, empty_ticks=5),
     sizes=(Size(20, 10.0, 20),),
     loop_blocks=1,
     loop_block_s=1,
@@ -46,7 +48,7 @@ async def test_run_suite_measures_all_in_order_with_one_drive(untaught: BenchFix
     ]  # its processes take seconds: test_channel.py
     results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
-    assert len(jobs.names) == 8
+    assert len(jobs.names) == 9
     assert all(result.goals for result in results if not result.what.startswith("  "))
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances, exact_square
+from kurt2rt.core.rla.near_conditions import NearConditions
 from tests.examples import examples
 
 Point = tuple[float, ...]
@@ -113,6 +114,24 @@ def test_condition_index_72_dimensions_equal_brute_force(seed: int, dimensions: 
         assert_right(index, rows, situation)
 
 
+@given(st.integers(0, 2**32), st.sampled_from((0.0, 1e-7, 1.0, 30.0, 1e9)), st.integers(2, 60))
+@examples(100)
+def test_condition_index_situations_in_a_row_equal_brute_force(seed: int, step: float, size: int) -> None:
+    """The situations follow one another, as those of a robot; now and then the conditions change."""
+    chance = np.random.default_rng(seed)
+    rows = [tuple(row) for row in chance.integers(60, 560, (size, 10)).astype(float).tolist()]
+    rows += rows[: size // 4]  # duplicates
+    index, situation = index_of(rows), np.array(rows[0])
+    for tick in range(40):
+        situation = situation + chance.normal(0.0, step, 10)
+        assert_right(index, np.array(rows), situation)
+        if tick % 13 == 12:
+            index.insert(0, rows[-1])
+            rows.insert(0, rows[-1])
+            index.remove(2)
+            del rows[2]
+
+
 def clustered(count: int, spread: float) -> NDArray[np.float64]:
     chance = np.random.default_rng(5)
     centres = chance.uniform(70, 550, (12, 72))
@@ -191,3 +210,13 @@ def test_exact_distances_equal_single_ones(dimensions: int) -> None:
     alone = [math.sqrt(exact_square(row - situation)) for row in conditions]
     assert exact_distances(conditions, situation).tolist() == alone
     assert exact_distances(conditions[:0], situation).shape == (0,)
+
+
+def test_near_conditions_serve_as_long_as_others_are_farther() -> None:
+    rows = np.array([[0.0, 0.0], [10.0, 0.0]])
+    near = NearConditions(np.array([3, 7]), rows, np.array([0.0, 0.0]), others_beyond=30.0)
+    nearest = near.nearest(np.array([6.0, 0.0]))
+    assert nearest is not None
+    assert nearest == (7, 4.0, 3, 6.0)
+    assert near.nearest(np.array([15.0, 0.0])) is None  # the runner-up is 15 away, others may be 30 - 15
+    assert near.nearest(np.array([math.nan, 0.0])) is None

@@ -89,9 +89,7 @@ def test_batch_refuses_another_plan(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("task", "why"),
     [
-        (load_task("streets"), "course junctions"),
         (load_task("route"), "course route"),
-        (load_task("wall_following", plain=True), "averages"),
         (load_task("wall_following", changes={"learning.doubt.asks": "true"}), "asks at a doubt"),
         (load_task("wall_following", changes={"teaching.teacher.delete_after": "2"}), "deletes RLAs"),
     ],

@@ -5,10 +5,12 @@ It sends no infra-red readings any more after so many seconds.
 
 import sys
 import time
+from collections.abc import Sequence
 
 import can
 
 from hal.bus import CanBus, FramePort, open_bus
+from hal.frame import Frame
 from hal.robot_settings import load_robot
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
@@ -40,6 +42,10 @@ class FallingSilentPort:
     def send(self, frame: can.Message) -> None:
         if frame.arbitration_id not in self._infrared_ids or time.monotonic() < self._silent_from_s:
             self._port.send(frame)
+
+    def send_all(self, frames: Sequence[Frame]) -> None:
+        for frame in frames:
+            self.send(frame)
 
 
 def main() -> None:

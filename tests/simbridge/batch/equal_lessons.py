@@ -1,7 +1,7 @@
 """`make equal-lessons`: whole lessons are given in the batch and on the CAN bus, and must be equal bit by bit.
 
-A task, a teacher and a seed make a lesson. Of the tasks that are taught in rooms, every second robot is taught in a
-generated room of its own. Lessons of several shards are others, so a shard may run on another machine.
+A task, a teacher and a seed make a lesson. Of the tasks that are taught in rooms or streets, every second robot is
+taught in generated ones of its own. Lessons of several shards are others, so a shard may run on another machine.
 """
 
 import argparse
@@ -26,9 +26,10 @@ from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson, require_equa
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
-TASKS = ("wall_following", "fleeing", "circle", "eight")
+IN_ROOMS = ("wall_following", "fleeing")
+IN_STREETS = ("streets", "straight_on", "turn_left", "turn_right")
+TASKS = (*IN_ROOMS, "circle", "circle_repositioned", "eight", *IN_STREETS)
 TEACHERS = ("ordinary", "superhuman", "slow", "attentive")
-TAUGHT_IN_ROOMS = ("wall_following", "fleeing")
 FIRST_SEED = 5010
 
 
@@ -43,7 +44,10 @@ class WholeLesson:
     @property
     def world(self) -> str | None:
         """Name of the generated world; None: the task's own."""
-        return f"rooms-{self.seed}" if self.task in TAUGHT_IN_ROOMS and self.seed % 2 else None
+        if self.seed % 2 == 0:
+            return None
+        kind = "rooms" if self.task in IN_ROOMS else "streets" if self.task in IN_STREETS else None
+        return None if kind is None else f"{kind}-{self.seed}"
 
     def settings(self) -> TaskSettings:
         """Return the task, taught by the teacher in the world."""

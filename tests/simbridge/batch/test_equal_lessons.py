@@ -8,17 +8,19 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from simbridge.batch.compiled import IS_COMPILED
-from tests.simbridge.batch.equal_lessons import batch_lesson, lesson_in_both
+from tests.simbridge.batch.equal_lessons import TASKS, batch_lesson, lesson_in_both
 
 SECONDS = 18.0 if IS_COMPILED else 3.0
 BLIND_TEACHER = dict.fromkeys(("policy.front_m", "policy.edge_m", "policy.wary_m"), "0.05")
 """Thresholds of a teacher who does not turn away in time."""
 
 
-def lesson_task(name: str, teacher: str, changes: Mapping[str, str] | None = None) -> TaskSettings:
+def lesson_task(
+    name: str, teacher: str, changes: Mapping[str, str] | None = None, *, plain: bool = False
+) -> TaskSettings:
     """Return a short lesson; a third of it without corrections."""
     times = {"teaching.supervised_s": f"{SECONDS / 3:.2f}", "teaching.corrections_s": f"{SECONDS * 2 / 3:.2f}"}
-    return taught_by(load_task(name, changes={**times, **(changes or {})}), load_teacher(teacher))
+    return taught_by(load_task(name, plain=plain, changes={**times, **(changes or {})}), load_teacher(teacher))
 
 
 def equal_lesson(task: TaskSettings, seed: int) -> GivenLesson:
@@ -29,15 +31,21 @@ def equal_lesson(task: TaskSettings, seed: int) -> GivenLesson:
 
 
 @pytest.mark.parametrize("teacher", ["superhuman", "ordinary"])
-@pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight"])
+@pytest.mark.parametrize("name", TASKS)
 def test_lesson_is_equal_in_the_batch(name: str, teacher: str) -> None:
     assert equal_lesson(lesson_task(name, teacher), 7).events
+
+
+@pytest.mark.parametrize("teacher", ["superhuman", "ordinary"])
+@pytest.mark.parametrize("name", ["wall_following", "circle", "streets"])
+def test_lesson_of_the_plain_reading_is_equal_in_the_batch(name: str, teacher: str) -> None:
+    assert equal_lesson(lesson_task(name, teacher, plain=True), 7).events
 
 
 @pytest.mark.deep
 @pytest.mark.skipif(not IS_COMPILED, reason="plain Python takes minutes")
 @pytest.mark.parametrize("teacher", ["superhuman", "answers_only", "attentive", "ordinary", "slow"])
-@pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight"])
+@pytest.mark.parametrize("name", TASKS)
 def test_lesson_of_two_minutes_is_equal_in_the_batch(name: str, teacher: str) -> None:
     task = lesson_task(name, teacher, {"teaching.supervised_s": "30", "teaching.corrections_s": "90"})
     lesson = lesson_in_both(task, 11)

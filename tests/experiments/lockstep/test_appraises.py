@@ -1,0 +1,71 @@
+"""Features of the critic are computed only where something reads them; the drives are the same."""
+
+import anyio
+import pytest
+
+from behaviors.metrics.task_metric import TaskMetric
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs, plan_of
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+
+DRIVES = RlaCreated(Rla(1, (0.0,) * 72, "forward", 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
+
+
+def appraisal() -> RlaCreated:
+    critic = load_critic(short_task().critic)
+    name = critic.appraisals[0].name
+    return RlaCreated(
+        Rla(2, (0.0,) * len(critic.names), name, 1e5, Origin("c-2", "Ann", Phase.CRITIC, 2), level=CRITIC)
+    )
+
+
+def drive(events: list[TeachingEvent], *, appraises: bool) -> tuple[ExamResult, list[TickRecord]]:
+    """Drive an exam of a second; return the result, and the records of its ticks."""
+    task, records = short_task(exam_s=1.0), list[TickRecord]()
+
+    def note(record: TickRecord, _metric: TaskMetric) -> None:
+        records.append(record)
+
+    simulation = STAGE.open("a", 1, "exam")
+    try:
+        setup = ExamSetup("a", 1, appraises=appraises, on_tick=note)
+        return anyio.run(examine, simulation, ROBOT, task, events, setup, lambda _: None), records
+    finally:
+        simulation.close()
+
+
+def test_an_exam_is_the_same_without_the_critics_features() -> None:
+    (without, no_features), (with_them, features) = (drive([DRIVES], appraises=each) for each in (False, True))
+    assert without == with_them
+    assert all(record.appraisal_features is None for record in no_features)
+    assert all(record.appraisal_features is not None for record in features)
+    assert [each.decision for each in no_features] == [each.decision for each in features]
+
+
+def test_a_taught_critic_always_appraises() -> None:
+    _, records = drive([DRIVES, appraisal()], appraises=False)
+    assert all(record.appraisal_features is not None and record.opinion is not None for record in records)
+
+
+@pytest.mark.parametrize(
+    ("phase", "signs", "appraises"),
+    [
+        (Phase.SUPERVISED, "none", False),
+        (Phase.CORRECTIONS, "none", False),
+        (Phase.CORRECTIONS, "judge", True),
+        (Phase.REINFORCEMENT, "none", True),
+        (Phase.CRITIC, "none", True),
+        (Phase.AUTONOMOUS, "none", True),
+    ],
+)
+def test_a_plan_tells_whether_anything_is_appraised(phase: Phase, signs: Signs, appraises: bool) -> None:
+    assert LessonPlan(((Phase.SUPERVISED, 1.0), (phase, 1.0)), signs=signs).appraises is appraises
+
+
+def test_the_plan_of_a_task_appraises_nothing() -> None:
+    assert not plan_of(short_task()).appraises
