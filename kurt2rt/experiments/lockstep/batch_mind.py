@@ -58,10 +58,9 @@ def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
         raise refused(task, "a mid level")
 
 
-def require_no_borders(task: TaskSettings) -> None:
-    """Check that the course of a task does not reposition the robot on the way. Raises BatchRefusedError."""
-    if task.course.kind in _BORDER_COURSES:
-        raise refused(task, f"runs of course {task.course.kind}, which guides the robot on its way")
+def guides_robots(task: TaskSettings) -> bool:
+    """Return whether the course of a task repositions robots, or wants another behaviour, on their way."""
+    return task.course.kind in _BORDER_COURSES
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
