@@ -137,7 +137,7 @@ class DriveSettings:
     behaviours: tuple[str, ...] = ("",)
     """Names of the taught behaviours; the first is wanted at the begin."""
     stuck: StuckRule | None = None
-    """Rule that ends the drive of a robot, for robots that are not put elsewhere; None: none."""
+    """Rule that ends the drive of a robot; None: none."""
 
 
 class Stretch(NamedTuple):

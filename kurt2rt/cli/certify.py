@@ -122,7 +122,7 @@ def certify(options: _Options) -> None:
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. Tasks that the batch does not know, such
-    as streets, are driven on the CAN loop.
+    as routes, are driven on the CAN loop.
     """
     _certify(options)
 

@@ -19,6 +19,7 @@ from simbridge.batch.record import MOST_AREAS, NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
+from simbridge.batch.tally import restart_window
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedRobot, hash_state
 
@@ -209,6 +210,7 @@ class RobotBatch:
         if not put_down(record, self._world, self._laws):
             self._bodies[robot].put(pose, before, self._set_points.take(robot))
             record["box_is_new"] = 0
+        restart_window(record, self._laws.stuck)
 
     def trace(self, robot: int) -> Trace:
         """Return the readings of a commanded robot over the newest call of `drive`."""

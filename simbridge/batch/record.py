@@ -220,6 +220,8 @@ class Robot:
     """1 if the robot is stuck, which ends its drive."""
     kept: int
     """Positions that were kept for the rule of being stuck."""
+    kept_since: int
+    """Tick of the first of them."""
     kept_x_m: Annotated[Floats, (MOST_KEPT,)]
     """Ring of the newest ones."""
     kept_y_m: Annotated[Floats, (MOST_KEPT,)]

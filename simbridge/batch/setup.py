@@ -194,6 +194,7 @@ def build_robots(
     robots["command"] = robots["action"] = robots["rla"] = STANDS
     robots["area"] = OUTSIDE
     robots["number"] = range(len(robots))
+    robots["kept_since"] = 1
     robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
     robots["way_counts"] = 1
     robots["kind"] = [kind_of(mind) for mind in minds]

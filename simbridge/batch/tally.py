@@ -29,8 +29,16 @@ def count_tick(robot: Robot, asked: bool, law: StuckLaw) -> None:
             dx, dy = robot.x_m - robot.mark_x_m, robot.y_m - robot.mark_y_m
             robot.travelled_m += math.sqrt(dx * dx + dy * dy)
         robot.mark_x_m, robot.mark_y_m = robot.x_m, robot.y_m
-    if law.positions > 0 and (robot.tick - 1) % law.every_ticks == 0:
+    if law.positions > 0 and (robot.tick - robot.kept_since) % law.every_ticks == 0:
         robot.stuck = _stays(robot, law)
+
+
+@compiled
+def restart_window(robot: Robot, law: StuckLaw) -> None:
+    """Begin a new window of the rule of being stuck in the present tick, in which the robot was put elsewhere."""
+    robot.kept, robot.kept_since, robot.stuck = 0, robot.tick, 0
+    if law.positions > 0:
+        _stays(robot, law)
 
 
 @compiled

@@ -68,8 +68,12 @@ def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons:
     assert (gone.read_bytes(), [path.stat().st_mtime_ns for path in others]) == before
 
 
+ALONE = ("--set", "learning.doubt.asks=true", "--set", "learning.doubt.alone=true")
+"""Settings of a robot that a batch does not know."""
+
+
 def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: CommandLine, lessons: Path) -> None:
-    said = kurt2rt("certify", lessons, *SHORT, "--set", "learning.past_weight=0.5")
+    said = kurt2rt("certify", lessons, *SHORT, *ALONE)
     assert said.exit_code == 0, said.err
     assert "All runs were driven on the CAN loop" in said.out
 

@@ -7,7 +7,7 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from behaviors.metrics.task_metric import TaskMetric
+from behaviors.metrics.task_metric import BorderMetric, TaskMetric
 from hal.batch import Batch, BatchFactory, FollowedSimulation, Start, Tally
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, SimulationFactory
@@ -16,11 +16,11 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.certify.outcome import RunOutcome
 from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.lockstep.batch_guide import BatchGuide
 from kurt2rt.experiments.lockstep.batch_mind import (
     build_drive_settings,
     build_minds,
     guides_robots,
-    refused,
     require_known,
 )
 from kurt2rt.experiments.lockstep.episode import build_stuck_rule
@@ -53,18 +53,65 @@ def drive_in_batch(
         SettingsError: task and world do not fit.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
-    period_s = subject.robot.can.cycle_s
-    with opened_batch(factory, subject, runs) as batch:
-        ticks, active = round(subject.task.exam.duration_s / period_s), list(range(len(runs)))
-        for begin in range(0, ticks, _STRETCH_TICKS):
-            stretch = min(_STRETCH_TICKS, ticks - begin)
-            if active:
-                active = batch.drive(active, stretch)
-            tell((begin + stretch) * period_s * len(runs))
+    with opened_batch(factory, subject, runs) as (batch, courses):
+        period_s = subject.robot.can.cycle_s
+        ticks = round(subject.task.exam.duration_s / period_s)
+        if courses:
+            _drive_guided(batch, courses, ticks, lambda done: tell(done * period_s))
+        else:
+            _drive_all(batch, len(runs), ticks, lambda done: tell(done * period_s))
         outcomes: list[RunOutcome | None] = []
         for r, run in enumerate(runs):
             outcomes.append(None if batch.reason_to_leave(r) else _outcome_of(run, batch.tally(r)))
         return outcomes
+
+
+def _drive_all(batch: Batch, robots: int, ticks: int, tell: Progress) -> None:
+    """Drive all robots for so many ticks; `tell`: gets the ticks of all so far."""
+    active = list(range(robots))
+    for begin in range(0, ticks, _STRETCH_TICKS):
+        stretch = min(_STRETCH_TICKS, ticks - begin)
+        if active:
+            active = batch.drive(active, stretch)
+        tell((begin + stretch) * robots)
+
+
+def _drive_guided(batch: Batch, courses: Sequence["_Course"], ticks: int, tell: Progress) -> None:
+    """Drive all robots for so many ticks, each guided by its course; `tell`: gets the ticks of all so far."""
+    left = dict.fromkeys(range(len(courses)), ticks)
+    while left:
+        # A robot that stopped at a border is behind the others, and ends after them.
+        stretch = min(_STRETCH_TICKS, max(left.values()))
+        going = [r for r in left if left[r] >= stretch]
+        batch.drive(going, stretch)
+        for r in going:
+            courses[r].follow(batch, r)
+            tally = batch.tally(r)
+            left[r] = 0 if batch.reason_to_leave(r) or tally.stuck else ticks - tally.ticks
+        left = {r: ahead for r, ahead in left.items() if ahead}
+        tell(ticks * len(courses) - sum(left.values()))
+
+
+class _Course:
+    """Course of one run that guides the robot at borders; else it measures nothing."""
+
+    def __init__(self, simulation: FollowedSimulation, task: TaskSettings, setup: ExamSetup) -> None:
+        """Build the metric at the robot's start. Raises SettingsError if task and world do not fit."""
+        chance = random.Random(setup.chance_seed)
+        metric = task.course.build(simulation, task.behaviours, chance)
+        assert isinstance(metric, BorderMetric)
+        metric.reset(simulation.pose)
+        if task.exam.start == "in_sight":
+            simulation.reposition(chance, in_sight=True)
+            metric.reset(simulation.pose)
+        self._metric, self.guide = metric, BatchGuide(simulation, metric, chance)
+
+    def follow(self, batch: Batch, robot: int) -> None:
+        """Follow the newest stretch of a robot, and guide it."""
+        if not batch.reason_to_leave(robot):
+            for pose in batch.stretch(robot).poses:
+                self._metric.update(pose)
+            self.guide.look_after(batch, robot)
 
 
 def _outcome_of(run: Run, tally: Tally) -> RunOutcome:
@@ -74,32 +121,43 @@ def _outcome_of(run: Run, tally: Tally) -> RunOutcome:
 
 
 @contextmanager
-def opened_batch(factory: BatchFactory, subject: Subject, runs: Sequence[Run]) -> Iterator[Batch]:
-    """Yield a batch of the robots of all runs, at their starts. Raises as `drive_in_batch`."""
+def opened_batch(
+    factory: BatchFactory, subject: Subject, runs: Sequence[Run]
+) -> Iterator[tuple[Batch, Sequence[_Course]]]:
+    """Yield a batch of the robots of all runs, at their starts, and their courses; none if they are not guided.
+
+    Raises as `drive_in_batch`.
+    """
     robot, task = subject.robot, subject.task
     setups = [ExamSetup(run.world, run.number) for run in runs]
     require_known(task, setups)
-    if guides_robots(task):
-        raise refused(task, f"runs of course {task.course.kind}, which guides the robot on its way")
-    with _opened(factory, task, setups) as simulations:
+    with _opened(factory, setups) as simulations:
+        courses: list[_Course] = []
+        if guides_robots(task):
+            courses = [_Course(each, task, setup) for each, setup in zip(simulations, setups, strict=True)]
+        elif task.exam.start == "in_sight":
+            _put_in_sight(task, simulations, setups)
         minds = build_minds(simulations, robot, task, [(subject.events, setup) for setup in setups])
         exam = task.exam
         rule = build_stuck_rule(exam.stuck_after_s, robot.can.cycle_s, least_m=exam.stuck_within_m)
-        yield factory.open_batch(simulations, minds, replace(build_drive_settings(robot, task), stuck=rule))
+        batch = factory.open_batch(simulations, minds, replace(build_drive_settings(robot, task), stuck=rule))
+        for r, course in enumerate(courses):
+            course.guide.begin(batch, r)
+        yield batch, courses
+
+
+def _put_in_sight(task: TaskSettings, simulations: Sequence[FollowedSimulation], setups: Sequence[ExamSetup]) -> None:
+    for simulation, setup in zip(simulations, setups, strict=True):
+        chance = random.Random(setup.chance_seed)
+        task.course.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
+        simulation.reposition(chance, in_sight=True)
 
 
 @contextmanager
-def _opened(
-    factory: BatchFactory, task: TaskSettings, setups: Sequence[ExamSetup]
-) -> Iterator[list[FollowedSimulation]]:
-    """Yield an open simulation for each setup, with the robot at its start; close them all."""
+def _opened(factory: BatchFactory, setups: Sequence[ExamSetup]) -> Iterator[list[FollowedSimulation]]:
+    """Yield an open simulation for each setup; close them all."""
     simulations = factory.open_all([Start(setup.world, setup.seed) for setup in setups], "exam")
     try:
-        if task.exam.start == "in_sight":
-            for simulation, setup in zip(simulations, setups, strict=True):
-                chance = random.Random(setup.chance_seed)
-                task.course.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
-                simulation.reposition(chance, in_sight=True)
         yield simulations
     finally:
         for simulation in simulations:

@@ -13,6 +13,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.batch_guide import BatchGuide
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds, require_known
 from kurt2rt.experiments.lockstep.episode import Episode, StuckDetector
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
@@ -82,15 +83,15 @@ class _Drive:
         chance = random.Random(setup.chance_seed)
         self._simulation, self._task, self._setup = simulation, task, setup
         self._period_s = settings.can.cycle_s
-        self._metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
+        metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
+        self._metric = metric
         # Asked once, because these read all members of a protocol.
-        self._stretch_metric = self._metric if isinstance(self._metric, StretchMetric) else None
-        self._border_metric = self._metric if isinstance(self._metric, BorderMetric) else None
+        self._stretch_metric = metric if isinstance(metric, StretchMetric) else None
+        self._guide = BatchGuide(simulation, metric, chance) if isinstance(metric, BorderMetric) else None
         self._metric.reset(simulation.pose)
         if task.exam.start == "in_sight":
             simulation.reposition(chance, in_sight=True)
             self._metric.reset(simulation.pose)
-        self._chance = chance
         self._planned_ticks = round(task.exam.duration_s / self._period_s)
         self._stuck = StuckDetector(task.exam.stuck_after_s, self._period_s, least_m=task.exam.stuck_within_m)
         self._pose = simulation.pose
@@ -113,10 +114,9 @@ class _Drive:
         return min(_STRETCH_TICKS, self._planned_ticks - self._ticks)
 
     def begin(self, batch: Batch, robot: int) -> None:
-        """Let a robot of the batch drive by the behaviour that is wanted, up to the borders of the metric."""
-        if self._border_metric is not None:
-            batch.watch(robot, self._border_metric.borders)
-            batch.select(robot, self._metric.behaviour)
+        """Begin the drive of a robot of the batch."""
+        if self._guide is not None:
+            self._guide.begin(batch, robot)
 
     def follow(self, batch: Batch, robot: int) -> None:
         """Measure the newest stretch of a robot, and look after the robot as after its last tick."""
@@ -136,7 +136,10 @@ class _Drive:
         self._pose = poses[-1]
         self._follow_poses(poses)
         if stuck_after is None:
-            self._look_after(batch, robot)
+            put = None if self._guide is None else self._guide.look_after(batch, robot)
+            if put is not None:
+                self._pose, self._left = put, bool(batch.reason_to_leave(robot))
+                self._stuck.restart()
             stuck_after = self._stuck_after([self._pose])
         first = -(self._ticks + 1) % _TRAIL_STRIDE
         self._trail += [Position(pose.x_m, pose.y_m) for pose in [*poses[:-1], self._pose][first::_TRAIL_STRIDE]]
@@ -169,18 +172,6 @@ class _Drive:
             collision_positions=tuple(self._collision_positions),
             least_progress=self._task.course.least_progress(self._simulation, self._task.exam.duration_s),
         )
-
-    def _look_after(self, batch: Batch, robot: int) -> None:
-        """Put the robot elsewhere, or let another behaviour be wanted, if the metric says so."""
-        if self._metric.needs_reset:
-            self._pose = self._simulation.draw_pose(self._chance, in_sight=False)
-            batch.put(robot, self._pose)
-            self._left = bool(batch.reason_to_leave(robot))
-            self._simulation.carry(self._pose)
-            self._stuck.restart()
-            self._metric.reset(self._pose)
-        if self._border_metric is not None:
-            batch.select(robot, self._metric.behaviour)
 
     def _stuck_after(self, poses: Sequence[Pose]) -> int | None:
         """Return the number of further ticks after which the robot is stuck; None if it is not."""

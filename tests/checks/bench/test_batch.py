@@ -21,7 +21,7 @@ async def test_batch_is_compared_with_the_bus(subject: BenchFixture) -> None:
     assert shares == [0.2, 0.4, 0.6, 0.8, 1.0]
 
 
-async def test_task_whose_course_guides_robots_has_no_runs(subject: BenchFixture) -> None:
-    streets = replace(subject, task=load_task("turn_left"), events=())
-    (exams,) = await measure_batch(streets, BatchLengths(robots=2, exam_s=1.0, batches=1, on_bus=1), lambda _: None)
-    assert exams.goals[1].measured == 1
+async def test_streets_are_compared_with_the_bus(subject: BenchFixture) -> None:
+    streets, lengths = replace(subject, task=load_task("turn_left"), events=()), BatchLengths(2, 1.0, 1, 2)
+    exams, _ = await measure_batch(streets, lengths, lambda _: None)
+    assert exams.goals[1].measured == 2

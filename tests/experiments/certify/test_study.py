@@ -25,6 +25,7 @@ from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
+from tests.simbridge.batch.equal_lessons import batch_lesson
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
 EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=DriveLoop.BATCH)
@@ -58,6 +59,22 @@ def test_outcome_in_the_batch_is_that_of_the_bus(taught: Taught, run: Run) -> No
     on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
     assert in_batch is not None
     assert in_batch.differing(on_bus) == []
+
+
+@pytest.mark.parametrize("name", ["streets", "straight_on"])
+def test_outcomes_in_streets_are_those_of_the_bus(name: str) -> None:
+    times = {"supervised_s": SECONDS, "corrections_s": 2 * SECONDS}
+    changes = {f"teaching.{key}": str(seconds) for key, seconds in times.items()}
+    lengths = {"exam.duration_s": str(3 * SECONDS), "exam.stuck_after_s": str(SECONDS)}
+    task = load_task(name, changes={**changes, **lengths})
+    with batch_lesson(task, 2) as lesson:
+        assert lesson.drive_stretches()
+        subject = Subject(ROBOT, task, lesson.given().events)
+    runs = [Run(number, world) for number, world in enumerate(("manhattan", "streets-5", "streets-6"), start=20_010)]
+    for run, in_batch in zip(runs, drive_in_batch(STAGE, subject, runs, ignore), strict=True):
+        on_bus, _ = anyio.run(drive_on_bus, STAGE, subject, run, ignore)
+        assert in_batch is not None
+        assert in_batch.differing(on_bus) == []
 
 
 def test_start_in_sight_is_that_of_the_bus() -> None:

@@ -9,7 +9,7 @@ from hal.simulation import Pose
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
 from simbridge.batch.laws import StuckLaw
 from simbridge.batch.record import Sizes, empty_robots
-from simbridge.batch.tally import count_tick
+from simbridge.batch.tally import count_tick, restart_window
 
 PERIOD_S = 0.01
 NO_RULE = StuckLaw(1, 0, 0.0)
@@ -49,6 +49,7 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
     chance = random.Random(seed)
     detector = StuckDetector(3.0, PERIOD_S, least_m=0.5)
     robot = empty_robots(1, SIZES)[0]
+    robot.kept_since = 1
     x_m = y_m = heading_rad = 0.0
     found: list[int] = []
     for tick in range(1, 3000):
@@ -65,3 +66,22 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
             break
     assert found
     assert found[0] > 301
+
+
+@pytest.mark.parametrize("put_at", [7, 51, 120])
+def test_robot_that_is_put_begins_the_window_of_the_detector(put_at: int) -> None:
+    detector = StuckDetector(3.0, PERIOD_S, least_m=0.5)
+    robot, law = empty_robots(1, SIZES)[0], StuckLaw(*RULE)
+    robot.kept_since = 1
+    for tick in range(1, 1000):
+        robot.tick = tick
+        count_tick(robot, False, law)
+        if tick == put_at:
+            robot.x_m = 5.0
+            restart_window(robot, law)
+            detector.restart()
+        stuck = detector.none_since_window(Pose(robot.x_m, robot.y_m, 0.0))
+        assert stuck == bool(robot.stuck)
+        if stuck:
+            break
+    assert tick == put_at + 300
