@@ -36,7 +36,7 @@ def bench(
     json: AsJson = False,
     folder: _Folder = Path(),
 ) -> None:
-    """Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.
+    """Measure what the runtime takes, on this machine, with the simulated robot: 7 minutes.
 
     lateness  how late ticks begin in a minute of driving; with asyncio.sleep
     tick      what each stage of these ticks takes
