@@ -2,6 +2,7 @@
 # make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
 # make test   lint, types, and the tests that need nothing but Python
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
+# make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
@@ -13,7 +14,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test test-deep guard mutants kills studies hil bench lint types clean
+.PHONY: run demo test test-deep guard mutants kills equal-lessons studies hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -46,6 +47,11 @@ SHARD ?= 1/1
 KILLS ?= 10000
 kills: $(INSTALLED)
 	$(BIN)/python -m tests.crash.kills --kills $(KILLS) --shard $(SHARD)
+
+# Two processors take three quarters of an hour.
+LESSONS ?= 1000
+equal-lessons: $(INSTALLED)
+	$(BIN)/python -m tests.simbridge.batch.equal_lessons --lessons $(LESSONS) --shard $(SHARD)
 
 # Each goes on where it was, and leaves its report in results/search.
 SEARCHES ?= $(basename $(notdir $(wildcard config/searches/*.yaml)))

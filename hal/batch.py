@@ -1,10 +1,12 @@
 """Contract of a batch: many simulated robots that drive at once, by policies or by taught RLAs, without a teacher."""
 
+import random
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol, runtime_checkable
 
+from hal.areas import Borders
 from hal.guard_reason import GuardReason
 from hal.simulation import Pose, Simulation, SimulationFactory
 
@@ -25,12 +27,16 @@ class FeatureKind(IntEnum):
 
 
 class FeatureTable(NamedTuple):
-    """Recent features that count in a distance, in the order of the situation; a weight of 0 counts for nothing."""
+    """Features of a situation, in its order; a weight of 0 counts for nothing in a distance."""
 
     kinds: tuple[FeatureKind, ...]
     sensors: tuple[tuple[int, ...], ...]
     """Places of each feature's sensors in the sensor table."""
     weights: tuple[float, ...]
+    average_steps: int
+    """Steps of the averages."""
+    average_weights: tuple[float, ...] = ()
+    """Weights of the averages; empty if they count for nothing."""
 
 
 @runtime_checkable
@@ -56,11 +62,13 @@ class PolicyMind:
 
 @dataclass(frozen=True, slots=True)
 class TaughtMind:
-    """Robot that drives by RLAs, oldest first, and stands outside their radii."""
+    """Robot that drives by the RLAs of the wanted behaviour, oldest first, and stands outside their radii."""
 
+    sizes: tuple[int, ...]
+    """Number of RLAs of each taught behaviour, in the order of `DriveSettings.behaviours` and of all fields below."""
     rla_ids: tuple[int, ...]
     conditions: Sequence[Sequence[float]]
-    """Weighted recent features of each RLA."""
+    """Weighted features of each RLA, the recent ones first; averages if they count."""
     radii: tuple[float, ...]
     answers: tuple[int, ...]
     """Place of the RLA that answers where RLAs share a condition; most places name themselves."""
@@ -126,8 +134,10 @@ class DriveSettings:
     """Actions that the batch knows, by name."""
     minimum_ticks: int
     """Ticks before another action may replace the driving one."""
+    behaviours: tuple[str, ...] = ("",)
+    """Names of the taught behaviours; the first is wanted at the begin."""
     stuck: StuckRule | None = None
-    """Rule that ends the drive of a robot; None: none."""
+    """Rule that ends the drive of a robot, for robots that are not put elsewhere; None: none."""
 
 
 class Stretch(NamedTuple):
@@ -194,7 +204,7 @@ class Batch(Protocol):
     def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
         """Let these robots drive so many ticks on, and return those that can go on.
 
-        Robots that leave the batch or are stuck stop early.
+        Robots that leave the batch, are stuck or cross a border stop early.
         """
         ...
 
@@ -220,6 +230,21 @@ class Batch(Protocol):
         """
         ...
 
+    def watch(self, robot: int, borders: Borders) -> None:
+        """Let the stretches of a robot end at borders; before it drives.
+
+        Raises hal.batch_refusal.BatchRefusedError for too many areas.
+        """
+        ...
+
+    def select(self, robot: int, behaviour: str) -> None:
+        """Let a taught behaviour be wanted of a robot from its next decision on."""
+        ...
+
+    def put(self, robot: int, pose: Pose) -> None:
+        """Put a robot, standing, at this pose in m and rad."""
+        ...
+
     def trace(self, robot: int) -> Trace:
         """Return the readings of a commanded robot over the newest call of `drive`."""
         ...
@@ -238,6 +263,14 @@ class FollowedSimulation(Simulation, Protocol):
 
         The simulation can be stepped no more.
         """
+        ...
+
+    def draw_pose(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> Pose:
+        """Return a pose in m and rad at which `reposition` would put the robot."""
+        ...
+
+    def carry(self, pose: Pose) -> None:
+        """Be at a pose in m and rad at which the robot was put in the batch."""
         ...
 
 

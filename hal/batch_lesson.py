@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.areas import Borders
 from hal.batch import Action, FeatureTable, TabledPolicy
 from hal.simulation import Pose, Simulation, SimulationFactory
 
@@ -44,6 +45,8 @@ class LessonLog(NamedTuple):
     """LessonCause of each tick."""
     actions: NDArray[np.int8]
     """Index of the action that drives; -1 while the robot stands."""
+    behaviours: NDArray[np.int8]
+    """Index of the taught behaviour that is wanted."""
     right: NDArray[np.int8]
     """Index of the action that the policy takes for right."""
     rlas: NDArray[np.int32]
@@ -56,11 +59,11 @@ class LessonLog(NamedTuple):
 
 
 class TaughtRlas(NamedTuple):
-    """RLAs that compete in a lesson, oldest first."""
+    """RLAs of the wanted behaviour, which compete, oldest first."""
 
     rla_ids: Sequence[int]
     conditions: Sequence[NDArray[np.float64]]
-    """Weighted recent features of each RLA, (features,)."""
+    """Weighted features of each RLA, the recent ones first, and averages if they count, (values,)."""
     radii: Sequence[float]
     """Distances within which they answer now."""
     actions: Sequence[str]
@@ -85,11 +88,11 @@ class LessonDriveSettings:
     """Actions that the robot may be taught, by name."""
     minimum_ticks: int
     """Ticks before another action may replace the driving one."""
+    behaviours: tuple[str, ...]
+    """Names of the taught behaviours; the first is wanted at the begin."""
     policy: TabledPolicy
     """Policy of the teacher."""
     features: FeatureTable
-    average_steps: int
-    """Steps of the averages in a situation."""
     ticks: int
     """Length of the lesson."""
 
@@ -112,6 +115,17 @@ class LessonRobot(Simulation, Protocol):
         """Return why the lesson belongs on the loop over the CAN bus; empty if it does not."""
         ...
 
+    def watch(self, borders: Borders) -> None:
+        """Let `drive` end at borders; before the first tick.
+
+        Raises hal.batch_refusal.BatchRefusedError for too many areas.
+        """
+        ...
+
+    def select(self, behaviour: str) -> None:
+        """Let a taught behaviour be wanted from the next decision on."""
+        ...
+
     def set_rlas(self, rlas: TaughtRlas) -> None:
         """Replace the RLAs; the next decision may take another action at once, even if one is held."""
         ...
@@ -130,7 +144,7 @@ class LessonRobot(Simulation, Protocol):
         ...
 
     def drive(self, until: int) -> int:
-        """Drive to the end of a tick and return its number; less if the robot must go to the physics engine first.
+        """Drive to the end of a tick and return its number; less at a border, and before the physics engine's ticks.
 
         Ticks after the last `keep` can be taken back. Raises ValueError for too many ticks.
         """

@@ -104,6 +104,10 @@ class Kurt2Simulation:
         """
         self.simulated_robot.follow(poses)
 
+    def carry(self, pose: Pose) -> None:
+        """Be at a pose at which a batch put the robot."""
+        self.simulated_robot.carry(pose)
+
     def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
         """Return the distance in m from each position to the nearest wall or obstacle."""
         return self._nearest.distances_m(positions)

@@ -1,5 +1,6 @@
 """Simulation of a robot that is taught in a batch (hal.batch_lesson.LessonRobot)."""
 
+from hal.areas import Borders
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
@@ -31,6 +32,14 @@ class LessonSimulation(Kurt2Simulation):
     def reason_to_leave(self) -> str:
         """Return why the lesson belongs on the loop over the CAN bus; empty if it does not."""
         return self._lesson.reason_to_leave(0)
+
+    def watch(self, borders: Borders) -> None:
+        """Let `drive` end at borders. Raises BatchRefusedError for too many areas."""
+        self._lesson.watch_borders(borders)
+
+    def select(self, behaviour: str) -> None:
+        """Let a taught behaviour be wanted from the next decision on."""
+        self._lesson.select_behaviour(behaviour)
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
         """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
@@ -85,4 +94,4 @@ class LessonSimulation(Kurt2Simulation):
 
     def put(self, pose: Pose) -> None:
         """Put the robot, standing, at this pose; only after `keep`."""
-        self._lesson.put(pose)
+        self._lesson.put_down(pose)

@@ -3,10 +3,12 @@
 import math
 import random
 from collections import Counter
+from collections.abc import Sequence
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
 from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Metrics, MetricSettings, TaskMetric
+from hal.areas import Borders
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
@@ -14,6 +16,7 @@ QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
 """Quarter turns to the left of each behaviour."""
 _LOOK_EVERY = 5
 """Ticks between two updates; the robot drives some centimeters in them."""
+_MEASURE_LOOKS = MEASURE_EVERY // _LOOK_EVERY
 _LEFT_BEHIND_M = 0.1
 
 
@@ -67,6 +70,11 @@ class Junctions:
         self._ticks = 0
 
     @property
+    def borders(self) -> Borders:
+        """Borders of the junctions."""
+        return Borders(_LOOK_EVERY, _LEFT_BEHIND_M, tuple(each.area for each in self._streets.junctions))
+
+    @property
     def progress(self) -> float:
         """Count of junctions left through the required side."""
         return float(self._right.total())
@@ -95,17 +103,23 @@ class Junctions:
 
     def update(self, pose: Pose) -> None:
         """Update the metric with the robot's pose."""
-        due = self._ticks % _LOOK_EVERY == 0
-        self._ticks += 1
-        if not due:
+        self.update_all([pose])
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Update the metric with the robot's poses of ticks in a row."""
+        looks = poses[-self._ticks % _LOOK_EVERY :: _LOOK_EVERY]
+        self._ticks += len(poses)
+        if not looks:
             return
-        if self._looks % (MEASURE_EVERY // _LOOK_EVERY) == 0:
-            deviation_m = self._streets.deviation_m(pose)
-            if deviation_m is not None:
-                self._deviation2_m2.add(deviation_m**2)
-        self._looks += 1
+        for deviation_m in self._streets.deviations_m(looks[-self._looks % _MEASURE_LOOKS :: _MEASURE_LOOKS]):
+            self._deviation2_m2.add(deviation_m**2)
+        self._looks += len(looks)
+        for pose, junction in zip(looks, self._streets.junctions_at(looks), strict=True):
+            self._look(pose, junction)
+
+    def _look(self, pose: Pose, junction: Junction | None) -> None:
+        """Enter or leave a junction; `junction`: that holds the pose."""
         if self._inside is None:
-            junction = self._streets.junction_at(pose)
             if junction is not None:
                 self._enter(junction, junction.side_of(pose).turned(2))
         elif not self._inside.holds(pose, _LEFT_BEHIND_M):

@@ -1,9 +1,15 @@
 """Streets, junctions and where they lead, as a dispatcher's map shows them; streets run along the axes."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass
 from enum import IntEnum
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.areas import Area, holds
 from hal.simulation import Pose, WorldPlan
 
 _ON_LINE_M = 0.01
@@ -42,21 +48,34 @@ def side_towards(dx: float, dy: float) -> Side:
 class Junction:
     """Junction of streets."""
 
-    x_m: float
-    y_m: float
-    half_width_m: float
-    """Half the width of the streets that lead north and south; half its extent in x."""
-    half_height_m: float
-    """The same for those that lead east and west, in y."""
+    area: Area
+    """Its extent is the width of the streets that lead there."""
     arms: frozenset[Side]
     """Sides at which a street goes on."""
 
+    @property
+    def x_m(self) -> float:
+        """Centre in x."""
+        return self.area.x_m
+
+    @property
+    def y_m(self) -> float:
+        """Centre in y."""
+        return self.area.y_m
+
+    @property
+    def half_width_m(self) -> float:
+        """Half the width of the streets that lead north and south."""
+        return self.area.half_width_m
+
+    @property
+    def half_height_m(self) -> float:
+        """Half the width of the streets that lead east and west."""
+        return self.area.half_height_m
+
     def holds(self, pose: Pose, margin_m: float = 0.0) -> bool:
         """Return whether a pose lies in the junction, or at most `margin_m` outside."""
-        return (
-            abs(pose.x_m - self.x_m) <= self.half_width_m + margin_m
-            and abs(pose.y_m - self.y_m) <= self.half_height_m + margin_m
-        )
+        return holds(pose.x_m, pose.y_m, self.area, margin_m)
 
     def side_of(self, pose: Pose) -> Side:
         """Return the side of the junction that a pose in or next to it is nearest to."""
@@ -76,12 +95,6 @@ class Lane:
     """Start and end along the other axis."""
     half_width_m: float
 
-    def deviation_m(self, pose: Pose) -> float | None:
-        """Return the distance in m of a pose from the middle; None off the street."""
-        along_m, across_m = (pose.x_m, pose.y_m) if self.level else (pose.y_m, pose.x_m)
-        away_m = abs(across_m - self.line_m)
-        return away_m if away_m <= self.half_width_m and self.from_m <= along_m <= self.to_m else None
-
 
 class StreetMap:
     """All streets and junctions of a world."""
@@ -89,17 +102,47 @@ class StreetMap:
     def __init__(self, plan: WorldPlan) -> None:
         self.lanes = tuple(_lane(each.from_m, each.to_m, each.width_m) for each in plan.streets)
         self.junctions = tuple(self._junction(x_m, y_m) for x_m, y_m in plan.junctions)
+        self._areas: Any = Area(*np.array([each.area for each in self.junctions]).reshape(-1, 4).T)
+        """Each field of all areas, (junctions,)."""
+        level, *numbers = np.array([astuple(lane) for lane in self.lanes]).reshape(-1, 5).T
+        self._level, self._lane_numbers = level != 0.0, numbers
 
     def junction_at(self, pose: Pose) -> Junction | None:
         """Return the junction that a pose lies in; None outside of all junctions."""
-        return next((each for each in self.junctions if each.holds(pose)), None)
+        return self.junctions_at([pose])[0]
+
+    def junctions_at(self, poses: Sequence[Pose]) -> list[Junction | None]:
+        """Return the junction that each pose lies in; None outside of all junctions."""
+        inside = self._inside(np.array(poses))
+        places = np.where(inside.any(axis=1), inside.argmax(axis=1), -1)
+        return [None if place < 0 else self.junctions[place] for place in places.tolist()]
 
     def deviation_m(self, pose: Pose) -> float | None:
         """Return the distance in m of a pose from the middle of its street; None in junctions and off streets."""
-        if self.junction_at(pose) is not None:
-            return None
-        deviations_m = [away_m for lane in self.lanes if (away_m := lane.deviation_m(pose)) is not None]
-        return min(deviations_m, default=None)
+        return next(iter(self.deviations_m([pose])), None)
+
+    def deviations_m(self, poses: Sequence[Pose]) -> list[float]:
+        """Return the distance in m from the middle of its street, of each pose in a street and no junction."""
+        if not poses:
+            return []
+        at = np.array(poses)
+        line_m, from_m, to_m, half_width_m = self._lane_numbers
+        x_m, y_m = at[:, :1], at[:, 1:2]
+        along_m, across_m = np.where(self._level, x_m, y_m), np.where(self._level, y_m, x_m)
+        away_m = abs(across_m - line_m)
+        in_lane = (away_m <= half_width_m) & (from_m <= along_m) & (along_m <= to_m)
+        least_m = np.where(in_lane, away_m, np.inf).min(axis=1, initial=np.inf)
+        counts = np.isfinite(least_m) & ~self._inside(at).any(axis=1)
+        nearest_m: list[float] = least_m[counts].tolist()
+        return nearest_m
+
+    def _inside(self, at: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return whether each pose (n, 3) in m and rad lies in each junction, (n, junctions)."""
+        x_m: Any = at[:, :1]
+        y_m: Any = at[:, 1:2]
+        inside: Any = holds(x_m, y_m, self._areas, 0.0)
+        table: NDArray[np.bool_] = inside
+        return table
 
     def next_junction(self, pose: Pose, way: Side) -> Junction | None:
         """Return the next junction in the direction `way` along the street of a pose; None without one."""
@@ -129,7 +172,8 @@ class StreetMap:
             if ends:
                 arms.add(Side.EAST if lane.level else Side.NORTH)
         widest_m = max([*widths_m, *heights_m])
-        return Junction(x_m, y_m, max(widths_m, default=widest_m), max(heights_m, default=widest_m), frozenset(arms))
+        area = Area(x_m, y_m, max(widths_m, default=widest_m), max(heights_m, default=widest_m))
+        return Junction(area, frozenset(arms))
 
 
 def _lane(from_m: tuple[float, float], to_m: tuple[float, float], width_m: float) -> Lane:

@@ -5,6 +5,7 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
+from hal.areas import Borders
 from hal.settings_by_kind import KindSettings
 from hal.simulation import Pose, Simulation, WorldPlan
 
@@ -73,6 +74,16 @@ class StretchMetric(TaskMetric, Protocol):
 
         Only in a simulation that follows a batch (hal.batch.FollowedSimulation).
         """
+        ...
+
+
+@runtime_checkable
+class BorderMetric(TaskMetric, Protocol):
+    """Metric that changes its behaviour, or needs a reset, only in `reset` and where the robot crosses a border."""
+
+    @property
+    def borders(self) -> Borders:
+        """Borders, which stay where they are."""
         ...
 
 

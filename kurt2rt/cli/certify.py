@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.text import Text
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
@@ -20,8 +22,10 @@ from kurt2rt.cli.options import (
     changes_of,
     results_option,
 )
-from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.knowledge.files.task_of_file import task_of_file
@@ -29,6 +33,7 @@ from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.certify.outcome import RunOutcome
+    from kurt2rt.experiments.lockstep.exam import ExamResult
 
 _FOLDER = Path("results/certify")
 _SECONDS = "exam.duration_s"
@@ -90,6 +95,8 @@ class _Options:
     task: TaskOfTheFile = None
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
+    on: OnOption = None
     out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -111,6 +118,7 @@ def certify(options: _Options) -> None:
         kurt2rt certify results/demo/wall_following-0.knowledge
         kurt2rt certify mine.knowledge --runs 10000 --world rooms-SEED
         kurt2rt exam mine.knowledge --seed 20017 --world rooms-20017
+        kurt2rt certify mine.knowledge --runs 100000 --shard 2/8 --out part-2
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. Tasks that the batch does not know, such
@@ -129,7 +137,6 @@ def _certify(options: _Options) -> None:
     from kurt2rt.experiments.certify.summary import summarise, worst_runs
     from kurt2rt.experiments.certify.tables import all_tables
     from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
     from simbridge.simulation import Kurt2SimulationFactory
@@ -143,23 +150,27 @@ def _certify(options: _Options) -> None:
     loop = _loop(options, find_refusal(task, options.knowledge, one, parts))
     broken = BrokenShare(options.dead_sensors, robot.infrared.names)
     extent = Extent(options.first, options.runs, places, loop, broken)
-    plan = make_plan(task, options.knowledge, extent, parts)
+    plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, loop)
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        return
     report = options.out / "report.html"
-    missing_s = missing_time_s(plan, results)
-    with results.held(), one_bar(missing_s + options.pictures * task.exam.duration_s) as bar:
-        run_missing(plan, results, options.jobs, bar.update)
+    with study_run(plan, results, command, options.jobs, options.on) as bar:
         certificate = read_certificate(plan, results)
         worst = worst_runs(certificate.outcomes, options.pictures)
         commands = [_exam_command(options, each) for each in worst]
-        exams = drive_again(
-            plan, worst, options.jobs, lambda each: bar.update(each._replace(done_s=missing_s + each.done_s))
-        )
+        bar.say("all runs")
+        exams: list[ExamResult] = []
+        if worst:
+            bar.begin_next(len(worst) * task.exam.duration_s)
+            exams = drive_again(plan, worst, options.jobs, bar.update)
         bar.say("figures and report")
         pictures = list(draw_worst(exams, commands, factory, options.out))
         tables = list(all_tables(certificate, worst))
-        write_report(certificate, tables, pictures, _command(options), report)
+        write_report(certificate, tables, pictures, command, report)
     if not options.as_json:
-        print_whole(console_of(), *map(as_rich, tables), *commands, f"report  {report}")
+        to_copy = [Text(each, no_wrap=True) for each in commands]
+        print_whole(console_of(), *map(as_rich, tables), *to_copy, f"report  {report}")
         return
     print_json(
         {
@@ -207,22 +218,15 @@ def _exam_command(options: _Options, run: "RunOutcome") -> str:
     """Return the command that drives a run again."""
     words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.number), "--world", run.world]
     words += ["--broken-sensor", run.broken] if run.broken else []
-    return shlex.join([*words, *_changed_words(options)])
-
-
-def _command(options: _Options) -> str:
-    """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = ["kurt2rt", "certify", options.knowledge.name, "--runs", str(options.runs)]
-    words += ["--first-seed", str(options.first)]
-    words += ["--dead-sensors", f"{options.dead_sensors:g}"] if options.dead_sensors else []
-    words += [word for name in options.world or () for word in ("--world", Path(name).name)]
-    words += ["--exams", options.exams.value] if options.exams is not DriveLoop.BATCH else []
-    return shlex.join([*words, *_changed_words(options)])
-
-
-def _changed_words(options: _Options) -> list[str]:
-    """Return the options that change the task or the robot, as `kurt2rt exam` takes them."""
     changes = [*(options.changes or ()), *([f"{_SECONDS}={options.seconds:g}"] if options.seconds is not None else [])]
-    words = [word for change in changes for word in ("--set", change)]
+    words += [word for change in changes for word in ("--set", change)]
     words += ["--task", options.task] if options.task is not None else []
-    return words + (["--robot-settings", options.robot_settings] if options.robot_settings != "kurt2" else [])
+    words += ["--robot-settings", options.robot_settings] if options.robot_settings != "kurt2" else []
+    return shlex.join(words)
+
+
+def _command(options: _Options, loop: DriveLoop) -> str:
+    """Return the command as far as it decides the jobs, which are other ones without the batch."""
+    bus = loop if loop is DriveLoop.BUS else None
+    stated = {"runs": options.runs, "first": options.first, "exams": bus, "pictures": None}
+    return typed_command("certify", options, stated)

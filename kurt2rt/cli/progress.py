@@ -53,6 +53,10 @@ class OneBar:
         doing = f"{first} and {len(others)} more" if others else first
         self._progress.update(self._id, completed=progress.done_s, description=doing)
 
+    def begin_next(self, whole_s: float) -> None:
+        """Begin a further bar below, of `whole_s` seconds of robot time, for drives after the jobs."""
+        self._id = self._progress.add_task("", total=whole_s)
+
     def say(self, what: str) -> None:
         """Replace the text of the bar, for work after the jobs."""
         self._progress.update(self._id, description=what)

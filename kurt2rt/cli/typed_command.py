@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 _LEFT_OUT = {"jobs", "shard", "on", "out", "exams", "lessons", "as_json"}
-"""Options that decide no number."""
+"""Options that decide no number, unless a command states them."""
 
 
 def typed_command(command: str, options: "DataclassInstance", instead: Mapping[str, object] | None = None) -> str:
@@ -22,14 +22,15 @@ def typed_command(command: str, options: "DataclassInstance", instead: Mapping[s
     Args:
         command: its name.
         options: its options, as `takes_options` makes them; those with their default are left out.
-        instead: values of fields in place of the typed ones; they are stated also if they are the default, None never.
+        instead: values of fields in place of the typed ones; they are stated also if they are the default or decide no
+            number in other commands, None never.
     """
     stated = instead or {}
     words = [f"kurt2rt {command}"]
     for each in fields(options):
         value = stated.get(each.name, getattr(options, each.name))
         default = None if each.default is MISSING or each.name in stated else each.default
-        if each.name not in _LEFT_OUT and value != default:
+        if (each.name in stated or each.name not in _LEFT_OUT) and value != default:
             words += _words(each, value)
     return " ".join(words)
 

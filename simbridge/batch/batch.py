@@ -6,16 +6,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.areas import Borders
 from hal.batch import STANDS, TRACED_TICKS, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
+from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
+from simbridge.batch.borders import area_of
 from simbridge.batch.contacts import ContactBody, SetPoints
-from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting
-from simbridge.batch.parts import NOISE_AHEAD, SLIP_AHEAD, STRETCH
+from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting, put_down
+from simbridge.batch.record import MOST_AREAS, NOISE_AHEAD, SLIP_AHEAD, STRETCH
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
-from simbridge.batch.tables import build_knowledge, require_known
+from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_robot import SimulatedRobot, hash_state
 
@@ -65,9 +68,10 @@ class RobotBatch:
             BatchRefusedError: for what the batch does not know.
         """
         require_known(robot, simulated, minds, settings)
-        self.actions = tuple(settings.actions)
+        self.actions, self._behaviours = tuple(settings.actions), settings.behaviours
         self._laws = build_laws(robot, simulated[0], minds, settings)
         self._knowledge, tables = build_knowledge(minds, self.actions)
+        self._averages = empty_averages(len(simulated), self._knowledge.features)
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
         # The bodies in the engine draw their slip themselves, when they catch up.
@@ -81,14 +85,16 @@ class RobotBatch:
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD
+        names = (("slip_noise", "slip_used"), ("noise", "noise_used"))
+        self._ahead = [(np.asarray(self._robots[numbers]), np.asarray(self._robots[used])) for numbers, used in names]
+        """Numbers that lie ahead of all robots, and how many are used of them: of slip, of the sensors."""
         self._longest = TRACED_TICKS if any(isinstance(mind, CommandedMind) for mind in minds) else STRETCH
-        self._driven = 0
 
     def drive(self, robots: Sequence[int], ticks: int) -> list[int]:
         """Let these robots drive so many ticks on, at most the longest stretch, and return those that can go on.
 
-        Robots that leave the batch or are stuck stop early. Raises ValueError for a longer stretch, and for a robot
-        that stopped before.
+        Robots that leave the batch, are stuck or cross a border stop early. Raises ValueError for a longer stretch, and
+        for a robot that cannot go on.
         """
         if not 0 < ticks <= self._longest:
             raise ValueError(f"a stretch of {ticks} ticks: give 1 to {self._longest}")
@@ -97,15 +103,14 @@ class RobotBatch:
         for r in robots:
             self._draw_noise(r, ticks)
         chosen = np.array(robots, dtype=np.int64)
-        self._robots["at"][chosen] = self._caught_up[chosen] = 0
-        self._driven = ticks
+        self._robots["at"][chosen] = self._robots["crossed"][chosen] = self._caught_up[chosen] = 0
         active = chosen
         while len(active):
-            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge)
+            drive(active, ticks, self._robots, self._world, self._laws, self._knowledge, self._averages)
             active = active[self._robots["waits"][active] != 0]
             for r in active.tolist():
                 self._move_in_engine(r)
-        self._keep_set_points(chosen, ticks)
+        self._keep_set_points(chosen)
         return self._going_on(robots)
 
     def _going_on(self, robots: Sequence[int]) -> list[int]:
@@ -129,12 +134,13 @@ class RobotBatch:
 
     def _finish(self, r: int) -> None:
         """Finish the tick of a robot whose body the engine has moved."""
-        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge)
+        finish_waiting(r, self._robots, self._world, self._laws, self._knowledge, self._averages)
 
-    def _keep_set_points(self, chosen: NDArray[np.int64], ticks: int) -> None:
+    def _keep_set_points(self, chosen: NDArray[np.int64]) -> None:
         """Keep the set points of the present stretch for the bodies in the engine that lag behind."""
-        sides = [self._robots[f"track_{side}_cm_s"][chosen, :ticks] for side in ("left", "right")]
-        self._set_points.add(chosen, np.stack(sides, axis=2).astype(np.int16), self._caught_up[chosen])
+        ends = self._robots["at"][chosen]
+        sides = [self._robots[f"track_{side}_cm_s"][chosen, : ends.max(initial=0)] for side in ("left", "right")]
+        self._set_points.add(chosen, np.stack(sides, axis=2).astype(np.int16), self._caught_up[chosen], ends)
 
     def reason_to_leave(self, robot: int) -> str:
         """Return why a robot cannot be driven in the batch any further; empty if it can."""
@@ -142,7 +148,8 @@ class RobotBatch:
 
     def stretch(self, robot: int) -> Stretch:
         """Return the course of a robot over the newest call of `drive`."""
-        record, end = self._robots[robot], self._driven
+        record = self._robots[robot]
+        end = int(record["at"])
         columns = [record[f"track_{name}"][:end].tolist() for name in Pose._fields]
         rlas = record["track_rla"][:end]
         return Stretch(
@@ -175,9 +182,38 @@ class RobotBatch:
             record["action"] = STANDS
         record["command"] = action
 
+    def watch(self, robot: int, borders: Borders) -> None:
+        """Let the stretches of a robot end at borders. Raises BatchRefusedError for too many areas."""
+        record, count = self._robots[robot], len(borders.areas)
+        if count > MOST_AREAS:
+            raise BatchRefusedError(f"a world has {count} areas (a batch knows {MOST_AREAS} at most)", do=ON_THE_BUS)
+        record["areas"][:count] = borders.areas
+        record["area_count"] = count
+        record["area_every"], record["area_margin_m"] = borders.every_ticks, borders.margin_m
+        record["area"] = area_of(record)
+
+    def select(self, robot: int, behaviour: str) -> None:
+        """Let a taught behaviour be wanted of a robot; its next decision may change the action at once."""
+        record, place = self._robots[robot], self._behaviours.index(behaviour)
+        if record["behaviour"] != place:
+            record["behaviour"] = place
+            record["action_ticks"] = self._laws.mind.minimum_ticks
+
+    def put(self, robot: int, pose: Pose) -> None:
+        """Put a robot, standing, at this pose; it must not wait for the engine."""
+        record, before = self._robots[robot], self._robots[robot : robot + 1].copy()[0]
+        assert not record["waits"]
+        self._draw_noise(robot, STRETCH)
+        record["x_m"], record["y_m"], record["heading_rad"] = pose
+        record["free_cycles"] = self._gap_cycles + 1
+        if not put_down(record, self._world, self._laws):
+            self._bodies[robot].put(pose, before, self._set_points.take(robot))
+            record["box_is_new"] = 0
+
     def trace(self, robot: int) -> Trace:
         """Return the readings of a commanded robot over the newest call of `drive`."""
-        record, end = self._robots[robot], self._driven
+        record = self._robots[robot]
+        end = int(record["at"])
         names = ("left_ticks", "right_ticks", "bumpers", "limits")
         left_ticks, right_ticks, bumpers, limits = (record[f"track_{name}"][:end].tolist() for name in names)
         counts = list(map(tuple, record["track_counts"][:end].tolist()))
@@ -200,12 +236,13 @@ class RobotBatch:
 
     def _draw_noise(self, robot: int, ticks: int) -> None:
         """Draw random numbers, after those that are left, unless enough for so many ticks lie ahead."""
-        record, drawn = self._robots[robot], self._drawn[robot]
-        for place, (name, stream) in enumerate(zip(("slip", "noise"), self._streams[robot], strict=True)):
-            numbers, used = record["slip_noise" if name == "slip" else "noise"], int(record[f"{name}_used"])
-            if (len(numbers) - used) * STRETCH >= len(numbers) * ticks:
+        drawn = self._drawn[robot]
+        for place, (stream, (ahead, used_of)) in enumerate(zip(self._streams[robot], self._ahead, strict=True)):
+            numbers, used = ahead[robot], int(used_of[robot])
+            left = len(numbers) - used
+            if left * STRETCH >= len(numbers) * ticks:
                 continue
-            numbers[: len(numbers) - used] = numbers[used:].copy()
-            numbers[len(numbers) - used :] = stream.normals(used)
-            record[f"{name}_used"] = 0
+            numbers[:left] = numbers[used:]
+            stream.fill(numbers[left:])
+            used_of[robot] = 0
             drawn[place] += used

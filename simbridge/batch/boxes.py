@@ -7,7 +7,8 @@ later steps. So a body can go on from such a step as if it had driven all the wa
 import math
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import BodyLaw, Robot
+from simbridge.batch.laws import BodyLaw
+from simbridge.batch.record import Robot
 
 _WIDER = 0.1
 """Part of a box's size by which the engine's box is wider, and time in s of the velocity that it foresees."""

@@ -22,12 +22,13 @@ _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 _ROOT = Path(__file__).parents[2]
+_SOURCES_OF_HAL = ("areas", "batch", "batch_lesson", "infrared_law", "sensor_signs", "slow_way")
 _SOURCES = (
     *sorted(_ROOT.glob("simbridge/batch/*.py")),
     *sorted(_ROOT.glob("behaviors/policies/*.py")),
     _ROOT / "behaviors" / "keep_distance.py",
     _ROOT / "simbridge" / "robot" / "wheels.py",
-    *(_ROOT / "hal" / f"{name}.py" for name in ("batch", "batch_lesson", "infrared_law", "sensor_signs", "slow_way")),
+    *(_ROOT / "hal" / f"{name}.py" for name in _SOURCES_OF_HAL),
 )
 """Files with functions that are compiled, and with the constants in them."""
 
@@ -61,7 +62,22 @@ def compiled(function: Callable[_P, _T]) -> Callable[_P, _T]:
         raise ValueError(f"{function.__module__} is not among the sources of the batch")
     if _numba is None:
         return function
+    return _compile(function)
+
+
+def compiled_in_any_order(function: Callable[_P, _T]) -> Callable[_P, _T]:
+    """Return a function compiled so that its sums may be added in another order, for sums that are never rounded.
+
+    Raises ValueError as `compiled`.
+    """
+    if Path(function.__code__.co_filename) not in _SOURCES:
+        raise ValueError(f"{function.__module__} is not among the sources of the batch")
+    return function if _numba is None else _compile(function, fastmath={"reassoc"})
+
+
+def _compile(function: Callable[_P, _T], **more: Any) -> Callable[_P, _T]:
     # Reference counts of the shared tables took a third of the time. Nothing here makes or keeps an array, so none are
     # needed, and inlining spares passing hundreds of numbers to each function.
-    fast: Callable[_P, _T] = _numba.njit(cache=_CACHES, error_model="numpy", forceinline=True, _nrt=False)(function)
+    options = {"cache": _CACHES, "error_model": "numpy", "forceinline": True, "_nrt": False, **more}
+    fast: Callable[_P, _T] = _numba.njit(**options)(function)
     return fast

@@ -87,27 +87,34 @@ class SetPoints:
     """Set points of a batch, stretch by stretch, until the body of a robot catches up with them."""
 
     def __init__(self) -> None:
-        self._stretches: list[tuple[dict[int, int], NDArray[np.int16], NDArray[np.int64]]] = []
+        self._stretches: list[tuple[dict[int, int], NDArray[np.int16], NDArray[np.int64], NDArray[np.int64]]] = []
         self._taken: dict[int, int] = {}
         """Stretches that each robot has caught up with."""
 
-    def add(self, robots: NDArray[np.int64], told_cm_s: NDArray[np.int16], driven: NDArray[np.int64]) -> None:
+    def add(
+        self,
+        robots: NDArray[np.int64],
+        told_cm_s: NDArray[np.int16],
+        driven: NDArray[np.int64],
+        ends: NDArray[np.int64],
+    ) -> None:
         """Add a stretch.
 
         Args:
             robots: of the stretch, (n,).
             told_cm_s: their set points in cm/s, left and right, (n, ticks, 2).
             driven: ticks of the stretch that the body of each robot has driven already, (n,).
+            ends: ticks of the stretch that each robot has driven, (n,).
         """
-        self._stretches.append(({r: place for place, r in enumerate(robots.tolist())}, told_cm_s, driven))
+        self._stretches.append(({r: place for place, r in enumerate(robots.tolist())}, told_cm_s, driven, ends))
 
     def take(self, robot: int) -> list[tuple[int, int]]:
         """Return the set points in cm/s that the body of a robot has not driven yet; they are not returned again."""
         begin, self._taken[robot] = self._taken.get(robot, 0), len(self._stretches)
         behind: list[tuple[int, int]] = []
-        for places, told_cm_s, driven in self._stretches[begin:]:
+        for places, told_cm_s, driven, ends in self._stretches[begin:]:
             place = places.get(robot)
             if place is None:  # the robot did not drive in this stretch
                 continue
-            behind += map(tuple, told_cm_s[place, driven[place] :].tolist())
+            behind += map(tuple, told_cm_s[place, driven[place] : ends[place]].tolist())
         return behind

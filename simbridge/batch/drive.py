@@ -1,10 +1,12 @@
 """The loop of a batch: each robot drives some ticks, in the order of events of the loop over the CAN bus."""
 
+from simbridge.batch.borders import area_of, crosses
 from simbridge.batch.boxes import keep_box, meet_box
 from simbridge.batch.compiled import compiled
+from simbridge.batch.laws import Averages, Integers, Knowledge, Laws, World
 from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.motion import move, turn_wheels
-from simbridge.batch.parts import Integers, Knowledge, Laws, Robot, Robots, World
+from simbridge.batch.record import Robot, Robots
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure, measure_all
 from simbridge.batch.sight import gather, has_moved, may_touch
@@ -15,19 +17,27 @@ STAYS, FROZEN, BROKEN, CROWDED = range(4)
 
 
 @compiled
-def drive(active: Integers, ticks: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
+def drive(
+    active: Integers,
+    ticks: int,
+    robots: Robots,
+    world: World,
+    laws: Laws,
+    knowledge: Knowledge,
+    averages: Averages,
+) -> None:
     """Drive the robots of the indexes `active` to the end of a stretch of so many ticks.
 
-    A robot ends sooner that leaves the batch, is stuck, or waits for the physics engine.
+    A robot ends sooner that leaves the batch, is stuck, crosses a border, or waits for the physics engine.
     """
     for place in range(active.shape[0]):
         robot = robots[active[place]]
-        while robot.at < ticks and robot.left == STAYS and not robot.stuck:
+        while robot.at < ticks and robot.left == STAYS and not robot.stuck and not robot.crossed:
             begin_tick(robot, world, laws)
             if robot.waits:
                 break
             if robot.left == STAYS:
-                finish_tick(robot, world, laws, knowledge)
+                finish_tick(robot, world, laws, knowledge, averages)
 
 
 @compiled
@@ -56,15 +66,16 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
 
 
 @compiled
-def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge) -> None:
+def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge, averages: Averages) -> None:
     """Run the rest of a tick from the robot's new pose: sensors; then sense, check, decide, guard of the notebook."""
     if sense_tick(robot, world, laws):
         asked = robot.tick > 1 and robot.action < 0
-        wanted = decide(robot, robot.at, laws.mind, knowledge)
+        wanted = decide(robot, robot.at, laws.mind, knowledge, averages)
         drive_guarded(robot, wanted, robot.tick * laws.body.cycle_s, laws.guard)
         count_tick(robot, asked, laws.stuck)
         if robot.kind == COMMANDED:
             trace(robot, robot.at)
+        robot.crossed = crosses(robot)
         robot.at += 1
 
 
@@ -95,6 +106,7 @@ def put_down(robot: Robot, world: World, laws: Laws) -> bool:
     robot.vx_m_s = robot.vy_m_s = robot.yaw_rad_s = 0.0
     robot.left_m_s = robot.right_m_s = robot.left_carry = robot.right_carry = 0.0
     robot.bumpers = robot.touching = 0
+    robot.area = area_of(robot)
     if has_moved(robot) and not gather(robot, world):
         robot.left = CROWDED
         return False
@@ -112,9 +124,9 @@ def trace(robot: Robot, k: int) -> None:
 
 
 @compiled
-def finish_waiting(r: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge) -> None:
+def finish_waiting(r: int, robots: Robots, world: World, laws: Laws, knowledge: Knowledge, averages: Averages) -> None:
     """Run the rest of a tick for robot `r`, whose body the physics engine has moved."""
     robot = robots[r]
     robot.waits = 0
     meet_box(robot, laws.body)
-    finish_tick(robot, world, laws, knowledge)
+    finish_tick(robot, world, laws, knowledge, averages)

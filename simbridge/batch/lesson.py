@@ -4,17 +4,17 @@ from itertools import starmap
 
 import numpy as np
 
+from hal.areas import Borders
 from hal.batch import DriveSettings, PolicyMind
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
-from simbridge.batch.drive import begin_tick, put_down
-from simbridge.batch.minds import LANES
-from simbridge.batch.parts import STRETCH
+from simbridge.batch.drive import begin_tick
+from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
-from simbridge.batch.tables import build_features
+from simbridge.batch.tables import build_features, padded_width, require_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
 from simbridge.simulated_robot import SimulatedRobot
 
@@ -33,12 +33,15 @@ class CompiledLesson(RobotBatch):
 
         Raises BatchRefusedError for what the batch does not know.
         """
-        drive = DriveSettings(actions=settings.actions, minimum_ticks=settings.minimum_ticks)
+        drive = DriveSettings(
+            actions=settings.actions, minimum_ticks=settings.minimum_ticks, behaviours=settings.behaviours
+        )
+        require_features(settings.features)
         super().__init__(robot, [simulated], [PolicyMind(settings.policy)], drive)
         self._simulated = simulated
         width, rows, sensors = len(settings.features.kinds), settings.ticks + 1, len(robot.infrared.sensors)
         self._minimum_ticks = settings.minimum_ticks
-        self._width = width
+        self._values = width + len(settings.features.average_weights)
         self.log = LessonLog(
             features=np.zeros((rows, width), dtype=np.int16),
             sums=np.zeros((rows, width), dtype=np.int32),
@@ -46,22 +49,21 @@ class CompiledLesson(RobotBatch):
             poses=np.zeros((rows, 3)),
             causes=np.full(rows, -1, dtype=np.int8),
             actions=np.full(rows, -1, dtype=np.int8),
+            behaviours=np.zeros(rows, dtype=np.int8),
             right=np.full(rows, -1, dtype=np.int8),
             rlas=np.zeros(rows, dtype=np.int32),
             slow=np.zeros(rows, dtype=np.bool_),
             touching=np.zeros(rows, dtype=np.bool_),
             collisions=np.zeros(rows, dtype=np.int32),
         )
-        padded = -(-width // LANES) * LANES
         self._table = Table(
             rows=np.zeros(1, dtype=np.int64),
             rla_ids=np.zeros(_MOST_RLAS, dtype=np.int64),
-            conditions=np.zeros((_MOST_RLAS, padded)),
+            conditions=np.zeros((_MOST_RLAS, padded_width(settings.features))),
             radius=np.zeros(_MOST_RLAS),
             action=np.zeros(_MOST_RLAS, dtype=np.int64),
             features=build_features(settings.features),
             added=np.zeros(rows, dtype=np.int64),
-            average_steps=settings.average_steps,
         )
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
         self._orders = Orders(False, -1, 1.0)
@@ -77,6 +79,16 @@ class CompiledLesson(RobotBatch):
         """Return whether the next tick has begun, and waits for the physics engine."""
         return bool(self._robots[0]["waits"])
 
+    def watch_borders(self, borders: Borders) -> None:
+        """Let `run` end at borders. Raises BatchRefusedError for too many areas."""
+        self.watch(0, borders)
+        self._keep_state()
+
+    def select_behaviour(self, behaviour: str) -> None:
+        """Let a taught behaviour be wanted from the next decision on."""
+        self.select(0, behaviour)
+        self._keep_state()
+
     def set_rlas(self, rlas: TaughtRlas) -> None:
         """Replace the RLAs; the next decision may change the action at once. Raises BatchRefusedError for too many."""
         table, count = self._table, len(rlas.rla_ids)
@@ -86,7 +98,7 @@ class CompiledLesson(RobotBatch):
         table.rows[0] = count
         if count:
             table.rla_ids[:count] = rlas.rla_ids
-            table.conditions[:count, : self._width] = rlas.conditions
+            table.conditions[:count, : self._values] = rlas.conditions
             table.radius[:count] = rlas.radii
             table.action[:count] = [place[name] for name in rlas.actions]
         self._robots[0]["action_ticks"] = self._minimum_ticks
@@ -122,7 +134,7 @@ class CompiledLesson(RobotBatch):
         self._keep_state()
 
     def run(self, until: int) -> int:
-        """Drive to the end of a tick, and return the tick that was reached; less if the engine must move the body.
+        """Drive to the end of a tick, and return the tick that was reached; less at a border, and before the engine.
 
         Raises ValueError for too many ticks since the last `keep`.
         """
@@ -158,7 +170,7 @@ class CompiledLesson(RobotBatch):
         poses = list(starmap(Pose, self.log.poses[self._kept + 1 : self.tick + 1].tolist()))
         if poses:
             self._simulated.follow(poses)
-        self._keep_set_points(_ALONE, end)
+        self._keep_set_points(_ALONE)
         for side in ("left", "right"):  # of a tick that waits
             record[f"track_{side}_cm_s"][0] = record[f"track_{side}_cm_s"][end]
         record["at"] = self._caught_up[0] = 0
@@ -167,15 +179,9 @@ class CompiledLesson(RobotBatch):
         self._keep_state()
         return poses
 
-    def put(self, pose: Pose) -> None:
+    def put_down(self, pose: Pose) -> None:
         """Put the robot, standing, at this pose; only after `keep`, and not while it waits for the engine."""
-        assert not self.waits
-        record, before = self._robots[0], self._robots.copy()[0]
-        record["x_m"], record["y_m"], record["heading_rad"] = pose
-        record["free_cycles"] = self._gap_cycles + 1
-        if not put_down(record, self._world, self._laws):
-            self._bodies[0].put(pose, before, self._set_points.take(0))
-            record["box_is_new"] = 0
+        self.put(0, pose)
         self._simulated.carry(pose)
         self._keep_state()
 

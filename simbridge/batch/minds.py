@@ -1,32 +1,33 @@
-"""Decisions in a batch: the policies' laws, the exact match, and the minimum time of a held action."""
+"""Decisions in a batch: the policies' laws, the nearest RLA, and the minimum time of a held action."""
 
 import math
 
 from behaviors.keep_distance import KeepDistanceNumbers, steer
-from behaviors.policies import circle, eight, fleeing, wall_following
+from behaviors.policies import circle, eight, fleeing, streets, wall_following
+from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import Conditions, Features, Floats, Integers, Knowledge, MindLaw, Robot
+from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
+from simbridge.batch.matching import nearest_rla
+from simbridge.batch.record import Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, COMMANDED = range(6)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED = range(7)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
-LANES = 8
-"""Partial sums of numpy's pairwise sum: the value at place i belongs to sum i % 8."""
-
-_SLACK = 1.000001
-"""Factor beyond which a sum of some squares is larger than another sum of all, whatever was rounded."""
 _steer = compiled(steer)
 _follow_wall = compiled(wall_following.choose_action)
 _flee = compiled(fleeing.choose_action)
 _circle = compiled(circle.choose_action)
 _view_column = compiled(eight.view_column)
 _drive_eight = compiled(eight.choose_action)
+_turn_in_streets = compiled(streets.turn_at_once)
+_wall_away_m = compiled(streets.wall_away_m)
+_keep_middle = compiled(streets.keep_middle)
 
 
 @compiled
-def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
-    """Return the index of a policy's answer among its actions.
+def policy_answer(kind: int, behaviour: int, seen: Floats, law: MindLaw) -> int:
+    """Return the index of a policy's answer among its actions, for a taught behaviour.
 
     `seen`: distances in m, (15,), of front (3), front edges (2), left (4), right (4), rear edges (2), in the order of
     `behaviors.policies.distances`.
@@ -39,16 +40,62 @@ def policy_answer(kind: int, seen: Floats, law: MindLaw) -> int:
         return _flee(front_m, seen[3], seen[4], law.fleeing)
     if kind == CIRCLE:
         return _circle(left, law.circle)
-    left_column = _view_column((seen[3], seen[5], seen[6], seen[7], seen[8], seen[13]), law.eight)
-    right_column = _view_column((seen[4], seen[9], seen[10], seen[11], seen[12], seen[14]), law.eight)
-    return _drive_eight(front_m, left_column, right_column, law.eight)
+    left_side = (seen[3], seen[5], seen[6], seen[7], seen[8], seen[13])
+    right_side = (seen[4], seen[9], seen[10], seen[11], seen[12], seen[14])
+    if kind == STREETS:
+        turn, want = law.turns[behaviour], law.streets
+        action = _turn_in_streets((seen[0], seen[1], seen[2]), left_side, right_side, turn, want)
+        if action == KEEPS_MIDDLE:
+            to_left_m = _wall_away_m(left_side, _rays(law.left_rays), turn, want)
+            to_right_m = _wall_away_m(right_side, _rays(law.right_rays), turn, want)
+            action = _keep_middle(left_side, right_side, to_left_m, to_right_m, want)
+        return action
+    return _drive_eight(front_m, _view_column(left_side, law.eight), _view_column(right_side, law.eight), law.eight)
 
 
 @compiled
-def fill_features(counts: Integers, features: Features, situation: Floats) -> None:
-    """Write the weighted recent features of a robot's counts (sensors,) to `situation`, (64,), in counts."""
+def _rays(rays: Floats) -> streets.Rays:
+    """Return the rays of one side's sensors (6, 4) as the policy takes them.
+
+    The table keeps them as an array, because each number of a tuple takes time to be passed to compiled code.
+    """
+    return _ray(rays, 0), _ray(rays, 1), _ray(rays, 2), _ray(rays, 3), _ray(rays, 4), _ray(rays, 5)
+
+
+@compiled
+def _ray(rays: Floats, i: int) -> streets.Ray:
+    return rays[i, 0], rays[i, 1], rays[i, 2], rays[i, 3]
+
+
+@compiled
+def perceive(robot: Robot, features: Features, averages: Averages) -> None:
+    """Write the weighted situation of a robot, in counts; call it once in each tick."""
+    width = features.kind.shape[0]
+    for i in range(width):
+        robot.situation[i] = feature_of(robot.counts, features, i) * features.weights[i]
+    if features.average_weights.shape[0] > 0:
+        _add_step(robot, features, averages)
+        for i in range(width):
+            average = averages.sums[robot.number, i] / features.average_steps
+            robot.situation[width + i] = average * features.average_weights[i]
+
+
+@compiled
+def _add_step(robot: Robot, features: Features, averages: Averages) -> None:
+    """Add a step to the averages of a robot, if it moves; its first tick stands for all earlier ones."""
+    r, steps = robot.number, features.average_steps
+    at, moves = averages.newest[r], robot.action >= 0
     for i in range(features.kind.shape[0]):
-        situation[i] = feature_of(counts, features, i) * features.weights[i]
+        value = feature_of(robot.counts, features, i)
+        if robot.tick == 1:
+            averages.sums[r, i] = steps * value
+            for step in range(steps):
+                averages.ring[r, step, i] = value
+        if moves:
+            averages.sums[r, i] += value - averages.ring[r, at, i]
+            averages.ring[r, at, i] = value
+    if moves:
+        averages.newest[r] = (at + 1) % steps
 
 
 @compiled
@@ -65,97 +112,6 @@ def feature_of(counts: Integers, features: Features, i: int) -> int:
             other = counts[features.sensors[i, k]]
             value = max(value, other) if kind == MAXIMUM else min(value, other)
     return int(value)
-
-
-@compiled
-def exact_square(row: int, conditions: Floats, situation: Floats) -> float:
-    """Return the sum of squared differences in counts squared, added as numpy's pairwise sum of up to 128 values.
-
-    `row`: of the condition in `conditions`, (rows, values); values are a multiple of eight. `situation`: (64,).
-    """
-    a = b = c = d = e = f = g = h = 0.0
-    for i in range(0, conditions.shape[1], LANES):
-        a += (conditions[row, i] - situation[i]) * (conditions[row, i] - situation[i])
-        b += (conditions[row, i + 1] - situation[i + 1]) * (conditions[row, i + 1] - situation[i + 1])
-        c += (conditions[row, i + 2] - situation[i + 2]) * (conditions[row, i + 2] - situation[i + 2])
-        d += (conditions[row, i + 3] - situation[i + 3]) * (conditions[row, i + 3] - situation[i + 3])
-        e += (conditions[row, i + 4] - situation[i + 4]) * (conditions[row, i + 4] - situation[i + 4])
-        f += (conditions[row, i + 5] - situation[i + 5]) * (conditions[row, i + 5] - situation[i + 5])
-        g += (conditions[row, i + 6] - situation[i + 6]) * (conditions[row, i + 6] - situation[i + 6])
-        h += (conditions[row, i + 7] - situation[i + 7]) * (conditions[row, i + 7] - situation[i + 7])
-    return ((a + b) + (c + d)) + ((e + f) + (g + h))
-
-
-@compiled
-def _least_square(row: int, conditions: Floats, situation: Floats) -> float:
-    """Return a lower bound of `exact_square`, but for rounding: of the first eight values."""
-    a = (conditions[row, 0] - situation[0]) * (conditions[row, 0] - situation[0])
-    b = (conditions[row, 1] - situation[1]) * (conditions[row, 1] - situation[1])
-    c = (conditions[row, 2] - situation[2]) * (conditions[row, 2] - situation[2])
-    d = (conditions[row, 3] - situation[3]) * (conditions[row, 3] - situation[3])
-    e = (conditions[row, 4] - situation[4]) * (conditions[row, 4] - situation[4])
-    f = (conditions[row, 5] - situation[5]) * (conditions[row, 5] - situation[5])
-    g = (conditions[row, 6] - situation[6]) * (conditions[row, 6] - situation[6])
-    h = (conditions[row, 7] - situation[7]) * (conditions[row, 7] - situation[7])
-    return float(((a + b) + (c + d)) + ((e + f) + (g + h)))
-
-
-@compiled
-def nearest(first: int, end: int, guess: int, conditions: Conditions, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the condition nearest to a situation among rows `first` to `end`; -1 without rows.
-
-    `guess`: a row that is probably near, which spares most sums.
-
-    `situation`: (64,). Of equally near conditions the older one wins.
-    """
-    if first == end:
-        return -1, math.inf
-    if not first <= guess < end:
-        guess = first
-    square = exact_square(guess, conditions.values, situation)
-    best, least, bound = guess, math.sqrt(square), _SLACK * square
-    guess_away = least
-    for k in range(1, min(conditions.neighbours.shape[1], end - first)):
-        # By the triangle inequality this row and all further ones are farther away than the best.
-        if conditions.apart[guess, k] > _SLACK * (guess_away + least):
-            return best, least
-        row = conditions.neighbours[guess, k]
-        if _least_square(row, conditions.values, situation) > bound:
-            continue
-        square = exact_square(row, conditions.values, situation)
-        distance = math.sqrt(square)
-        if distance < least or (distance == least and row < best):
-            best, least = row, distance
-            bound = min(bound, _SLACK * square)
-    if conditions.neighbours.shape[1] < end - first:
-        return _nearest_of_all(first, end, bound, conditions.values, situation)
-    return best, least
-
-
-@compiled
-def scan_nearest(end: int, guess: int, values: Floats, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the nearest condition among the rows up to `end`; -1 and infinity without rows.
-
-    For conditions that change too often for a table of their neighbours. Else as `nearest`; `values`: (rows, values).
-    """
-    bound = _SLACK * exact_square(guess, values, situation) if 0 <= guess < end else math.inf
-    return _nearest_of_all(0, end, bound, values, situation)
-
-
-@compiled
-def _nearest_of_all(first: int, end: int, bound: float, values: Floats, situation: Floats) -> tuple[int, float]:
-    """Return row and distance of the nearest condition by comparing all rows, (rows, values), in counts.
-
-    `bound`: square of a distance in counts squared, within which there is a condition. `situation`: (64,).
-    """
-    best, least = -1, math.inf
-    for row in range(first, end):
-        if _least_square(row, values, situation) > bound:
-            continue
-        distance = math.sqrt(exact_square(row, values, situation))
-        if distance < least:
-            best, least = row, distance
-    return best, least
 
 
 @compiled
@@ -192,10 +148,11 @@ def step_action(robot: Robot, law: MindLaw) -> tuple[float, float]:
 
 
 @compiled
-def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> tuple[float, float]:
+def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge, averages: Averages) -> tuple[float, float]:
     """Return the wheel speeds in m/s that a robot decides in tick `k` of the stretch, and enter the decision."""
     robot.track_distance[k] = math.inf
     if robot.kind == KNOWLEDGE:
+        perceive(robot, knowledge.features, averages)
         _match(robot, k, law, knowledge)
     elif robot.kind == COMMANDED:
         if robot.command >= 0:
@@ -211,16 +168,15 @@ def right_action(robot: Robot, law: MindLaw) -> int:
     """Return the index of the action that the policy takes for right."""
     for i in range(law.seen.shape[0]):
         robot.seen[i] = law.distance_m[robot.counts[law.seen[i]]]
-    return int(law.actions[policy_answer(robot.kind, robot.seen, law)])
+    return int(law.actions[policy_answer(robot.kind, robot.behaviour, robot.seen, law)])
 
 
 @compiled
 def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     """Let the nearest RLA answer, or stand outside its radius."""
-    fill_features(robot.counts, knowledge.features, robot.situation)
-    first, end = knowledge.first[robot.knowledge], knowledge.first[robot.knowledge + 1]
-    row, distance = nearest(first, end, robot.nearest, knowledge.conditions, robot.situation)
-    robot.nearest = row
+    table = robot.knowledge + robot.behaviour
+    first, end = knowledge.first[table], knowledge.first[table + 1]
+    row, distance = nearest_rla(robot, first, end, knowledge.conditions)
     robot.track_distance[k] = distance
     if row < 0 or not distance <= knowledge.radius[row]:
         robot.action = robot.rla = -1

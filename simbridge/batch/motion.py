@@ -3,7 +3,8 @@
 import math
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import BodyLaw, Laws, Robot
+from simbridge.batch.laws import BodyLaw, Laws
+from simbridge.batch.record import Robot
 from simbridge.robot.wheels import next_speed
 
 _next_speed = compiled(next_speed)

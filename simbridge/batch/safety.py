@@ -23,7 +23,8 @@ from hal.sensor_signs import (
     SWING_COUNTS,
 )
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import SIGNS, GuardLaw, Integers, Robot, WatchLaw
+from simbridge.batch.laws import GuardLaw, Integers, WatchLaw
+from simbridge.batch.record import SIGNS, Robot
 
 _LOW, _HIGH, _QUIET_LOW, _QUIET_HIGH, _BEFORE_LOW, _BEFORE_HIGH, _AFTER_LOW, _AFTER_HIGH = range(8)
 _DRIVEN, STILL_FROM, _LOW_TICKS, _HIGH_TICKS, _OUT_TICKS, _AGREED_TICKS = range(8, SIGNS)

@@ -4,7 +4,8 @@ import math
 
 from hal.infrared_law import counts_at
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import Robot, SensorLaw
+from simbridge.batch.laws import SensorLaw
+from simbridge.batch.record import Robot
 from simbridge.batch.sight import cast
 
 _HIGHEST_COUNTS = 1023

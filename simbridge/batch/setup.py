@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from behaviors.policies import circle, eight, fleeing, wall_following
+from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from behaviors.policies.distances import (
     FRONT,
     FRONT_LEFT_EDGE,
@@ -22,21 +22,10 @@ from hal.robot_settings import BumperEnd, RobotSettings
 from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
+from simbridge.batch.borders import OUTSIDE
 from simbridge.batch.boxes import keep_box
-from simbridge.batch.parts import (
-    BodyLaw,
-    Floats,
-    GuardLaw,
-    Laws,
-    MindLaw,
-    Robots,
-    SensorLaw,
-    Sizes,
-    StuckLaw,
-    WatchLaw,
-    World,
-    empty_robots,
-)
+from simbridge.batch.laws import BodyLaw, Floats, GuardLaw, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
+from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
 from simbridge.robot.body import Body
@@ -56,7 +45,12 @@ _LOOKS = (
 """Sensors that policies look at, in the order of `simbridge.batch.minds.policy_answer`."""
 
 _ThresholdsT = TypeVar(
-    "_ThresholdsT", wall_following.Thresholds, fleeing.Thresholds, circle.Thresholds, eight.Thresholds
+    "_ThresholdsT",
+    wall_following.Thresholds,
+    fleeing.Thresholds,
+    circle.Thresholds,
+    eight.Thresholds,
+    streets.Thresholds,
 )
 
 
@@ -148,6 +142,10 @@ def _mind_law(robot: RobotSettings, minds: Sequence[Mind], settings: DriveSettin
         fleeing=_thresholds(policy, fleeing.Thresholds),
         circle=_thresholds(policy, circle.Thresholds),
         eight=_thresholds(policy, eight.Thresholds),
+        streets=_thresholds(policy, streets.Thresholds),
+        left_rays=np.array(policy.left_rays) if isinstance(policy, streets.Streets) else np.zeros((6, 4)),
+        right_rays=np.array(policy.right_rays) if isinstance(policy, streets.Streets) else np.zeros((6, 4)),
+        turns=np.array([streets.turn_of(name) for name in settings.behaviours], dtype=np.int64),
     )
 
 
@@ -179,7 +177,7 @@ def build_robots(
 ) -> tuple[Robots, World]:
     """Return the records of all robots, copied from the simulated ones, and their worlds.
 
-    `knowledge_of`: table of RLAs of each robot; -1 for a policy.
+    `knowledge_of`: first table of RLAs of each robot; -1 for a policy.
     """
     sensors, cycle_s = robot.infrared.sensors, robot.can.cycle_s
     boards = sorted({sensor.channel[:3] for sensor in sensors})
@@ -194,6 +192,8 @@ def build_robots(
     robots["looked_at_s"], robots["driven_at_s"] = math.inf, -math.inf
     robots["gathered_x_m"] = robots["gathered_y_m"] = math.inf
     robots["command"] = robots["action"] = robots["rla"] = STANDS
+    robots["area"] = OUTSIDE
+    robots["number"] = range(len(robots))
     robots["free_cycles"] = CollisionCounter(cycle_s).gap_cycles + 1
     robots["way_counts"] = 1
     robots["kind"] = [kind_of(mind) for mind in minds]

@@ -3,7 +3,8 @@
 import math
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import NEAR_FACES, NEAR_POSTS, BodyLaw, Robot, World
+from simbridge.batch.laws import BodyLaw, World
+from simbridge.batch.record import NEAR_FACES, NEAR_POSTS, Robot
 
 MARGIN_M = 0.25
 """Extra range of near faces, so that they serve until the robot has moved by it."""

@@ -3,7 +3,8 @@
 import math
 
 from simbridge.batch.compiled import compiled
-from simbridge.batch.parts import Robot, StuckLaw
+from simbridge.batch.laws import StuckLaw
+from simbridge.batch.record import Robot
 
 TRAIL_TICKS = 10
 """Ticks between two positions of the travelled distance."""

@@ -4,11 +4,14 @@ from typing import NamedTuple
 
 from hal.batch_lesson import LessonCause, LessonLog
 from hal.slow_way import advance_way
+from simbridge.batch.borders import crosses
 from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
 from simbridge.batch.drive import STAYS, begin_tick, sense_tick
-from simbridge.batch.minds import feature_of, hold_or_change, right_action, scan_nearest, step_action
-from simbridge.batch.parts import Features, Floats, Integers, Laws, Robot, Robots, World
+from simbridge.batch.laws import Features, Floats, Integers, Laws, World
+from simbridge.batch.matching import scan_nearest
+from simbridge.batch.minds import feature_of, hold_or_change, right_action, step_action
+from simbridge.batch.record import Robot, Robots
 from simbridge.batch.safety import drive_guarded
 
 BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER = (int(cause) for cause in LessonCause)
@@ -49,7 +52,6 @@ class Table(NamedTuple):
     features: Features
     added: Integers
     """Ticks whose features were added to the averages, (ticks + 1,)."""
-    average_steps: int
 
 
 STEPS, SENSED, DROVE = range(3)
@@ -66,11 +68,15 @@ def teach(
     orders: Orders,
     log: LessonLog,
 ) -> None:
-    """Drive the only robot of a batch to the end of a tick, or until it waits for the physics engine or leaves."""
+    """Drive the only robot of a batch to the end of a tick.
+
+    It ends sooner if the robot crosses a border, waits for the physics engine or leaves.
+    """
     robot = robots[0]
+    robot.crossed = 0
     if learner.numbers[SENSED]:
         _decide(robot, laws, learner, table, orders, log)
-    while robot.tick < until and robot.left == STAYS:
+    while robot.tick < until and robot.left == STAYS and not robot.crossed:
         begin_tick(robot, world, laws)
         if robot.waits:
             return
@@ -92,7 +98,7 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
     tick, numbers, features = robot.tick, learner.numbers, table.features
     # As kurt2rt.core.perception: the averages stand still while the robot stands, and in ticks that do not count.
     moves = numbers[DROVE] and robot.way_counts
-    steps = table.average_steps
+    steps = features.average_steps
     for i in range(features.kind.shape[0]):
         value = feature_of(robot.counts, features, i)
         log.features[tick, i] = value
@@ -111,7 +117,6 @@ def perceive(robots: Robots, world: World, laws: Laws, learner: Learner, table: 
     log.poses[tick, 0], log.poses[tick, 1], log.poses[tick, 2] = robot.x_m, robot.y_m, robot.heading_rad
     log.touching[tick] = robot.touching != 0
     log.collisions[tick] = robot.collisions
-    log.right[tick] = right_action(robot, laws.mind)
     numbers[SENSED] = 1
 
 
@@ -134,7 +139,10 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
     learner.numbers[DROVE] = 1 if drives else 0
     log.causes[tick], log.actions[tick], log.slow[tick] = cause, robot.action, slow
     log.rlas[tick] = robot.rla if cause in (BY_RLA, HELD) else 0
+    # Not before the commands of this tick, which may want another behaviour.
+    log.behaviours[tick], log.right[tick] = robot.behaviour, right_action(robot, laws.mind)
     drive_guarded(robot, (left_m_s, right_m_s), tick * laws.body.cycle_s, laws.guard)
+    robot.crossed = crosses(robot)
     robot.at += 1
 
 
@@ -147,8 +155,12 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonL
     if orders.stopped:
         robot.action = robot.rla = -1
         return STOPPED
-    for i in range(table.features.weights.shape[0]):
-        robot.situation[i] = log.features[robot.tick, i] * table.features.weights[i]
+    features, tick = table.features, robot.tick
+    width = features.kind.shape[0]
+    for i in range(width):
+        robot.situation[i] = log.features[tick, i] * features.weights[i]
+    for i in range(features.average_weights.shape[0]):
+        robot.situation[width + i] = log.sums[tick, i] / features.average_steps * features.average_weights[i]
     row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
     robot.nearest = row
     if row < 0 or not distance <= table.radius[row]:

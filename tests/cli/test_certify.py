@@ -17,7 +17,7 @@ def test_certificate_names_runs_that_exam_repeats(kurt2rt: CommandLine, lessons:
     assert (found["task"], found["seconds"], found["compared"]) == ("wall_following", 1.0, 3)
     assert [(each["place"], each["runs"]) for each in found["places"]] == [("c", 3)]
     page = Path(found["report"]).read_text(encoding="utf-8")
-    assert "--first-seed 20000 --world c --set exam.duration_s=1" in page
+    assert "--runs 3 --seconds 1 --world c --first-seed 20000" in page
     for worst in found["worst"]:
         assert Path(f"made/run-{worst['number']}.png").is_file()
         again = json.loads(kurt2rt(*worst["command"].split()[1:], "--json").out)
@@ -36,6 +36,36 @@ def test_certificate_is_read_again_and_printed(kurt2rt: CommandLine, lessons: Pa
     assert block.stat().st_mtime_ns == before
     assert "Probability within 1 s of wall_following" in said.out
     assert "report  made/report.html" in said.out
+
+
+def test_shards_of_a_certificate_merge_to_what_one_machine_does(kurt2rt: CommandLine, lessons: Path) -> None:
+    words = ("certify", lessons, "--seconds", "1", "--runs", "4", "--jobs", "1", "--pictures", "0", "--world", "a")
+    alone = kurt2rt(*words, "--out", "alone")
+    assert alone.exit_code == 0, alone.err
+    # The witness of the first run goes with its block, to the first shard.
+    for number, jobs in ((1, 3), (2, 1)):
+        part = kurt2rt(*words, "--shard", f"{number}/2", "--out", f"part-{number}")
+        assert part.exit_code == 0, part.err
+        assert part.out.startswith(f"shard {number}/2 is done: {jobs} jobs in part-{number}\n")
+    (study,) = json.loads(kurt2rt("results", "show", "part-1", "--json").out)["studies"]
+    assert study["command"] == f"kurt2rt certify {lessons.name} --runs 4 --seconds 1 --world a --first-seed 20000"
+    assert (study["jobs"], len(study["missing"])) == (4, 1)
+    merged = kurt2rt("results", "merge", "both", "part-1", "part-2")
+    assert merged.exit_code == 0, merged.err
+    whole = kurt2rt(*words, "--out", "both")
+    assert whole.out == alone.out.replace("alone/", "both/")
+    for path in Path("alone").rglob("*.json"):
+        assert (Path("both") / path.relative_to("alone")).read_bytes() == path.read_bytes()
+
+
+def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons: Path) -> None:
+    whole = kurt2rt("certify", lessons, *SHORT)
+    gone, *others = sorted(Path("made/results").glob("witness-*.json"))
+    before = gone.read_bytes(), [path.stat().st_mtime_ns for path in others]
+    gone.unlink()
+    again = kurt2rt("certify", lessons, *SHORT)
+    assert again.out == whole.out
+    assert (gone.read_bytes(), [path.stat().st_mtime_ns for path in others]) == before
 
 
 def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: CommandLine, lessons: Path) -> None:

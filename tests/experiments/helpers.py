@@ -1,5 +1,6 @@
 """Short lessons and exams on the simulated robot."""
 
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import anyio
 from hal.robot_settings import load_robot
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
@@ -70,13 +72,11 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
 
 def teachers_drive(task: TaskSettings) -> ExamResult:
     """Return the exam result of the teacher's own policy in the exam's first world."""
-    world = task.exam.worlds[0]
-    simulation = STAGE.open(world, 1, "exam")
+    setup = ExamSetup(task.exam.worlds[0], 1, teacher_policy=True)
+    return exam_on_bus(task, BatchExam(setup))
 
-    async def drive() -> ExamResult:
-        return await examine(simulation, ROBOT, task, [], ExamSetup(world, 1, teacher_policy=True), lambda _: None)
 
-    try:
-        return anyio.run(drive)
-    finally:
-        simulation.close()
+def exam_on_bus(task: TaskSettings, exam: BatchExam) -> ExamResult:
+    """Return the result of an exam on the CAN bus."""
+    with closing(STAGE.open(exam.setup.world, exam.setup.seed, "exam")) as simulation:
+        return anyio.run(examine, simulation, ROBOT, task, exam.events, exam.setup, lambda _: None)

@@ -1,5 +1,7 @@
 """History of decisions over the log of a lesson in a batch."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,15 +18,25 @@ class LoggedDecisions(DecisionHistory):
     Its owner sets `newest`. A copy shares the log, so it takes no time.
     """
 
-    def __init__(self, log: LessonLog, average_steps: int, capacity: int = 1000) -> None:
-        """Read `log`, which its owner writes; `average_steps`: steps of the averages in a situation."""
+    def __init__(
+        self, log: LessonLog, average_steps: int, behaviours: Sequence[str] = ("",), capacity: int = 1000
+    ) -> None:
+        """Read `log`, which its owner writes.
+
+        Args:
+            log: course of the lesson.
+            average_steps: steps of the averages in a situation.
+            behaviours: names of the taught behaviours, by their indexes in the log.
+            capacity: ticks that are remembered.
+        """
         super().__init__(0, capacity)
         self._log = log
+        self._behaviour_names = tuple(behaviours)
         self._average_steps = average_steps
 
     def empty_copy(self) -> "LoggedDecisions":
         """Return an empty history over the same log."""
-        return LoggedDecisions(self._log, self._average_steps, self._capacity)
+        return LoggedDecisions(self._log, self._average_steps, self._behaviour_names, self._capacity)
 
     def copy_from(self, other: DecisionHistory) -> None:
         """Store the ticks that another history of this log stores now."""
@@ -55,6 +67,6 @@ class LoggedDecisions(DecisionHistory):
         """Return the id of the RLA that drove in a stored tick; None if none did."""
         return int(self._log.rlas[tick]) or None
 
-    def behaviour(self, tick: int) -> str:  # noqa: ARG002 - a batch knows tasks of one behaviour
-        """Return the empty name of the only behaviour."""
-        return ""
+    def behaviour(self, tick: int) -> str:
+        """Return the active taught behaviour of a logged tick."""
+        return self._behaviour_names[self._log.behaviours.item(tick)]

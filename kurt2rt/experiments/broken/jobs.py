@@ -1,63 +1,31 @@
 """Jobs of the study of broken sensors: one sensor of one robot with each fault, and drives of working sensors."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import anyio
 
-from hal.robot_settings import RobotSettings
 from hal.settings import Settings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.broken.drive import Driver, DriveSetup, drive
 from kurt2rt.experiments.broken.outcome import FaultDrive, HealthyOutcome, SensorOutcome
 from kurt2rt.experiments.lockstep.faulty_sensor import BREAKS_AT_S, FaultKind
+from kurt2rt.experiments.study.jobs import SimulationJob
 from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Job(ABC):
-    """Drives of one taught robot, with a stored result."""
+class _Job(SimulationJob):
+    """Drives of one taught robot."""
 
-    outcome: ClassVar[type[Settings]]
-    replaces_others: ClassVar[bool] = False
-    factory: SimulationFactory
-    robot: RobotSettings
-    task: TaskSettings
     knowledge: Path
     seed: int
     world: str
     place: str
     """World, for file names."""
-    made_of: Provenance
-    results: Results
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Name in progress displays."""
-
-    @property
-    def knowledge_name(self) -> str | None:
-        """None: the job stores no knowledge."""
-        return None
-
-    @property
-    @abstractmethod
-    def file(self) -> str:
-        """Path of the result within the folder of results."""
-
-    @property
-    @abstractmethod
-    def robot_time_s(self) -> float:
-        """Simulated time in s, about."""
 
     @abstractmethod
     async def measure(self, events: Sequence[TeachingEvent], tell: Progress) -> Settings:

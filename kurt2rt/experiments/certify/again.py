@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from kurt2rt.experiments.certify.jobs import DriveJob, require_equal
+from kurt2rt.experiments.certify.jobs import BlockJob, require_equal
 from kurt2rt.experiments.certify.outcome import RunOutcome
 from kurt2rt.experiments.certify.plan import CertifyPlan
 from kurt2rt.experiments.certify.run import Run
@@ -12,9 +12,10 @@ from kurt2rt.experiments.study.pool import PoolProgress, Progress, run_jobs
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PictureJob(DriveJob):
-    """Run that the CAN loop drives again for its trail."""
+class PictureJob:
+    """Run of a block that the CAN loop drives again for its trail."""
 
+    block: BlockJob
     expected: RunOutcome
     """Outcome of the same run before."""
     again: Run
@@ -27,14 +28,14 @@ class PictureJob(DriveJob):
     @property
     def robot_time_s(self) -> float:
         """Simulated time in s."""
-        return self.task.exam.duration_s
+        return self.block.task.exam.duration_s
 
     def run(self, tell: Progress) -> ExamResult:
         """Drive and return the result; `tell` gets the progress in s.
 
         Raises BatchDiffersError where the outcome is another one than before; else as `BlockJob.run`.
         """
-        outcome, exam = self.drive_on_bus(self.subject(), self.again, tell)
+        outcome, exam = self.block.drive_on_bus(self.block.subject(), self.again, tell)
         require_equal(self.expected, outcome)
         return exam
 
@@ -54,16 +55,9 @@ def drive_again(
         BatchDiffersError: the outcome of a run is another one than before.
         JobKilledError: a process was killed.
     """
-    block, by_number = plan.blocks[0], {run.number: run for run in plan.runs}
-    jobs = [
-        PictureJob(
-            factory=block.factory,
-            robot=block.robot,
-            task=plan.task,
-            knowledge=block.knowledge,
-            expected=each,
-            again=by_number[each.number],
-        )
-        for each in runs
-    ]
+    by_number = {run.number: (block, run) for block in plan.blocks for run in block.runs}
+    jobs = []
+    for each in runs:
+        block, run = by_number[each.number]
+        jobs.append(PictureJob(block=block, expected=each, again=run))
     return run_jobs(jobs, processes, on_progress=on_progress)

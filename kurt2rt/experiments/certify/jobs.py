@@ -1,28 +1,22 @@
 """Jobs of a certificate: blocks of runs in a batch, and witnesses that the CAN loop drives as well."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import anyio
 
 from hal.batch import BatchFactory
 from hal.batch_refusal import BatchRefusedError
-from hal.robot_settings import RobotSettings
-from hal.settings import Settings
-from hal.simulation import SimulationFactory
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
 from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
+from kurt2rt.experiments.study.jobs import SimulationJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum
-from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 BATCH_GAIN = 100.0
@@ -30,13 +24,15 @@ BATCH_GAIN = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveJob(ABC):
+class DriveJob(SimulationJob):
     """Runs of one knowledge file."""
 
-    factory: SimulationFactory
-    robot: RobotSettings
-    task: TaskSettings
     knowledge: Path
+
+    @property
+    @abstractmethod
+    def seed(self) -> int:
+        """Number of the first run."""
 
     def subject(self) -> Subject:
         """Return the taught robot. Raises KnowledgeError."""
@@ -57,32 +53,7 @@ class DriveJob(ABC):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _StoredJob(DriveJob):
-    """Job with a stored result."""
-
-    outcome: ClassVar[type[Settings]]
-    replaces_others: ClassVar[bool] = False
-    made_of: Provenance
-    results: Results
-
-    @property
-    @abstractmethod
-    def file(self) -> str:
-        """Path of the result within the folder of results."""
-
-    @property
-    @abstractmethod
-    def seed(self) -> int:
-        """Number of the first run."""
-
-    @property
-    def knowledge_name(self) -> str | None:
-        """None: the job stores no knowledge."""
-        return None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BlockJob(_StoredJob):
+class BlockJob(DriveJob):
     """Runs that one process drives at once."""
 
     outcome = BlockOutcome
@@ -138,7 +109,7 @@ class BlockJob(_StoredJob):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WitnessJob(_StoredJob):
+class WitnessJob(DriveJob):
     """Run that is driven in a batch and on the CAN loop, which must agree."""
 
     outcome = WitnessOutcome

@@ -13,9 +13,9 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, opened_batch
 from kurt2rt.experiments.certify.jobs import BlockJob, WitnessJob, require_equal
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
-from kurt2rt.experiments.certify.run import ALL_WORK, SEED, BrokenShare, Run, draw_runs, draw_witnesses
+from kurt2rt.experiments.certify.run import ALL_WORK, SEED, BrokenShare, Run, draw_runs
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam_driver import LEAST_WITNESSES, WITNESS_SHARE, DriveLoop
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop, choose_witnesses
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash, source_hash
 from kurt2rt.experiments.study.results import Results
@@ -128,16 +128,13 @@ def make_plan(
         made_of = fingerprints.of(task, worlds, taught, repr(run))
         return WitnessJob(task=task, knowledge=knowledge, witness=run, made_of=made_of, **parts)
 
-    step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s))) if extent.loop is DriveLoop.BATCH else 1
-    return CertifyPlan(
-        task,
-        extent,
-        tuple(runs),
-        tuple(map(witness, draw_witnesses(runs, WITNESS_SHARE, LEAST_WITNESSES)))
-        if extent.loop is DriveLoop.BATCH
-        else (),
-        tuple(block(tuple(runs[begin : begin + step])) for begin in range(0, len(runs), step)),
-    )
+    step, witnesses = 1, list[Run]()
+    if extent.loop is DriveLoop.BATCH:
+        step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s)))
+        working = [run for run in runs if not run.broken]  # the CAN loop alone drives the others
+        witnesses = choose_witnesses(working, f"{len(runs)} runs from {extent.first}")
+    blocks = (tuple(runs[begin : begin + step]) for begin in range(0, len(runs), step))
+    return CertifyPlan(task, extent, tuple(runs), tuple(map(witness, witnesses)), tuple(map(block, blocks)))
 
 
 def read_certificate(plan: CertifyPlan, results: Results) -> Certificate:

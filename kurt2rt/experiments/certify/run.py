@@ -51,13 +51,3 @@ def _draw_break(number: int, broken: BrokenShare) -> str:
     if chance.random() >= broken.share:
         return ""
     return f"{chance.choice(broken.sensors)}={chance.choice(list(FaultKind))}"
-
-
-def draw_witnesses(runs: Sequence[Run], share: float, at_least: int) -> list[Run]:
-    """Return a share of the runs, 0 to 1, but at least so many, chosen by chance.
-
-    Runs with a broken sensor, which only the CAN loop drives, are left out.
-    """
-    working = [run for run in runs if not run.broken]
-    wanted = min(len(working), max(at_least, round(share * len(working))))
-    return random.Random(f"witnesses of {len(runs)} runs from {runs[0].number}").sample(working, wanted)

@@ -5,9 +5,9 @@ import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise, starmap
+from itertools import groupby, pairwise, starmap
 
-from behaviors.metrics.task_metric import StretchMetric, TaskMetric
+from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetric
 from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Stretch
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
@@ -35,7 +35,8 @@ def examine_in_batch(
 ) -> list[ExamResult | None]:
     """Drive all exams at once, and return their results in order; None for one that belongs on the CAN bus.
 
-    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch.
+    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch, and so does a stuck one
+    that is rescued.
 
     Raises:
         BatchRefusedError: the batch does not know the task, its policy or an action.
@@ -49,13 +50,15 @@ def examine_in_batch(
         drives = [_Drive(each, settings, task, exam.setup) for each, exam in zip(simulations, exams, strict=True)]
         minds = build_minds(simulations, settings, task, [(exam.events, exam.setup) for exam in exams])
         batch = factory.open_batch(simulations, minds, build_drive_settings(settings, task))
-        ticks = round(task.exam.duration_s / settings.can.cycle_s)
-        active = list(range(len(drives)))
-        for begin in range(0, ticks, _STRETCH_TICKS):
-            if not active:
-                break
-            batch.drive(active, min(_STRETCH_TICKS, ticks - begin))
-            active = [robot for robot in active if drives[robot].follow(batch, robot)]
+        for robot, drive in enumerate(drives):
+            drive.begin(batch, robot)
+        while active := [robot for robot, drive in enumerate(drives) if drive.goes_on]:
+            # Robots that stopped at a border are behind the others at the end.
+            ticks = max(drives[robot].next_ticks for robot in active)
+            going = [robot for robot in active if drives[robot].next_ticks == ticks]
+            batch.drive(going, ticks)
+            for robot in going:
+                drives[robot].follow(batch, robot)
         return [drive.result() for drive in drives]
 
 
@@ -80,12 +83,15 @@ class _Drive:
         self._simulation, self._task, self._setup = simulation, task, setup
         self._period_s = settings.can.cycle_s
         self._metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
-        # Asked once, because it reads all members of the protocol.
+        # Asked once, because these read all members of a protocol.
         self._stretch_metric = self._metric if isinstance(self._metric, StretchMetric) else None
+        self._border_metric = self._metric if isinstance(self._metric, BorderMetric) else None
         self._metric.reset(simulation.pose)
         if task.exam.start == "in_sight":
             simulation.reposition(chance, in_sight=True)
             self._metric.reset(simulation.pose)
+        self._chance = chance
+        self._planned_ticks = round(task.exam.duration_s / self._period_s)
         self._stuck = StuckDetector(task.exam.stuck_after_s, self._period_s, least_m=task.exam.stuck_within_m)
         self._pose = simulation.pose
         self._trail: list[Position] = []
@@ -96,29 +102,54 @@ class _Drive:
         self._action: int | None = None
         self._is_stuck = self._left = False
 
-    def follow(self, batch: Batch, robot: int) -> bool:
-        """Measure the newest stretch of a robot; return whether its exam goes on."""
+    @property
+    def goes_on(self) -> bool:
+        """Return whether the robot drives on."""
+        return not self._left and not self._is_stuck and self._ticks < self._planned_ticks
+
+    @property
+    def next_ticks(self) -> int:
+        """Return the length of the next stretch."""
+        return min(_STRETCH_TICKS, self._planned_ticks - self._ticks)
+
+    def begin(self, batch: Batch, robot: int) -> None:
+        """Let a robot of the batch drive by the behaviour that is wanted, up to the borders of the metric."""
+        if self._border_metric is not None:
+            batch.watch(robot, self._border_metric.borders)
+            batch.select(robot, self._metric.behaviour)
+
+    def follow(self, batch: Batch, robot: int) -> None:
+        """Measure the newest stretch of a robot, and look after the robot as after its last tick."""
         self._left = bool(batch.reason_to_leave(robot))
         if self._left:
-            return False
+            return
         stretch = batch.stretch(robot)
-        ticks = self._follow_poses(stretch)
-        self._count_actions(stretch, ticks)
+        # In its last tick the robot may be put elsewhere before it is looked at.
+        stuck_after = self._stuck_after(stretch.poses[:-1])
+        ticks = len(stretch.poses) if stuck_after is None else stuck_after
         poses = stretch.poses[:ticks]
+        self._count_collisions(stretch, ticks)
+        self._count_actions(stretch, ticks)
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
         for step_m in starmap(_step_m, pairwise([self._pose, *poses])):
             self._travelled_m += step_m
-        first = -(self._ticks + 1) % _TRAIL_STRIDE
-        self._trail += [Position(pose.x_m, pose.y_m) for pose in poses[first::_TRAIL_STRIDE]]
         self._pose = poses[-1]
+        self._follow_poses(poses)
+        if stuck_after is None:
+            self._look_after(batch, robot)
+            stuck_after = self._stuck_after([self._pose])
+        first = -(self._ticks + 1) % _TRAIL_STRIDE
+        self._trail += [Position(pose.x_m, pose.y_m) for pose in [*poses[:-1], self._pose][first::_TRAIL_STRIDE]]
         self._ticks += ticks
-        return not self._is_stuck
+        self._is_stuck = stuck_after is not None
+        if self._is_stuck and not self._setup.stuck_ends:
+            self._left = True
 
     def result(self) -> ExamResult | None:
         """Return the result of the exam; None if the robot left the batch."""
         if self._left:
             return None
-        if self._is_stuck and self._setup.stuck_ends:
+        if self._is_stuck:
             self._metric.abort()
         duration_s = self._ticks * self._period_s
         return ExamResult(
@@ -139,38 +170,51 @@ class _Drive:
             least_progress=self._task.course.least_progress(self._simulation, self._task.exam.duration_s),
         )
 
-    def _follow_poses(self, stretch: Stretch) -> int:
-        """Measure the drive at each pose; return the number of ticks until the robot is stuck, or all."""
-        poses = stretch.poses
-        stuck_after = self._stuck.ticks_until_stuck(len(poses), lambda k: Position(poses[k].x_m, poses[k].y_m))
-        self._is_stuck = stuck_after is not None
-        ticks = len(poses) if stuck_after is None else stuck_after
-        poses = poses[:ticks]
-        if stretch.collisions[ticks - 1] > len(self._collision_positions):
-            for pose, collisions in zip(poses, stretch.collisions, strict=False):
-                if collisions > len(self._collision_positions):
-                    self._collision_positions.append(Position(pose.x_m, pose.y_m))
+    def _look_after(self, batch: Batch, robot: int) -> None:
+        """Put the robot elsewhere, or let another behaviour be wanted, if the metric says so."""
+        if self._metric.needs_reset:
+            self._pose = self._simulation.draw_pose(self._chance, in_sight=False)
+            batch.put(robot, self._pose)
+            self._left = bool(batch.reason_to_leave(robot))
+            self._simulation.carry(self._pose)
+            self._stuck.restart()
+            self._metric.reset(self._pose)
+        if self._border_metric is not None:
+            batch.select(robot, self._metric.behaviour)
+
+    def _stuck_after(self, poses: Sequence[Pose]) -> int | None:
+        """Return the number of further ticks after which the robot is stuck; None if it is not."""
+        return self._stuck.ticks_until_stuck(len(poses), lambda k: Position(poses[k].x_m, poses[k].y_m))
+
+    def _follow_poses(self, poses: Sequence[Pose]) -> None:
+        """Measure the drive at each pose."""
         self._simulation.follow(poses)
         if self._stretch_metric is not None:
             self._stretch_metric.update_all(poses)
-            return ticks
+            return
         for pose in poses:
             self._metric.update(pose)
-        return ticks
+
+    def _count_collisions(self, stretch: Stretch, ticks: int) -> None:
+        if stretch.collisions[ticks - 1] == len(self._collision_positions):
+            return
+        for pose, collisions in zip(stretch.poses[:ticks], stretch.collisions, strict=False):
+            if collisions > len(self._collision_positions):
+                self._collision_positions.append(Position(pose.x_m, pose.y_m))
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
-        before = self._action
-        for action, pose in zip(stretch.actions[:ticks], stretch.poses, strict=False):
-            if action == before:
-                self._unknown_ticks += action == STANDS
-                continue
-            # A robot that asks in its first tick has not changed its action: before, it had none.
-            self._action_changes += not (before is None and action == STANDS)
-            if action == STANDS:
-                self._unknown_ticks += 1
-                self._ask_positions.append(Position(pose.x_m, pose.y_m))
-            before = action
-        self._action = before
+        place = 0
+        for action, run in groupby(stretch.actions[:ticks]):
+            if action != self._action:
+                # A robot that asks in its first tick has not changed its action: before, it had none.
+                self._action_changes += not (self._action is None and action == STANDS)
+                if action == STANDS:
+                    pose = stretch.poses[place]
+                    self._ask_positions.append(Position(pose.x_m, pose.y_m))
+                self._action = action
+            length = len(list(run))
+            self._unknown_ticks += length if action == STANDS else 0
+            place += length
 
 
 def _step_m(before: Pose, after: Pose) -> float:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from behaviors.metrics.task_metric import StretchMetric
+from behaviors.metrics.task_metric import BorderMetric, StretchMetric
 from hal.batch_lesson import LessonCause, LessonFactory, LessonRobot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
@@ -23,9 +23,9 @@ from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_settings
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
+from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson import TrainingRun
 from kurt2rt.experiments.lockstep.lesson_ahead import LessonAhead
-from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
@@ -80,7 +80,7 @@ def open_batch_lesson(
     plan, store = plan_of(task), InMemoryEventStore()
     lesson = build_lesson_settings(settings, task)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
-        recent = LoggedDecisions(robot.log, lesson.average_steps)
+        recent = LoggedDecisions(robot.log, lesson.features.average_steps, task.behaviours)
         runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
         mind = LessonMind(runtime, robot, recent, store)
         session = f"{plan.purpose}-{seed}-after-0"
@@ -103,6 +103,8 @@ class BatchTrainingRun(TrainingRun):
         super().__init__(robot, mind.runtime, plan, seed=seed, session=session, on_progress=on_progress)
         self.robot, self._mind = robot, mind
         self._actions = robot.actions
+        if isinstance(self.metric, BorderMetric):
+            robot.watch(self.metric.borders)
         # Asked once, because it reads all members of the protocol.
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._messages: list[tuple[int, HoldAction]] = []
@@ -114,6 +116,7 @@ class BatchTrainingRun(TrainingRun):
 
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
+        self._command_behaviour(self.runtime.active_behaviour.behaviour)
         while self.ticks < self._planned_ticks:
             if not self._drive_stretch():
                 return False
@@ -231,11 +234,13 @@ class BatchTrainingRun(TrainingRun):
         ahead = LessonAhead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
         held_to = self._mind.held_to
         tick, until = begin, last if held_to is None else min(last, held_to)
+        # A teacher sees at once that another behaviour is wanted.
+        may_skip = bool(log.behaviours[begin + 1] == log.behaviours[begin])
         while tick < until:
-            tick += teacher.skip(ahead.after(tick, until))
+            tick += teacher.skip(ahead.after(tick, until)) if may_skip else 0
             if tick == until:
                 break
-            tick += 1
+            tick, may_skip = tick + 1, True
             command = teacher.answer(self._view(tick))
             if command is None:
                 continue
@@ -256,6 +261,7 @@ class BatchTrainingRun(TrainingRun):
             driving=action >= 0,
             action=self._actions[action] if action >= 0 else None,
             infrared_counts=tuple(log.counts[tick].tolist()),
+            behaviour=self.task.behaviours[log.behaviours.item(tick)],
             tick=tick,
             touching=log.touching.item(tick),
         )
@@ -273,6 +279,7 @@ class BatchTrainingRun(TrainingRun):
         first = -(begin + 1) % self.trail_stride
         self.trail += [Position(pose.x_m, pose.y_m) for pose in poses[first : len(poses) - 1 : self.trail_stride]]
         self._look_after(cut)
+        self._command_behaviour(self.runtime.active_behaviour.behaviour)
         if cut % self.trail_stride == 0:
             self.trail.append(self.simulation.position)
         for second in range(begin // self.ticks_per_second + 1, cut // self.ticks_per_second + 1):

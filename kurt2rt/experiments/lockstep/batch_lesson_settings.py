@@ -37,9 +37,6 @@ def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> Lesson
     definition = load_situation(task.situation, settings.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
-    width = len(definition.features)
-    if weights[width:].any():
-        raise refused(task, "averages that count in a distance")
     drive = build_drive_settings(settings, task)
     unknown = sorted(set(load_task_repertoire(task, settings)) - set(drive.actions))
     if unknown:
@@ -47,8 +44,8 @@ def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> Lesson
     return LessonDriveSettings(
         actions=dict(drive.actions),
         minimum_ticks=drive.minimum_ticks,
+        behaviours=task.behaviours,
         policy=policy,
-        features=feature_table(definition, settings, weights[:width].tolist(), task),
-        average_steps=definition.history_steps,
+        features=feature_table(definition, settings, weights, task),
         ticks=round(plan_of(task).duration_s / settings.can.cycle_s),
     )

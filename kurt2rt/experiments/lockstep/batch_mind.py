@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from behaviors.behaviour import Behaviour
 from behaviors.keep_distance import KeepDistance
@@ -24,15 +25,25 @@ from hal.batch import (
 )
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.perception.definition import Extreme, Feature, Orientation, Reading, SituationDefinition
+from kurt2rt.core.perception.definition import (
+    Extreme,
+    Feature,
+    Orientation,
+    Reading,
+    SituationDefinition,
+    load_situation,
+)
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
 
-_COURSES = ("laps", "way", "rounds", "eights")
-"""Courses that never reposition the robot and want one behaviour."""
+_BORDER_COURSES = ("junctions",)
+"""Courses that reposition the robot, or want another behaviour, at borders."""
+_COURSES = ("laps", "way", "rounds", "eights", *_BORDER_COURSES)
+"""Courses that never reposition the robot nor want another behaviour, or at borders only."""
 _ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
 
 
@@ -45,8 +56,11 @@ def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
         raise refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
     if task.mid is not None and not by_policy:
         raise refused(task, "a mid level")
-    if len(task.behaviours) > 1:
-        raise refused(task, "several behaviours")
+
+
+def guides_robots(task: TaskSettings) -> bool:
+    """Return whether the course of a task repositions robots, or wants another behaviour, on their way."""
+    return task.course.kind in _BORDER_COURSES
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
@@ -59,8 +73,23 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "a robot that stands at a doubt without a teacher")
     if any(setup.broken for setup in setups):
         raise refused(task, "a broken sensor")
-    if not all(setup.stuck_ends for setup in setups):
-        raise refused(task, "rescues")
+
+
+def require_known_exams(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch can examine robots that are taught a task, and drive its policy. Raises BatchRefusedError.
+
+    Raises hal.settings.SettingsError if settings of the task do not fit each other.
+    """
+    require_known(task, [ExamSetup(task.teaching.world, 0)])
+    if not isinstance(task.policy.build(settings.infrared), TabledPolicy):
+        raise refused(task, f"policy {task.policy.kind}")
+    definition = load_situation(task.situation, settings.infrared.names)
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    feature_table(definition, settings, weights, task)
+    unknown = sorted(set(load_task_repertoire(task, settings)) - set(build_drive_settings(settings, task).actions))
+    if unknown:
+        raise refused(task, f"action {', '.join(unknown)}")
 
 
 def build_drive_settings(
@@ -76,6 +105,7 @@ def build_drive_settings(
         minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s)
         if minimum_ticks is None
         else minimum_ticks,
+        behaviours=task.behaviours,
     )
 
 
@@ -100,7 +130,7 @@ def build_minds(
     """Return the mind of each exam, given by its lessons and setup; equal knowledge makes one mind.
 
     Raises:
-        BatchRefusedError: the batch does not know the policy, or averages count in a distance.
+        BatchRefusedError: the batch does not know the policy or a feature.
         SettingsError: settings do not fit each other.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
@@ -124,38 +154,40 @@ def build_minds(
 def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) -> TaughtMind:
     """Return the RLAs that answer in an exam: without withdrawn ones, and guesses that a task passes over."""
     level, definition = runtime.level, runtime.definition
-    system, width = level.system, len(definition.features)
-    if system.weights[width:].any():
-        raise refused(task, "averages that count in a distance")
-    behaviour = runtime.active_behaviour.behaviour
-    rlas = [rla for rla in system.rlas if rla.behaviour == behaviour and not system.passes_over(rla)]
+    system, features = level.system, feature_table(definition, settings, level.system.weights, task)
+    values = len(features.weights) + len(features.average_weights)
+    known = [rla for rla in system.rlas if not system.passes_over(rla)]
+    rlas = [rla for behaviour in task.behaviours for rla in known if rla.behaviour == behaviour]
     place = {rla.rla_id: index for index, rla in enumerate(rlas)}
     groups = [system.competitors(rla) for rla in rlas]
     answers = [
         place[level.would_answer(group).rla_id] if len(group) > 1 else index for index, group in enumerate(groups)
     ]
-    conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:width].tolist() for rla in rlas]
+    conditions = [(np.array(rla.condition, dtype=np.float64) * system.weights)[:values].tolist() for rla in rlas]
     return TaughtMind(
+        sizes=tuple(sum(rla.behaviour == behaviour for rla in rlas) for behaviour in task.behaviours),
         rla_ids=tuple(place),
         conditions=conditions,
         radii=tuple(system.whole_radius(rla) for rla in rlas),
         answers=tuple(answers),
         actions=tuple(rla.action for rla in rlas),
-        features=feature_table(definition, settings, system.weights[:width].tolist(), task),
+        features=features,
     )
 
 
 def feature_table(
-    definition: SituationDefinition, settings: RobotSettings, weights: Sequence[float], task: TaskSettings
+    definition: SituationDefinition, settings: RobotSettings, weights: NDArray[np.float64], task: TaskSettings
 ) -> FeatureTable:
-    """Return the recent features of a situation with their weights, dimensionless. Raises BatchRefusedError."""
+    """Return the features of a situation with their weights (d,), dimensionless. Raises BatchRefusedError."""
     place = {name: index for index, name in enumerate(settings.infrared.names)}
     kinds, sensors = [], []
     for feature in definition.features:
         kind, names = _kind_and_sensors(feature, definition, task)
         kinds.append(kind)
         sensors.append(tuple(place[name] for name in names))
-    return FeatureTable(tuple(kinds), tuple(sensors), tuple(weights))
+    recent, averages = weights[: len(kinds)].tolist(), weights[len(kinds) :].tolist()
+    average_weights = tuple(averages) if any(averages) else ()
+    return FeatureTable(tuple(kinds), tuple(sensors), tuple(recent), definition.history_steps, average_weights)
 
 
 def _kind_and_sensors(

@@ -32,9 +32,11 @@ class LessonMind:
         self.runtime = runtime
         self._robot, self._recent, self._store = robot, recent, store
         self._handler = runtime.handler
-        self._width = len(runtime.definition.features)
+        width, weights = len(runtime.definition.features), runtime.level.system.weights
+        self._values = len(weights) if weights[width:].any() else width
+        """Values of a situation that the robot compares."""
         self._conditions: dict[int, NDArray[np.float64]] = {}
-        """Weighted recent features of each RLA that was created."""
+        """Weighted features of each RLA that was created."""
         self._known = 0
         """Newest tick that was counted."""
         self._decided = 0
@@ -43,6 +45,8 @@ class LessonMind:
         """Lessons with their ticks, until those are counted."""
         self._sizes: list[tuple[int, int]] = []
         """Number of RLAs after each lesson, with its tick."""
+        self._behaviour = runtime.active_behaviour.behaviour
+        """Behaviour whose RLAs the robot has."""
         self._held: tuple[int | None, str] = (None, "")
         self._mode = LessonMode()
 
@@ -85,7 +89,12 @@ class LessonMind:
         self._teach(self._handler.teach_driven(tick), tick)
         self._before_decision(tick)
         self._handler.authority.expire(tick)
-        if self._events:
+        behaviour = self.runtime.active_behaviour.behaviour
+        if behaviour != self._behaviour:
+            self._behaviour = behaviour
+            self._robot.select(behaviour)
+            self._robot.set_rlas(self._taught_rlas())
+        elif self._events:
             self._robot.set_rlas(self._taught_rlas())
         self._order(tick)
         return results
@@ -157,14 +166,14 @@ class LessonMind:
             self._robot.set_mode(mode)
 
     def _taught_rlas(self) -> TaughtRlas:
-        system, width = self.runtime.level.system, self._width
-        rlas = system.rlas
+        system, values = self.runtime.level.system, self._values
+        rlas = [rla for rla in system.rlas if rla.behaviour == self._behaviour]
         if any(len(system.competitors(rla)) > 1 for rla in rlas):
             raise refused(self.runtime.task, "RLAs on one condition, among which a choice is drawn")
         for rla in rlas:
             if rla.rla_id not in self._conditions:
                 weighted = np.array(rla.condition, dtype=np.float64) * system.weights
-                self._conditions[rla.rla_id] = weighted[:width]
+                self._conditions[rla.rla_id] = weighted[:values]
         return TaughtRlas(
             [rla.rla_id for rla in rlas],
             [self._conditions[rla.rla_id] for rla in rlas],
@@ -201,7 +210,8 @@ class LessonMind:
         for tick in sorted(ticks):
             place = tick - first
             expected = int(at_full_speed[place + 1]) or None
-            runtime.expectations.follow(tick, expected, self._recent.situation(tick), "")
+            vector, behaviour = self._recent.situation(tick), self._recent.behaviour(tick)
+            runtime.expectations.follow(tick, expected, vector, behaviour)
             runtime.statistics.count(int(driving[place + 1]) or None)
             while self._events and self._events[0][0] == tick:
                 self._drop_counts(self._events.popleft()[1])

@@ -1,4 +1,4 @@
-"""Jobs of a study: one robot each, with a stored result and the robot's knowledge file."""
+"""Bases of the jobs of a study: drives in simulated time with a stored result, or training and exams of one robot."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from hal.settings import Settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoops
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 from kurt2rt.experiments.study.provenance import Provenance
@@ -27,19 +28,23 @@ class JobParts(TypedDict):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StudyJob(ABC):
-    """Training and exams of one robot, in a process of their own."""
+class SimulationJob(ABC):
+    """Job in simulated time with a stored result, in a process of its own; it stores no knowledge."""
 
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
-    keeps_knowledge: ClassVar[bool] = True
     replaces_others: ClassVar[bool] = False
+    gives_lesson: ClassVar[bool] = False
+    """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
+    gives_exams: ClassVar[bool] = False
+    """True if the job examines robots that were taught its task, as a batch can."""
     factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
-    seed: int
     made_of: Provenance
     results: Results
+    loops: DriveLoops = ON_BUS
+    """Loops that drive, which change no result."""
 
     @property
     @abstractmethod
@@ -48,13 +53,31 @@ class StudyJob(ABC):
 
     @property
     @abstractmethod
-    def stem(self) -> str:
-        """Path of result and knowledge, without the top folder and the ending."""
+    def file(self) -> str:
+        """Path of the result within the folder of results."""
 
     @property
     @abstractmethod
     def robot_time_s(self) -> float:
         """Simulated time in s, at most."""
+
+    @property
+    def knowledge_name(self) -> str | None:
+        """Path of the stored knowledge within the folder of results; None: the job stores none."""
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyJob(SimulationJob):
+    """Training and exams of one robot."""
+
+    keeps_knowledge: ClassVar[bool] = True
+    seed: int
+
+    @property
+    @abstractmethod
+    def stem(self) -> str:
+        """Path of result and knowledge, without the top folder and the ending."""
 
     @abstractmethod
     async def measure(self, knowledge: Path, report: Report) -> Settings:

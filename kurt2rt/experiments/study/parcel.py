@@ -32,7 +32,7 @@ class Parcel(NamedTuple):
     earlier: Mapping[str, bytes]
     """Files of the robot's earlier jobs, by path within the folder of results."""
     inputs: Mapping[str, bytes]
-    """Files from elsewhere, by the sender's path."""
+    """Other files that the job names, by the sender's path."""
     program: str
     """Hash of the sender's program."""
 
@@ -40,7 +40,7 @@ class Parcel(NamedTuple):
 def pack(job: StoredJob, results: Results, earlier: Iterable[StoredJob]) -> Parcel:
     """Return the parcel of a job; `earlier`: jobs of the same robot that are done. Raises OSError."""
     names = [name for each in earlier for name in _files_of(each)]
-    inputs = {path for path in _paths(job) if path.is_file() and results.folder not in path.parents}
+    inputs = {path for path in _paths(job) if path.is_file()} - {results.folder / name for name in names}
     return Parcel(
         pickle.dumps(job),
         str(results.folder),
@@ -74,8 +74,9 @@ def run_parcel(parcel: Parcel) -> dict[str, bytes]:
         folder = Path(parcel.folder)
 
         def move(path: Path) -> Path:
-            inside = path == folder or folder in path.parents
-            return made / path.relative_to(folder) if inside else inputs.get(str(path), path)
+            if str(path) in inputs:
+                return inputs[str(path)]
+            return made / path.relative_to(folder) if path == folder or folder in path.parents else path
 
         job: StoredJob = _moved(pickle.loads(parcel.job), move)
         # anyio marks the worker's event loop in a context variable, which Dask copies to the thread of the job.

@@ -1,6 +1,7 @@
 """Shard of a study: the robots that one of several machines does."""
 
 import re
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import NamedTuple, Self
 
@@ -43,14 +44,18 @@ class ShardPlan:
 def shard_of(plan: StudyPlan, shard: Shard) -> ShardPlan:
     """Return the jobs of every n-th robot, because jobs of one robot may need each other's files.
 
-    Raises ShardError if there are fewer robots than shards.
+    Robots with more to do are dealt out first, so that all shards take about equally long. Raises ShardError if there
+    are fewer robots than shards.
     """
-    robots = sorted({job.seed for wave in plan.waves for job in wave})
+    time_s: dict[int, float] = defaultdict(float)
+    for job in (job for wave in plan.waves for job in wave):
+        time_s[job.seed] += job.robot_time_s
+    robots = sorted(time_s, key=lambda seed: (-time_s[seed], seed))
     if shard.shards > len(robots):
         raise ShardError(
-            f"too many shards (got {shard.shards}, allowed {len(robots)}, one for each robot)",
+            f"too many shards (got {shard.shards}, allowed {len(robots)}, one for each robot or block of runs)",
             where=f"shard {shard}",
-            do="give fewer shards, or more seeds",
+            do="give fewer shards, or more seeds or runs",
         )
-    own = tuple(robots[shard.number - 1 :: shard.shards])
+    own = tuple(sorted(robots[shard.number - 1 :: shard.shards]))
     return ShardPlan(tuple(tuple(job for job in wave if job.seed in own) for wave in plan.waves), own)

@@ -1,6 +1,6 @@
 """Runs of a certificate follow from their numbers."""
 
-from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs, draw_witnesses
+from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 
 PLACES = ("a", "b", "rooms-SEED")
@@ -27,12 +27,3 @@ def test_share_of_the_runs_has_another_broken_sensor_each() -> None:
     assert 160 < len(broken) < 240
     assert set(broken) == {f"{sensor}={fault}" for sensor in sensors for fault in FaultKind}
     assert [run._replace(broken="") for run in runs] == draw_runs(0, 1000, PLACES)
-    assert not any(run.broken for run in draw_witnesses(runs, 0.5, 3))
-
-
-def test_witnesses_are_a_share_but_at_least_three() -> None:
-    runs = draw_runs(0, 1000, PLACES)
-    assert len(draw_witnesses(runs, 0.01, 3)) == 10
-    assert len(draw_witnesses(runs[:50], 0.01, 3)) == 3
-    assert len(draw_witnesses(runs[:2], 0.01, 3)) == 2
-    assert set(draw_witnesses(runs, 0.01, 3)) <= set(runs)

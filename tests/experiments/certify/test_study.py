@@ -1,6 +1,7 @@
 """Certificate of a robot in the real simulator: batch and CAN loop agree, and a difference refuses all."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -18,8 +19,10 @@ from kurt2rt.experiments.certify.summary import summarise, worst_runs
 from kurt2rt.experiments.certify.tables import all_tables
 from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.parcel import pack, run_parcel
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
 
@@ -70,6 +73,18 @@ def test_certificate_has_all_runs_and_equal_witnesses(made: tuple[Path, Certific
     assert certificate.compared == 3
     assert certificate.on_bus == frozenset()
     assert all(0 < each.ticks <= round(SECONDS * 100) for each in certificate.outcomes)
+
+
+def test_worker_on_another_machine_gives_the_same_files(made: tuple[Path, Certificate], tmp_path: Path) -> None:
+    folder, certificate = made
+    for job in (certificate.plan.blocks[0], certificate.plan.witnesses[0]):
+        # Also knowledge within the folder of results travels.
+        moved = replace(job, knowledge=tmp_path / "own.knowledge", results=Results(tmp_path))
+        moved.knowledge.write_bytes(job.knowledge.read_bytes())
+        assert run_parcel(pack(moved, moved.results, ())) == {job.file: (folder / job.file).read_bytes()}
+        moved.knowledge.unlink()
+        with pytest.raises(KnowledgeError):
+            run_parcel(pack(moved, moved.results, ()))
 
 
 def test_worst_runs_are_driven_again_and_drawn(made: tuple[Path, Certificate], tmp_path: Path) -> None:
@@ -144,6 +159,15 @@ def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_p
     assert {each.stopped for each in stopped} == {"sensor broken left mid front (s3)"}
     assert all(200 < each.ticks < 600 and not each.stuck for each in stopped)
     assert certificate.on_bus == {20_000, 20_001, 20_002}
+
+
+@pytest.mark.parametrize(("runs", "witnesses"), [(1000, 9), (50, 3), (2, 2)])
+def test_witnesses_are_a_share_of_the_runs_without_a_break(
+    taught: Taught, tmp_path: Path, runs: int, witnesses: int
+) -> None:
+    plan = plan_in(tmp_path, taught, EXTENT._replace(first=0, runs=runs, broken=BrokenShare(0.2, ("s3",))))
+    assert len(plan.witnesses) == witnesses
+    assert {job.witness for job in plan.witnesses} <= {run for run in plan.runs if not run.broken}
 
 
 def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path) -> None:

@@ -1,28 +1,23 @@
 """Exams in a batch have the results of exams on the CAN bus."""
 
+import math
 from collections.abc import Sequence
-from contextlib import closing
+from itertools import pairwise
 from pathlib import Path
 
-import anyio
 import pytest
 
 from hal.batch_refusal import BatchRefusedError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.batch.compiled import IS_COMPILED
 from simbridge.simulation import Kurt2SimulationFactory
-from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
+from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
+from tests.simbridge.batch.equal_lessons import batch_lesson
 
 EXAM_S = 40.0 if IS_COMPILED else 2.0
-
-
-def on_bus(task: TaskSettings, exam: BatchExam) -> ExamResult:
-    """Return the result on the CAN bus."""
-    with closing(STAGE.open(exam.setup.world, exam.setup.seed, "exam")) as simulation:
-        return anyio.run(examine, simulation, ROBOT, task, exam.events, exam.setup, lambda _: None)
 
 
 def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequence[int]) -> list[BatchExam]:
@@ -35,20 +30,26 @@ def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequ
     ]
 
 
+def taught_shortly(name: str, *, plain: bool) -> TaskSettings:
+    """Return a task with a short lesson and exam."""
+    times = {"teaching.supervised_s": EXAM_S / 2, "teaching.corrections_s": EXAM_S, "exam.duration_s": EXAM_S}
+    return load_task(name, plain=plain, changes={key: str(seconds) for key, seconds in times.items()})
+
+
 def test_results_are_those_of_the_bus(tmp_path: Path) -> None:
     taught = teach(tmp_path / "k", short_task(exam_s=EXAM_S))
     exams = exams_of(taught.events, ("a", "c"), (1,))
     results = examine_in_batch(STAGE, ROBOT, taught.task, exams)
     assert any(results)
     for exam, result in zip(exams, results, strict=True):
-        assert result is None or result == on_bus(taught.task, exam)
+        assert result is None or result == exam_on_bus(taught.task, exam)
 
 
 def test_robot_that_is_stuck_ends_its_exam_early() -> None:
     task = short_task(exam_s=3.0, stuck_after_s=1.0)
     exam = BatchExam(ExamSetup("a", 1))
     (result,) = examine_in_batch(STAGE, ROBOT, task, [exam])
-    assert result == on_bus(task, exam)
+    assert result == exam_on_bus(task, exam)
     assert result is not None
     assert (result.stuck, result.duration_s, result.share_unknown) == (True, 1.01, 1.0)
 
@@ -56,15 +57,52 @@ def test_robot_that_is_stuck_ends_its_exam_early() -> None:
 def test_start_in_sight_is_that_of_the_bus() -> None:
     task = load_task("circle", changes={"exam.duration_s": "2", "exam.start": "in_sight"})
     exam = BatchExam(ExamSetup("one_object", 4, teacher_policy=True))
-    assert examine_in_batch(STAGE, ROBOT, task, [exam]) == [on_bus(task, exam)]
+    assert examine_in_batch(STAGE, ROBOT, task, [exam]) == [exam_on_bus(task, exam)]
+
+
+@pytest.mark.parametrize("name", ["streets", "straight_on", "turn_left", "turn_right"])
+def test_policy_in_streets_has_the_results_of_the_bus(name: str) -> None:
+    task = load_task(name, changes={"exam.duration_s": str(EXAM_S)})
+    exams = [BatchExam(ExamSetup(world, 2, teacher_policy=True)) for world in ("manhattan", "streets-5")]
+    assert examine_in_batch(STAGE, ROBOT, task, exams) == [exam_on_bus(task, exam) for exam in exams]
+
+
+@pytest.mark.parametrize(
+    ("name", "plain", "worlds"),
+    [
+        ("streets", False, ("manhattan", "streets-5")),
+        ("straight_on", False, ("manhattan", "streets-5")),
+        ("wall_following", True, ("a", "b")),
+        ("streets", True, ("manhattan", "streets-5")),
+    ],
+)
+def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds: Sequence[str]) -> None:
+    task = taught_shortly(name, plain=plain)
+    with batch_lesson(task, 2) as run:
+        assert run.drive_stretches()
+        events = run.given().events
+    exams = [BatchExam(ExamSetup(world, 2), events) for world in worlds]
+    results = examine_in_batch(STAGE, ROBOT, task, exams)
+    for exam, result in zip(exams, results, strict=True):
+        assert result is None or result == exam_on_bus(task, exam)
+
+
+def test_robot_without_a_way_on_is_put_elsewhere_as_on_the_bus() -> None:
+    # A policy that never turns comes to junctions that lead to the sides only.
+    task = load_task("straight_on", changes={"exam.duration_s": str(EXAM_S)})
+    exam = BatchExam(ExamSetup("manhattan", 3, teacher_policy=True))
+    (result,) = examine_in_batch(STAGE, ROBOT, task, [exam])
+    assert result == exam_on_bus(task, exam)
+    assert result is not None
+    steps_m = [math.hypot(b.x_m - a.x_m, b.y_m - a.y_m) for a, b in pairwise(result.trail)]
+    assert not IS_COMPILED or max(steps_m) > 0.5
 
 
 @pytest.mark.parametrize(
     ("name", "changes", "policy"),
     [
-        ("streets", {}, False),
-        ("turn_left", {}, True),
-        ("wall_following", {"learning.past_weight": "0.5"}, False),
+        ("route", {}, False),
+        ("errands", {}, True),
         ("wall_following", {"learning.doubt.asks": "true", "learning.doubt.alone": "true"}, False),
     ],
 )
@@ -89,6 +127,6 @@ def test_hundred_exams_have_the_results_of_the_bus(tmp_path: Path) -> None:
         exams = exams_of(taught.events, ("a", "b", "c", f"rooms-{1000 + seed}", f"rooms-{1100 + seed}"), (1, 2))
         for exam, result in zip(exams, examine_in_batch(STAGE, ROBOT, taught.task, exams), strict=True):
             if result is not None:
-                assert result == on_bus(taught.task, exam)
+                assert result == exam_on_bus(taught.task, exam)
                 compared += 1
     assert compared >= 95

@@ -46,6 +46,13 @@ def test_shards_hold_each_job_once_and_a_robot_whole(shards: int) -> None:
         assert {job.seed for wave in part.waves for job in wave} == set(part.seeds)
 
 
+def test_shards_share_robots_with_more_to_do() -> None:
+    long = tuple(replace(job, seed=seed, robot_time_s=600.0) for seed, job in zip((2, 8, 10, 12), FIRST, strict=False))
+    parts = [shard_of(Plan((FIRST, long)), Shard(number, 2)) for number in (1, 2)]
+    times_s = [sum(job.robot_time_s for wave in part.waves for job in wave) for part in parts]
+    assert times_s == [1203.0, 1202.0]
+
+
 def test_shard_of_too_few_robots_is_refused() -> None:
     with pytest.raises(ShardError, match=r"^shard 2/6: .*got 6, allowed 5"):
         shard_of(PLAN, Shard(2, 6))

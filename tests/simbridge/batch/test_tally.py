@@ -7,7 +7,8 @@ import pytest
 
 from hal.simulation import Pose
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
-from simbridge.batch.parts import Sizes, StuckLaw, empty_robots
+from simbridge.batch.laws import StuckLaw
+from simbridge.batch.record import Sizes, empty_robots
 from simbridge.batch.tally import count_tick
 
 PERIOD_S = 0.01

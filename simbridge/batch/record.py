@@ -1,4 +1,4 @@
-"""State of one robot of a batch as a record, and the numbers and tables that all robots share.
+"""State of one robot of a batch as a record.
 
 A function gets the record of its robot, so compiled code passes one pointer, and plain Python reads the same names.
 """
@@ -6,16 +6,10 @@ A function gets the record of its robot, so compiled code passes one pointer, an
 from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
-from numpy.typing import NDArray
 
-from behaviors.policies import circle, eight, fleeing, wall_following
 from hal.batch import TRACED_TICKS
-from hal.infrared_law import InfraredLawNumbers
+from simbridge.batch.laws import Floats, Integers
 from simbridge.robot.body import BodyState
-from simbridge.robot.wheels import SideLaw
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 STRETCH = 500
 """Most ticks in one call of the loop."""
@@ -24,10 +18,14 @@ NEAR_FACES, NEAR_POSTS = 64, 16
 SIGNS = 14
 """Numbers of the state of one sensor in its watch."""
 MOST_RAYS = 3
-MOST_VALUES = 64
-"""Most recent features: numpy adds the squares of more than twice as many in another order."""
+MOST_VALUES = 128
+"""Most values of a situation, recent and averaged: numpy adds the squares of more values in another order."""
+MOST_AREAS = 64
+"""Most areas of a world whose borders end a stretch."""
 SEEN = 15
 """Sensors that policies look at."""
+CANDIDATES = 16
+"""RLAs that a search for the nearest one keeps."""
 MOST_KEPT = 256
 """Most positions that the rule of being stuck keeps."""
 BOX_STATE = len(BodyState._fields)
@@ -38,6 +36,8 @@ SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 class Robot:
     """Record of one robot; arrays have the shape that is annotated, in `Sizes` or in numbers."""
 
+    number: int
+    """Its index among the robots."""
     tick: int
     at: int
     """Place of the present tick in the stretch."""
@@ -47,7 +47,7 @@ class Robot:
     """Reason that the robot must drive on the bus (simbridge.batch.drive); 0: none."""
     world: int
     knowledge: int
-    """Its table of RLAs; -1 for a policy."""
+    """Its first table of RLAs, that of the first behaviour; -1 for a policy."""
 
     # Body
     x_m: float
@@ -164,9 +164,23 @@ class Robot:
     limits: int
     """Limits of the guard that were met in the newest tick, as bits (simbridge.batch.safety)."""
 
+    # Borders (simbridge.batch.borders)
+    areas: Annotated[Floats, (MOST_AREAS, 4)]
+    """Centre and half extents of each area in m."""
+    area_count: int
+    area_every: int
+    """Ticks between two looks at the robot's position."""
+    area_margin_m: float
+    area: int
+    """Area that the robot is in; -1: none."""
+    crossed: int
+    """1 if the robot crossed a border in the newest tick, which ends its stretch."""
+
     # Mind
     kind: int
     """Kind of mind (simbridge.batch.minds)."""
+    behaviour: int
+    """Taught behaviour that is wanted, by its index."""
     command: int
     """Action that was commanded last; -1: none."""
     action: int
@@ -183,6 +197,15 @@ class Robot:
     """Distances in m that a policy looks at."""
     situation: Annotated[Floats, (MOST_VALUES,)]
     """Weighted situation."""
+    searched: Annotated[Floats, (1, MOST_VALUES)]
+    """Weighted situation of the newest search for the nearest RLA (simbridge.batch.matching)."""
+    candidates: int
+    """RLAs that the search kept; 0: there was none."""
+    candidate_row: Annotated[Integers, (CANDIDATES,)]
+    candidate_away: Annotated[Floats, (CANDIDATES,)]
+    """Their distances from it in counts, ascending."""
+    others_away: float
+    """Distance from it in counts that no other RLA is nearer than."""
 
     # Counts of the whole drive (hal.batch.Tally)
     unknown_ticks: int
@@ -245,156 +268,3 @@ def empty_robots(count: int, sizes: Sizes) -> Robots:
         else:
             fields.append((name, hint, ()))
     return np.zeros(count, dtype=fields).view(np.recarray)
-
-
-class World(NamedTuple):
-    """Static faces and posts of the worlds of a batch; the first index is the world."""
-
-    faces: Floats
-    """Corner x, y and vector to the next corner, in m, (worlds, faces, 4)."""
-    face_count: Integers
-    posts: Floats
-    """Centre x, y, radius and its square, (worlds, posts, 4)."""
-    post_count: Integers
-    reach_m: float
-    """Longest reach of a ray from the centre of a robot."""
-
-
-class BodyLaw(NamedTuple):
-    """Numbers of the body that all robots share."""
-
-    cycle_s: float
-    track_m: float
-    mass_kg: float
-    inertia_kg_m2: float
-    inverse_mass: float
-    inverse_inertia: float
-    force_limit_n: float
-    torque_limit_n_m: float
-    slip_keep: float
-    slip_gain: float
-    half_length_m: float
-    half_width_m: float
-
-
-class SensorLaw(NamedTuple):
-    """Numbers of the sensors that all robots share."""
-
-    cycle_s: float
-    law: InfraredLawNumbers
-    ray_m: float
-    recess_m: float
-    noise_share: float
-    noise_least: float
-
-
-class WatchLaw(NamedTuple):
-    """Limits of the watches."""
-
-    lowest: float
-    highest: float
-    stuck_ticks: int
-    frozen_s: float
-    dark_counts: float
-    """Lowest reading that may be of a sensor pressed against a wall."""
-    beams: Floats
-    """Sine, cosine and place along and across the beam of each sensor, (sensors, 4), places in m."""
-    numerator_counts_m: float
-    offset_m: float
-    bias_counts: float
-    metres_per_tick: float
-    track_m: float
-
-
-class GuardLaw(NamedTuple):
-    """Limits of the guard."""
-
-    cycle_s: float
-    maximum_speed_m_s: float
-    acceleration_m_s2: float
-    braking_m_s2: float
-    front_bits: int
-    """Bumpers in front."""
-    rear_bits: int
-
-
-class MindLaw(NamedTuple):
-    """Tables of the policies and actions."""
-
-    minimum_ticks: int
-    distance_m: Floats
-    """Distance by count, (1024,)."""
-    seen: Integers
-    """Sensors that a policy looks at, (15,)."""
-    metres_per_tick: float
-    fixed: Floats
-    """Set points of each action in m/s, (actions, 2); those of a turn while it lasts."""
-    wanted_m: Floats
-    """Way of each side in a turn; infinite for other actions, (actions,)."""
-    wall: Integers
-    """Places of the front and the back sensor of actions along a wall, (actions, 2); -1 for others."""
-    keep: Floats
-    """Numbers of such actions (behaviors.keep_distance), (actions, 5)."""
-    actions: Integers
-    """Action of the repertoire for each answer of the policy."""
-    wall_following: wall_following.Thresholds
-    fleeing: fleeing.Thresholds
-    circle: circle.Thresholds
-    eight: eight.Thresholds
-
-
-class Features(NamedTuple):
-    """Recent features of a situation."""
-
-    kind: Integers
-    """Kind of each feature (simbridge.batch.minds)."""
-    sensors: Integers
-    """Sensors of each feature, (features, sensors)."""
-    sensor_count: Integers
-    weights: Floats
-
-
-class Conditions(NamedTuple):
-    """Weighted conditions of all RLAs, and which of them are near each other."""
-
-    values: Floats
-    """Weighted conditions in counts, (rows, values); the number of values is a multiple of eight."""
-    neighbours: Integers
-    """Rows of the same knowledge, the nearest first, which is the row itself; (rows, neighbours)."""
-    apart: Floats
-    """Their distances from the row in counts, (rows, neighbours); infinite beyond the last one."""
-
-
-class Knowledge(NamedTuple):
-    """Taught RLAs of all knowledges of a batch, oldest first; withdrawn ones are left out."""
-
-    first: Integers
-    """First row of each knowledge, and the end of the last one, (knowledges + 1,)."""
-    conditions: Conditions
-    radius: Floats
-    answer: Integers
-    """Row of the RLA that answers for the RLAs of one condition."""
-    action: Integers
-    features: Features
-
-
-class StuckLaw(NamedTuple):
-    """Rule of being stuck (hal.batch.StuckRule)."""
-
-    every_ticks: int
-    positions: int
-    """Positions in a window; 0: there is no rule."""
-    least_m: float
-
-
-class Laws(NamedTuple):
-    """All numbers that the robots share."""
-
-    body: BodyLaw
-    side: SideLaw
-    ticks_per_speed: float
-    sensor: SensorLaw
-    watch: WatchLaw
-    guard: GuardLaw
-    mind: MindLaw
-    stuck: StuckLaw
