@@ -22,6 +22,8 @@ from kurt2rt.core.decision.level import Level
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack
+from kurt2rt.core.learner.learner_level import LearnerLevel
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
@@ -66,6 +68,9 @@ class RuntimeOptions:
     level_override: Level | None = None
     """Level that drives instead of the basic level, such as the teacher's own policy. Knowledge and teaching stay
     connected to the basic level; a mid level commands the override as well."""
+    learners: LearnerTeam | None = None
+    """Learners that decide in place of the RLAs and get each lesson; the RLAs are taught, too, as the journal's record.
+    None: RLAs decide. Not with a `level_override`."""
     active_behaviour: ActiveBehaviour | None = None
     """Shared with a `level_override` that reads it; made from the task by default."""
     attended: bool = False
@@ -166,6 +171,7 @@ class _Assembly:
         self.definition = load_situation(task.situation, settings.infrared.names)
         self.critic = load_critic(task.critic)
         mid_settings = None if task.mid is None else load_mid_level(task.mid)
+        minimum_action_ticks = round(task.learning.minimum_action_s / self._period_s)
         self._system = empty_system(task, self.definition, self.critic, mid_settings)
         self.reinforcement = self._restored_reinforcement()
         self.active_behaviour = options.active_behaviour or ActiveBehaviour(task.behaviours)
@@ -174,12 +180,17 @@ class _Assembly:
         self.basic = BasicLevel(
             self._system,
             repertoire,
-            round(task.learning.minimum_action_s / self._period_s),
+            minimum_action_ticks,
             self.active_behaviour,
             self.reinforcement.choice,
             self._doubt(repertoire),
             self._period_s,
         )
+        self.learner: LearnerLevel | None = None
+        if options.learners is not None:
+            # A repertoire of its own, because BasicLevel may hold the same action.
+            own = load_task_repertoire(task, settings)
+            self.learner = LearnerLevel(options.learners, own, minimum_action_ticks, self.active_behaviour)
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None
         if mid_settings is not None:
@@ -187,7 +198,7 @@ class _Assembly:
             self.mid = MidLevel(self._system, situation, mid_settings, self.active_behaviour)
         self.expectations = ExpectationTracker(self._system, self.mid, self.statistics.transitions, saved.expectations)
         self.navigator: Navigator | None = None
-        self.top: Level = options.level_override or self.basic
+        self.top: Level = options.level_override or self.learner or self.basic
         if self.mid is not None:
             self.navigator = Navigator(self.mid, self.statistics.follow_ups, self.expectations.get)
             self.top = LayerStack(self.top, self.mid, self.navigator)
@@ -236,6 +247,7 @@ class _Assembly:
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
                 holds_yield=self._task.learning.holds_yield,
+                learner=self.learner,
                 lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,

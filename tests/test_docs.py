@@ -1,6 +1,7 @@
 """README and documentation hold: commands run, examples load, links lead somewhere."""
 
 import ast
+import json
 import re
 import shlex
 import shutil
@@ -166,6 +167,7 @@ def folder(tmp_path: Path, taught: Path) -> Path:
     (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
     record(tmp_path, STORED / "walls.mcap")
     write_changed_copies(tmp_path)
+    write_printed_modules(tmp_path)
     return tmp_path
 
 
@@ -181,6 +183,14 @@ def write_changed_copies(folder: Path) -> None:
             assert text.count("\n" + was) == 1, f"{where(block)}: {names[1]} has not exactly one place of:\n{was}"
             text = text.replace("\n" + was, "\n" + "".join(line[1:] for line in lines if line[0] in " +"))
         (folder / names[2]).write_text(text, encoding="utf-8")
+
+
+def write_printed_modules(folder: Path) -> None:
+    """Write each module of a reader's own that begins with its file name."""
+    for block in blocks("python"):
+        if named := re.match(r"# (my_\w+\.py)\n", block.text):
+            (folder / named[1]).write_text(block.text, encoding="utf-8")
+            sys.modules.pop(named[1].removesuffix(".py"), None)  # of another test's folder
 
 
 def record(folder: Path, segment: Path) -> None:
@@ -264,6 +274,16 @@ def test_added_sensor_is_a_feature_of_the_taught_run(kurt2rt: CommandLine) -> No
     with Journal.read_only(Path("var/s19.knowledge")) as journal:
         assert journal.binding.feature_names[18] == "s19"
         assert len(journal.binding.feature_names) == 74
+
+
+def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) -> None:
+    assert len(Path("my_learner.py").read_text(encoding="utf-8").splitlines()) <= 40
+    words = ("rivals", "--learner", "my_learner:Nearest", "--seeds", "3901", "--after", "2", "--jobs", "1")
+    said = kurt2rt(*words, "--task", "short.yaml", "--set", "exam.worlds=[a]", "--json")
+    assert said.exit_code == 0, said.err
+    success, *_ = json.loads(said.out)["tables"]
+    assert [row[1] for row in success["rows"]] == ["RLA, as shipped", "my_learner:Nearest"]
+    assert "my_learner:Nearest" in Path("results/rivals/report.html").read_text(encoding="utf-8")
 
 
 @pytest.mark.deep

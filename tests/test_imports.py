@@ -53,6 +53,7 @@ LAYERS_OF_CORE = (
     {"rla", "perception"},
     {"decision", "outcome_text", "event_store"},
     {"basic", "mid"},
+    {"learner"},
     {"planning", "expectations", "critic"},
     {"reinforcement"},
     {"task_settings", "phase_settings", "teacher_settings"},

@@ -129,6 +129,8 @@ class RefusalCode(StrEnum):
     """The basic level has one action per situation."""
     SAYS_SO = "says so"
     """Another RLA on its condition has this action already."""
+    NO_RLA_DECIDES = "no rla decides"
+    """A learner that is no RLA system decides, and has no RLAs to change."""
     NO_RLA_DROVE = "no rla drove"
     OUTSIDE_RADIUS = "outside radius"
     DROVE_SLOWLY = "drove slowly"

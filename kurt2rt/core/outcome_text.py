@@ -129,6 +129,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.SAYS_SO: "{title} says {action} there already; delete RLA {delete} instead",
     RefusalCode.NO_DEMONSTRATION: "there is no drive by hand to teach; drive by hand and let go first",
     RefusalCode.NO_SEGMENT: "the drive by hand has {segments} segments; name some of them",
+    RefusalCode.NO_RLA_DECIDES: "a learner that is no RLA system decides; teach it, or undo a lesson",
     RefusalCode.NO_RLA_DROVE: "no RLA drove the robot then; there is nothing to reward or to punish",
     RefusalCode.OUTSIDE_RADIUS: "the situation lay outside the radius of {title}, or it stood; no RLA is rewarded",
     RefusalCode.DROVE_SLOWLY: "the robot drove slowly then; reward and appraise what it does at full speed",

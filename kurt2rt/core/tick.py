@@ -10,7 +10,7 @@ from hal.sensor_watch import SensorWatch
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause, stopped
+from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import BumperWatch, StandingWatch
 from kurt2rt.core.event_store import EventStore
@@ -37,7 +37,7 @@ _SENSE, _PERCEIVE, _DECIDE, _GUARD, _LEARN, _PUBLISH = Stage
 _TEACHER, _UNATTENDED = DecisionCause.TEACHER, DecisionCause.UNATTENDED
 """Names for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
 
-_TEACHABLE = BY_RLA | ASKING
+_TEACHABLE = BY_KNOWLEDGE | ASKING
 """Causes of decisions that a held action may correct."""
 
 
@@ -328,9 +328,8 @@ class Tick:
         decision = stopped(choice.decision, DecisionCause.TOUCHES) if motion.asks_at_bumper else choice.decision
         # The later of both times: the clock of a replay stands still within a tick.
         standing_at_s = max(now_s, motion.drove_at_s)
-        standing = self._standing.update(
-            decision, motion.result, standing_at_s, self._handler.active_stop, choice.saving_error
-        )
+        error = choice.saving_error or self._handler.learner_failure
+        standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
         self._timer.lap(_PUBLISH)
         return TickRecord(
             tick=tick,

@@ -38,6 +38,15 @@ class Noise:
         self.drawn += 1
         return self._block[self._used - 1]
 
+    def next_normals(self, count: int) -> list[float]:
+        """Return the next `count` standard normal numbers, as so many calls of `normal` would."""
+        begin, end = self._used, self._used + count
+        if end > len(self._block):
+            return [self.normal() for _ in range(count)]
+        self._used = end
+        self.drawn += count
+        return self._block[begin:end]
+
     def normals(self, count: int) -> NDArray[np.float64]:
         """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""
         numbers = np.empty(count)

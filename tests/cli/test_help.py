@@ -65,6 +65,7 @@ def test_every_command_is_found() -> None:
             "graph",
             "surprise",
             "transfer",
+            "rivals",
             "doubt",
             "certify",
             "broken",

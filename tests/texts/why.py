@@ -68,6 +68,8 @@ OF_CAUSE: dict[DecisionCause, DecisionFacts] = {
     DecisionCause.TOUCHES: replace(standing(DecisionCause.TOUCHES), granted=STOOD, reasons=("front bumper",)),
     DecisionCause.DOUBT: replace(standing(DecisionCause.DOUBT), doubt=OBSTACLE),
     DecisionCause.NO_WAY: replace(standing(DecisionCause.NO_WAY), plan_says="no way to door"),
+    DecisionCause.LEARNER: facts(replace(KNOWN, nearest=None, driver=None), DecisionCause.LEARNER.value),
+    DecisionCause.LEARNER_FAILED: replace(standing(DecisionCause.LEARNER_FAILED), trouble="k-nn: ValueError: empty"),
 }
 """Facts of a decision by its cause."""
 
@@ -96,6 +98,7 @@ def reasons() -> Iterator[tuple[str, str]]:
         "unknown, asks sooner": standing(DecisionCause.UNKNOWN, replace(OUTSIDE, radius_share=0.5)),
         "unknown, withdrawn": standing(DecisionCause.UNKNOWN, level((1.0, 6.0), WITHDRAWN)),
         "unknown, lost action": standing(DecisionCause.UNKNOWN),
+        "unknown, to a learner": standing(DecisionCause.UNKNOWN, replace(KNOWN, nearest=None)),
         "unknown way": asking_the_way(NO_WAY),
         "unknown way, nothing taught": asking_the_way(NOTHING_ABOVE),
         "unknown way, lost": asking_the_way(LOST),
@@ -117,6 +120,7 @@ def own_actions() -> Iterator[tuple[str, str]]:
     ):
         hindered = replace(STOPPED, hindrances=tuple(each.value for each in hindrances))
         yield f"stopped; {', '.join(hindrances) or 'nothing else'}", format_reasons(hindered)[1]
+    yield "stopped; of a learner", format_reasons(standing(DecisionCause.STOPPED, replace(KNOWN, nearest=None)))[1]
     yield "stopped; of one condition", format_reasons(standing(DecisionCause.STOPPED, CROWD))[1]
     for label, mid in (("nothing taught", NOTHING_ABOVE), ("unknown", NO_WAY), ("lost", LOST)):
         yield f"led; way, {label}", format_reasons(replace(with_mid(LED, mid), asks_at=MID))[1]

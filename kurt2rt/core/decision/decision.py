@@ -39,6 +39,10 @@ class DecisionCause(StrEnum):
     """The situation lies inside the radius of the nearest RLA, but the robot doubts its action; it stands and asks."""
     NO_WAY = "no way"
     """No taught way leads from here to the goal."""
+    LEARNER = "learner"
+    """A learner that is no RLA system knows the situation, and its action drives."""
+    LEARNER_FAILED = "learner failed"
+    """A learner raised an error or decided an unknown action; the robot stands."""
 
 
 ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})
@@ -46,6 +50,9 @@ ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TO
 
 BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.AVOIDS})
 """Causes by which an RLA drives."""
+
+BY_KNOWLEDGE = BY_RLA | {DecisionCause.LEARNER}
+"""Causes by which a taught action drives, of an RLA or of another learner."""
 
 
 class MidDecision(NamedTuple):

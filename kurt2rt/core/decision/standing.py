@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.decision import ASKING, BY_RLA, Decision, DecisionCause
+from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause
 from kurt2rt.core.rla.rla import MID
 
 
@@ -53,6 +53,8 @@ class StandReason(StrEnum):
     BUMPERS_SILENT = "bumpers silent"
     NOT_A_NUMBER = "not a number"
     """The decided speed is not a number."""
+    LEARNER_FAILED = "learner failed"
+    """A learner raised an error or decided an unknown action, and is not asked again."""
 
 
 class Standing(NamedTuple):
@@ -101,6 +103,7 @@ _CAUSES = {
     DecisionCause.UNSAVED: StandReason.UNSAVED,
     DecisionCause.AT_GOAL: StandReason.AT_GOAL,
     DecisionCause.NO_WAY: StandReason.NO_WAY,
+    DecisionCause.LEARNER_FAILED: StandReason.LEARNER_FAILED,
 }
 
 
@@ -111,7 +114,7 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
         cause: a value of DecisionCause; an unknown value becomes HALTED with it as detail.
         asks_at: level that asks, if `cause` is UNKNOWN.
         stop: active stop; None without one.
-        says: outcome of the goal, or why lessons cannot be saved, in words.
+        says: outcome of the goal, a learner's failure, or why lessons cannot be saved, in words.
     """
     asks = cause in ASKING
     if stop is not None:
@@ -122,7 +125,7 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
         return Standing(StandReason.DOUBTS, asks=True)
     if cause == DecisionCause.TOUCHES:
         return Standing(StandReason.FRONT_BUMPER, asks=True)
-    if cause in BY_RLA or cause == DecisionCause.TEACHER:
+    if cause in BY_KNOWLEDGE or cause == DecisionCause.TEACHER:
         return DRIVES
     if cause not in DecisionCause.__members__.values():
         return Standing(StandReason.HALTED, says=cause)
@@ -178,7 +181,7 @@ class BumperWatch:
 
         `decision`: of the tick. `guard_result`: set points that the guard applied to it, and why.
         """
-        pushes = decision.cause in BY_RLA and not guard_result.latched
+        pushes = decision.cause in BY_KNOWLEDGE and not guard_result.latched
         held = pushes and touched_bumper(guard_result.wheel_speeds, guard_result.reasons) is not None
         if held:
             self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
@@ -215,7 +218,7 @@ class StandingWatch:
             guard_result: set points that the guard applied, and why.
             drove_at_s: time of the guard's call on the runtime's clock, in s.
             stop: active stop; None without one.
-            error: reason that lessons cannot be saved; None if they can.
+            error: reason that lessons cannot be saved, or else a learner's failure; None without either.
         """
         if guard_result.latched and not self._latched:
             self._stall_s = None if self._drove_at_s is None else drove_at_s - self._drove_at_s

@@ -44,6 +44,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.ENCODERS_SILENT: _Text("its encoders are silent", "Check its power and CAN cable"),
     StandReason.BUMPERS_SILENT: _Text("its bumpers are silent", "Check its power and CAN cable"),
     StandReason.NOT_A_NUMBER: _Text("what was decided is no speed", "Teach it another action here"),
+    StandReason.LEARNER_FAILED: _Text("its learner failed: {says}", "Mend it and begin again"),
 }
 
 _STOPS: dict[StopReason, str] = {

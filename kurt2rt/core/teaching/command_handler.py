@@ -10,6 +10,7 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Critic, Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.lesson_speed import SLOWEST, LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text
@@ -88,6 +89,8 @@ class HandlerParts:
     """Delay of the teachers; None: it begins with the default."""
     holds_yield: bool = False
     """Keep what an answer or a press taught where a hold would replace it."""
+    learner: LearnerLevel | None = None
+    """Level of a learner that decides in place of the RLAs and gets each lesson; None: RLAs decide."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 
@@ -125,6 +128,7 @@ class CommandHandler:
         self.agreement = parts.agreement
         self.reinforcement = reinforcement = parts.reinforcement
         self.mid = parts.mid
+        self._learner = parts.learner
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
@@ -183,6 +187,11 @@ class CommandHandler:
         return self._level.system.active_rlas
 
     @property
+    def learner_failure(self) -> str | None:
+        """Failure of the learner that decides in place of the RLAs, in one line; None without one."""
+        return None if self._learner is None else self._learner.team.failure or None
+
+    @property
     def session(self) -> str | None:
         """Name of the open session; None without one."""
         return self._clock.session
@@ -206,6 +215,8 @@ class CommandHandler:
         self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
         # A teacher is to see what the robot would do by its lessons alone.
         self._level.avoids = not taught
+        if self._learner is not None:
+            self._learner.counts, self._learner.taught = self.lesson_speed.counts, taught
         authority = self.authority
         if was_driving and self.stops.active is None and self.requires_teacher and not authority.is_present(tick):
             self.stop(authority.absence_stop)
@@ -407,6 +418,7 @@ def _knowledge_updater(level: BasicLevel, handled_ids: Iterable[str], parts: Han
         reinforcement=parts.reinforcement,
         agreement=parts.agreement,
         self_teaching=parts.self_teaching,
+        learner=parts.learner,
     )
 
 
@@ -427,4 +439,5 @@ def _lesson_builder(
         appraisal_lessons=appraisal_lessons,
         mid=parts.mid,
         holds_yield=parts.holds_yield,
+        learner=parts.learner,
     )

@@ -5,7 +5,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
 from kurt2rt.core.teaching.commands import HandOver, Resume, RunBehaviour, Stop, Take
-from kurt2rt.core.teaching.lesson_builder import require_action
+from kurt2rt.core.teaching.known_names import require_action
 from kurt2rt.core.teaching.stop_record import StopRecord
 from kurt2rt.core.teaching.stream_handler import StreamHandler
 

@@ -7,6 +7,7 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
@@ -28,12 +29,17 @@ class KnowledgeUpdater:
         reinforcement: Reinforcement | None,
         agreement: Agreement | None,
         self_teaching: SelfTeaching | None,
+        learner: LearnerLevel | None = None,
     ) -> None:
-        """Connect the parts; `reinforcement` applies rewards, `self_teaching` is the teacher of phase 5."""
+        """Connect the parts: `reinforcement` applies rewards, `self_teaching` is the teacher of phase 5.
+
+        `learner` undoes lessons of a learner; None: RLAs decide.
+        """
         self._level = level
         self._reinforcement = reinforcement
         self._agreement = agreement
         self._self_teaching = self_teaching
+        self._learner = learner
         self.handled_ids = set(handled_command_ids)
         """Ids of all commands that were carried out, and of all repairs."""
         self.error = ""
@@ -60,6 +66,8 @@ class KnowledgeUpdater:
             self._agreement.on_event(event)
         if self._self_teaching is not None:
             self._self_teaching.on_event(event)
+        if self._learner is not None:
+            self._learner.on_event(event)
 
     def learn_from_tick(
         self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None

@@ -1,13 +1,14 @@
 """Lesson builder: from a teacher's command to the event that changes the knowledge."""
 
 from collections import Counter
-from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.learner.learner import Why
+from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
@@ -18,6 +19,7 @@ from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
+from kurt2rt.core.teaching.known_names import require_action, require_behaviour
 from kurt2rt.core.teaching.lesson_context import LessonContext
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
@@ -41,6 +43,7 @@ class LessonBuilder:
         appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
         holds_yield: bool = False,
+        learner: LearnerLevel | None = None,
     ) -> None:
         """Connect the level and its optional parts.
 
@@ -53,6 +56,7 @@ class LessonBuilder:
             appraisal_lessons: lessons of the critic; None without a critic.
             mid: lessons of the mid level; None without one.
             holds_yield: keep what an answer or a press taught where a hold would replace it.
+            learner: gets each lesson of the basic level, also those that change no RLA; None: RLAs decide.
         """
         self._level = level
         self._system = level.system
@@ -64,6 +68,7 @@ class LessonBuilder:
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
         self._holds_yield = holds_yield
+        self._learner = learner
         self.corrections_at: Counter[str] = Counter()
         """Number of corrections by level."""
 
@@ -75,6 +80,8 @@ class LessonBuilder:
         match command:
             case Teach() | Correct():
                 return self._action_lesson(command, situation, origin)
+            case ReplaceAction() | DeleteRla() if self._learner is not None:
+                raise CommandRefusedError(RefusalCode.NO_RLA_DECIDES)
             case ReplaceAction(rla_id=rla_id, action=action):
                 rla = self._require_rla(rla_id)
                 self._require_action_of(rla.level, action)
@@ -104,7 +111,9 @@ class LessonBuilder:
         Raises:
             CommandRefusedError: if the tick was forgotten or had no situation.
         """
-        event = self._in_context(action, self._basic_context(meant, None), origin, yields=self._holds_yield)
+        context = self._basic_context(meant, None)
+        self._label(action, context, Why.HOLD, origin)
+        event = self._in_context(action, context, origin, yields=self._holds_yield)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
@@ -115,6 +124,7 @@ class LessonBuilder:
         Returns None if the robot would do that action there already.
         """
         context = LessonContext(vector, behaviour, BASIC, None, self._insert_beyond_share)
+        self._label(action, context, Why.SHOWN, origin)
         return self._in_context(action, context, origin)
 
     def _in_context(
@@ -128,6 +138,11 @@ class LessonBuilder:
         if yields and nearest is not None and self._is_within(share, nearest) and _is_exact(nearest.rla):
             return None
         return self._corrected(action, nearest, context, share, origin).event
+
+    def _label(self, action: str, context: LessonContext, why: Why, origin: Origin) -> None:
+        """Give a lesson of the basic level to the learner, before the RLAs decide between inserting and replacing."""
+        if self._learner is not None and context.level == BASIC:
+            self._learner.teach(context.vector, context.behaviour, action, why, origin.command_id)
 
     def _is_within(self, share: float, nearest: Match) -> bool:
         return nearest.distance <= share * self._system.whole_radius(nearest.rla)
@@ -147,6 +162,7 @@ class LessonBuilder:
         nearest = self._system.match(context.vector, context.behaviour, context.level)
         if isinstance(command, Teach) and command.alternative:
             return self._add_alternative(command.action, context, nearest, origin)
+        self._label(command.action, context, _why(command), origin)
         if isinstance(command, Correct) and command.late:
             agreeing = self._agreeing(nearest, context, command.action)
             if agreeing is not None:  # an earlier press was about the same mistake
@@ -305,6 +321,8 @@ class LessonBuilder:
                 self._require_restorable(command_id)
                 standing.append(command_id)
         origins = [replace(origin, command_id=f"{origin.command_id}{DERIVED}{n}") for n in range(1, len(standing))]
+        if self._learner is not None:
+            self._learner.team.undo_hold(hold)
         before = tuple(map(LessonUndone, standing, origins))
         outcome = Outcome.of(ResultCode.HOLD_UNDONE, lessons=len(standing))
         return LessonResult(outcome, LessonUndone(standing[-1], origin), before)
@@ -352,6 +370,12 @@ class LessonBuilder:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
+def _why(command: Teach | Correct) -> Why:
+    if isinstance(command, Teach):
+        return Why.ANSWER
+    return Why.LATE if command.late else Why.CORRECTION
+
+
 def _is_exact(rla: Rla) -> bool:
     """Return whether an RLA has an action that no hold taught: the moment of a hold's lesson is an estimate."""
     return not rla.is_withdrawn and hold_of(rla.origin.command_id) is None
@@ -364,17 +388,3 @@ def _is_at_known_place(nearest: Match, context: LessonContext) -> bool:
         and nearest.known
         and (nearest.distance <= context.insert_beyond_share * nearest.radius)
     )
-
-
-def require_action(action: str, repertoire: Iterable[str]) -> None:
-    """Raise CommandRefusedError, which lists the actions, if the repertoire lacks `action`."""
-    names = tuple(repertoire)
-    if action not in names:
-        raise CommandRefusedError(RefusalCode.NO_ACTION, action=action, known=names)
-
-
-def require_behaviour(name: str, behaviours: Iterable[str]) -> None:
-    """Raise CommandRefusedError, which lists the behaviours, if the task does not teach `name`."""
-    names = tuple(behaviours)
-    if name not in names:
-        raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=names)

@@ -10,6 +10,7 @@ from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
@@ -101,6 +102,8 @@ class ExamSetup:
     """False: a stuck robot is rescued and drives on, so that collisions are counted over the whole time."""
     broken: SensorBreak | None = None
     """Sensor that breaks; None: all sensors work."""
+    learners: LearnerTeam | None = None
+    """Taught learners that decide in place of the RLAs; None: RLAs decide."""
     appraises: bool = False
     """True if `on_tick` reads the features of the critic."""
     on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
@@ -160,7 +163,10 @@ class ExamRun(Episode):
                 round(task.learning.minimum_action_s / settings.can.cycle_s),
                 behaviour,
             )
-        options = RuntimeOptions(level_override=level, active_behaviour=behaviour, appraises=setup.appraises)
+        learners = None if setup.teacher_policy else setup.learners
+        options = RuntimeOptions(
+            level_override=level, active_behaviour=behaviour, learners=learners, appraises=setup.appraises
+        )
         runtime = build_exam_runtime(simulation, settings, task, events, setup, options)
         # Learner and teacher get the same random choices; their drives diverge at the first different action.
         chance = random.Random(setup.chance_seed)

@@ -7,6 +7,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.event_store import EventStore
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
@@ -36,6 +37,8 @@ class TrainingStore:
     """Counters to continue; None: new ones."""
     saved: Statistics | None = None
     """Values and expectations of the RLAs; None: initial ones."""
+    learners: LearnerTeam | None = None
+    """Learners that are taught and decide in place of the RLAs; None: RLAs decide."""
 
 
 def build_training_runtime(
@@ -75,6 +78,7 @@ def build_training_runtime(
             asks_at_bumper=False,
             appraises=appraises,
             recent=recent,
+            learners=training.learners,
         ),
     )
 

@@ -66,7 +66,7 @@ def collect_facts(
         reasons=record.guard_result.reasons,
         latched=record.guard_result.latched,
         stopped=school.active_stop,
-        trouble=record.saving_error or "",
+        trouble=record.saving_error or school.learner_failure or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.trusted_counts or record.readings.infrared_counts,
         infrared_age_s=record.readings.infrared_age_s,

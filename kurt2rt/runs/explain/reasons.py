@@ -18,12 +18,18 @@ _STANDS = {
     DecisionCause.NO_WAY: "no way leads to its goal",
     DecisionCause.TOUCHES: "it touches something",
     DecisionCause.DOUBT: "it doubts its action",
+    DecisionCause.LEARNER_FAILED: "its learner failed",
 }
 
 _TOLD_DOUBT = 1.0
 """Least doubt that is told of a robot that drives: that of 1 % of the ticks of a usual drive."""
 
-_NOTHING_BESIDE = (DecisionCause.BLIND, DecisionCause.AT_GOAL, DecisionCause.NO_WAY)
+_NOTHING_BESIDE = (
+    DecisionCause.BLIND,
+    DecisionCause.AT_GOAL,
+    DecisionCause.NO_WAY,
+    DecisionCause.LEARNER_FAILED,
+)
 """Causes without a hypothetical action: no situation, or a stand that the robot itself decided."""
 
 
@@ -72,6 +78,8 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     elif facts.cause == DecisionCause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
         lines += _autonomous_action(facts)
+    elif facts.cause == DecisionCause.LEARNER:
+        lines.append(f"A learner that is no RLA system drives: {facts.action}. It gives no reasons for its decisions.")
     elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == DecisionCause.UNKNOWN:
@@ -110,6 +118,8 @@ def _stands(facts: DecisionFacts) -> str:
             return f"Lessons cannot be saved at the moment{why}: the robot stands until they can."
         case DecisionCause.AT_GOAL | DecisionCause.NO_WAY:
             return f"{facts.plan_says or _STANDS[DecisionCause(facts.cause)]}."
+        case DecisionCause.LEARNER_FAILED:
+            return f"The learner that decides failed{f' ({facts.trouble})' if facts.trouble else ''}: the robot stands."
     return f"Cause: {facts.cause}."
 
 
@@ -204,6 +214,8 @@ def _why_doubt(doubt: DoubtFacts) -> str:
 
 def _asks(level: LevelFacts) -> list[str]:
     nearest, of = level.nearest, f" of {level.behaviour}" if level.behaviour else ""
+    if nearest is None and level.count:
+        return [f"A learner that is no RLA system decides{of}, and does not know this situation: the robot asks."]
     if nearest is None:
         return [f"Nothing{of} was taught yet, so the robot asks."]
     if nearest.distance <= nearest.radius:
@@ -256,6 +268,8 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
         stands = DecisionCause.UNATTENDED if known else None
     if stands is not None:
         return [f"By itself it would stand: {_STANDS[DecisionCause(stands)]}."]
+    if nearest is None and facts.basic.count:
+        return ["By itself it would do as its learner decides, which is no RLA system."]
     if nearest is None or leader is None:
         return ["By itself it would ask: nothing was taught yet."]
     if known:

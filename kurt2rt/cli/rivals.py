@@ -1,0 +1,163 @@
+"""`kurt2rt rivals`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.executor_option import OnOption
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    DEFAULT_OF_THE_TASK,
+    Changes,
+    Jobs,
+    RobotName,
+    changes_of,
+    parse_seeds,
+    results_option,
+    teacher_option,
+)
+from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.learner.conformance import broken_promises
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
+from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.rivals.rival import PRESSES_LEAGUE, Rival
+from kurt2rt.platform.text_table import print_whole
+
+_AFTER = (10, 20, 40)
+_SEED_OF_THE_CHECK = 1
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt rivals`."""
+
+    learner: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=GATE]",
+            help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
+            "number by which it asks. May be given again. Default: all of the league.",
+            show_default=False,
+        ),
+    ] = None
+    task: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME|PATH",
+            help="Task: a name in config/tasks, or the path of a YAML file; may be given again. "
+            "Default: wall_following.",
+            show_default=False,
+        ),
+    ] = None
+    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4100-4119.")] = "4100-4119"
+    after: Annotated[
+        list[int] | None,
+        typer.Option(
+            min=1,
+            help="Number of presses after which the robot is examined, besides the end of its lesson; may be given "
+            f"again. Default: {', '.join(map(str, _AFTER))}.",
+            show_default=False,
+        ),
+    ] = None
+    check: Annotated[
+        bool,
+        typer.Option(
+            "--check", help="Only check that the learners keep the promises of the door, in seconds, and teach nothing."
+        ),
+    ] = False
+    changes: Changes = None
+    jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
+    on: OnOption = None
+    out: Annotated[Path, results_option("results/rivals")] = Path("results/rivals")
+    robot_settings: RobotName = "kurt2"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def rivals(options: _Options) -> None:
+    """Compare learners of other kinds with the RLA system, taught by the same teacher.
+
+    Each learner is taught as each robot, through the same lessons, guard and
+    sensors, and examined without its teacher after 10, 20 and 40 presses and
+    at the end. The tables show the robots that pass, the teacher's effort,
+    collisions while it was taught, the machine's time, and what an undo
+    restores; each row is compared with the RLA system robot by robot.
+
+    For example, all of the league; one with another gate; and your own:
+
+        kurt2rt rivals
+        kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
+        kurt2rt rivals --learner mine:Mine --check
+
+    Results are kept in --out with hashes of what made them; a run that was
+    interrupted goes on where it was. docs/add-a-learner.md says how to write
+    a learner.
+    """
+    robot = load_robot(options.robot_settings)
+    names = dict.fromkeys(options.task or ("wall_following",))
+    tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
+    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or PRESSES_LEAGUE)]
+    if options.check:
+        _check(chosen, tasks[0], options)
+        return
+    # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.rivals.figures import draw_curves
+    from kurt2rt.experiments.rivals.plan import make_plan, read_league
+    from kurt2rt.experiments.rivals.report import write_report
+    from kurt2rt.experiments.rivals.tables import all_tables
+    from kurt2rt.experiments.study.eligibility import reasons_against_judging
+    from kurt2rt.experiments.study.jobs import JobParts
+    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.study.table import as_rich
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    results = Results(options.out)
+    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    after = sorted(set(options.after or _AFTER))
+    plan = make_plan(tasks, chosen, parse_seeds(options.seeds), after, parts)
+    command = typed_command("rivals", options, {"seeds": options.seeds})
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        return
+    report, not_judged = options.out / "report.html", list(reasons_against_judging(plan.seeds))
+    with study_run(plan, results, command, options.jobs, options.on) as bar:
+        bar.say("figure and report")
+        league = read_league(plan, results)
+        tables = list(all_tables(league))
+        picture = draw_curves(league, options.out / "rivals.png")
+        write_report(league, tables, picture, not_judged, command, report)
+    if options.as_json:
+        print_json({"tables": tables_of(tables), "not_judged": not_judged, "report": report})
+        return
+    print_whole(console_of(), *map(as_rich, tables), *not_judged, f"report  {report}")
+
+
+def _check(chosen: list[Rival], task: TaskSettings, options: _Options) -> None:
+    """Print the promises that learners break. Raises typer.Exit with code 1 if one does."""
+    robot = load_robot(options.robot_settings)
+    found = {
+        each.name: broken_promises(
+            each.factory(), learner_setting(task, robot, seed=_SEED_OF_THE_CHECK, gate=each.gate)
+        )
+        for each in chosen
+        if each.is_learner
+    }
+    if options.as_json:
+        print_json({"broken": found})
+    else:
+        for name, broken in found.items():
+            typer.echo(f"{name}: " + ("keeps all promises" if not broken else "breaks promises"))
+            for line in broken:
+                typer.echo(f"  {line}")
+    if any(found.values()):
+        raise typer.Exit(1)

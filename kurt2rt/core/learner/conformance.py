@@ -1,0 +1,108 @@
+"""Conformance check of a learner: the promises of `Learner`, tried on made-up situations."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
+
+_LESSONS, _PROBES = 40, 200
+_FARTHEST_COUNTS = 500.0
+
+
+def broken_promises(make: LearnerFactory, setting: LearnerSetting) -> list[str]:
+    """Return the promises that a learner breaks, each in a sentence; empty if it keeps all that were tried.
+
+    Args:
+        make: returns a new learner of the setting.
+        setting: of a task, with at least two actions. Its seed makes the situations.
+    """
+    check = _Check(make, setting)
+    broken = []
+    for promise, holds in (
+        ("`decide` returns None before the first lesson", check.asks_at_first),
+        ("`decide` names an action of the setting, or None", check.names_actions),
+        ("`decide` follows the first lesson in its situation", check.follows_first_lesson),
+        ("`decide` changes nothing", check.decides_without_change),
+        ("the same lessons give the same decisions", check.is_deterministic),
+        ("`restore` gives the decisions of `snapshot`, also after further lessons", check.restores),
+        ("`restore` forgets all that is not in the snapshot", check.forgets),
+    ):
+        try:
+            kept = holds()
+        except Exception as error:  # noqa: BLE001 - any error of a learner is a finding about it
+            broken.append(f"{promise}: raised {type(error).__name__}: {error}")
+        else:
+            if not kept:
+                broken.append(f"{promise}: it does not")
+    return broken
+
+
+class _Check:
+    """Made-up lessons, as a robot would give them, and situations to try decisions in."""
+
+    def __init__(self, make: LearnerFactory, setting: LearnerSetting) -> None:
+        self._make, self._setting = make, setting
+        rng = np.random.default_rng(setting.seed)
+        # Groups, because lessons of a robot lie together; with noise, so that no two situations are equal.
+        centres = rng.uniform(0.0, _FARTHEST_COUNTS, (8, setting.dimensions))
+        groups = rng.integers(0, len(centres), _LESSONS + _PROBES)
+        situations = centres[groups] + rng.normal(0.0, 5.0, (len(groups), setting.dimensions))
+        situations.flags.writeable = False
+        self._situations = situations[:_LESSONS]
+        self._actions = [setting.actions[group % len(setting.actions)] for group in groups[:_LESSONS]]
+        self._probes = situations[_LESSONS:]
+
+    def asks_at_first(self) -> bool:
+        return set(self._decisions(self._new(), self._probes[:5])) == {None}
+
+    def names_actions(self) -> bool:
+        return set(self._decisions(self._taught(_LESSONS))) <= {None, *self._setting.actions}
+
+    def follows_first_lesson(self) -> bool:
+        learner = self._taught(1)
+        return all(learner.decide(self._situations[0], taught=taught) == self._actions[0] for taught in (True, False))
+
+    def decides_without_change(self) -> bool:
+        asked = self._new()
+        for place in range(_LESSONS):
+            self._teach(asked, place)
+            self._decisions(asked, self._probes[:5])
+        return self._decisions(asked) == self._decisions(self._taught(_LESSONS))
+
+    def is_deterministic(self) -> bool:
+        return self._decisions(self._taught(_LESSONS)) == self._decisions(self._taught(_LESSONS))
+
+    def restores(self) -> bool:
+        half = _LESSONS // 2
+        taught, restored = self._taught(half), self._new()
+        restored.restore(taught.snapshot())
+        same = self._decisions(taught) == self._decisions(restored)
+        for place in range(half, _LESSONS):
+            self._teach(taught, place)
+            self._teach(restored, place)
+        return same and self._decisions(taught) == self._decisions(restored)
+
+    def forgets(self) -> bool:
+        learner, forgot = self._taught(_LESSONS), True
+        for lessons in (0, 1, _LESSONS // 2, 2):
+            known = self._taught(lessons)
+            learner.restore(known.snapshot())
+            forgot = forgot and self._decisions(learner) == self._decisions(known)
+        return forgot
+
+    def _new(self) -> Learner:
+        return self._make(self._setting)
+
+    def _taught(self, lessons: int) -> Learner:
+        learner = self._new()
+        for place in range(lessons):
+            self._teach(learner, place)
+        return learner
+
+    def _teach(self, learner: Learner, place: int) -> None:
+        why = (Why.ANSWER, Why.CORRECTION, Why.HOLD)[place % 3]
+        learner.lesson(self._situations[place], self._actions[place], why)
+
+    def _decisions(self, learner: Learner, probes: NDArray[np.float64] | None = None) -> list[str | None]:
+        tried = self._probes if probes is None else probes
+        return [learner.decide(probe, taught=taught) for probe in tried for taught in (True, False)]

@@ -1,0 +1,187 @@
+"""Jobs of a league: drives of the policy, and lesson and exams of one robot with one rival."""
+
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.learner.packing import pack
+from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.rivals.learner_clock import LearnerClock
+from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
+from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
+from kurt2rt.experiments.rivals.rival import Rival
+from kurt2rt.experiments.rivals.undo import Undo, undo_of_learner, undo_of_rlas
+from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.experiments.transfer.jobs import verdict_by
+from kurt2rt.experiments.transfer.outcome import Drive, drive_of
+from kurt2rt.runtime import Runtime, empty_system
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolicyJob(StudyJob):
+    """Drives of the teacher's own policy in all worlds of the exam."""
+
+    outcome = PolicyOutcome
+    keeps_knowledge: ClassVar[bool] = False
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.task.name}, policy, seed {self.seed}"
+
+    @property
+    def stem(self) -> str:
+        """Path of the result, without the top folder and the ending."""
+        return f"policy/{self.task.name}-{self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of all drives in s."""
+        return len(self.task.exam.worlds) * self.task.exam.duration_s
+
+    async def measure(self, knowledge: Path, report: Report) -> PolicyOutcome:  # noqa: ARG002 - nothing is taught
+        """Let the policy drive, and return the outcome. Raises SettingsError if task and world do not fit."""
+        exams = [BatchExam(ExamSetup(world, self.seed, teacher_policy=True)) for world in self.task.exam.worlds]
+        drives = tuple(
+            drive_of(each, each.verdict(each.progress, self.task.exam.success))
+            for each in await run_drives(self.factory, self.robot, self.task, exams, report)
+        )
+        return PolicyOutcome(made_of=self.made_of, seed=self.seed, drives=drives)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RivalJob(StudyJob):
+    """Lesson of one robot with one rival, and exams after some of its presses and at the end."""
+
+    outcome = RivalOutcome
+    keeps_knowledge: ClassVar[bool] = False
+    rival: Rival
+    after: tuple[int, ...]
+    """Numbers of presses after which the robot is examined, ascending."""
+    policy: PolicyJob
+    """Job of the wave before, whose drives judge this one's."""
+
+    @property
+    def name(self) -> str:
+        """Name in progress displays."""
+        return f"{self.task.name}, {self.rival.title}, seed {self.seed}"
+
+    @property
+    def stem(self) -> str:
+        """Path of the result, without the top folder and the ending."""
+        return f"{self.rival.label}/{self.task.name}-{self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """Time of the lesson and of all exams in s, at most."""
+        exams = (len(self.after) + 1) * len(self.task.exam.worlds)
+        return self.task.teaching.duration_s + exams * self.task.exam.duration_s
+
+    async def measure(self, knowledge: Path, report: Report) -> RivalOutcome:  # noqa: ARG002 - a learner has no file
+        """Teach and examine the robot, and return the outcome.
+
+        Raises NoLearnerError, SettingsError, LessonLostError, and StudyError without the drives of the policy.
+        """
+        clock = LearnerClock()
+        team = self._new_team(clock)
+        seconds = self.task.teaching.duration_s
+        world = self.task.teaching.world
+        with closing(self.factory.open(world, self.seed, "lesson")) as simulation:
+            lesson, runtime = await teach_rival(
+                simulation,
+                self.robot,
+                self.task,
+                team,
+                self.after,
+                seed=self.seed,
+                on_progress=lambda done_s: report(f"teaching in world {world}", done_s, seconds),
+            )
+        report(f"teaching in world {world}", seconds, seconds)
+        failures = [team.failure if team is not None else ""]
+        checkpoints = await self._checkpoints(lesson.marks, clock, failures, report)
+        result = lesson.result
+        undo = self._undo(lesson, runtime, team)
+        return RivalOutcome(
+            made_of=self.made_of,
+            seed=self.seed,
+            presses=result.presses,
+            labels=len(lesson.marks[-1].events if team is None else lesson.marks[-1].labels),
+            driven_s=lesson.driven_s,
+            waited_s=lesson.waited_s,
+            asks=result.asks,
+            corrections=result.corrections,
+            collisions=result.collisions,
+            alarms=result.alarms,
+            rescues=result.rescues,
+            teaching_s=result.teaching_s,
+            failure=next(filter(None, failures), ""),
+            checkpoints=tuple(checkpoints),
+            knowledge_bytes=_rla_bytes(lesson) if team is None else sum(map(len, team.snapshot().values())),
+            retraining_s=clock.retraining_s,
+            longest_decision_ms=clock.longest_ms,
+            tick_p99_us=result.ledger.tick().p99_us,
+            undo_s=undo.seconds,
+            undo_restores=undo.restores,
+        )
+
+    def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
+        if not self.rival.is_learner:
+            return None
+        return self.rival.new_team(self.task, self.robot, self.seed, clock.timed(self.rival.factory()))
+
+    async def _checkpoints(
+        self, marks: Sequence[Mark], clock: LearnerClock, failures: list[str], report: Report
+    ) -> list[RivalCheckpoint]:
+        """Examine the knowledge of each mark, and add failures of learners to `failures`."""
+        policies = self.results.read(self.policy, PolicyOutcome).drives
+        checkpoints: list[RivalCheckpoint] = []
+        for place, mark in enumerate(marks):
+            before = marks[place - 1] if place else None
+            if before is not None and (before.events, before.labels) == (mark.events, mark.labels):
+                drives = checkpoints[-1].drives
+            else:
+                drives = await self._examine(mark, policies, clock, failures, report)
+            checkpoints.append(RivalCheckpoint(presses=mark.presses, teaching_s=mark.teaching_s, drives=drives))
+        return checkpoints
+
+    async def _examine(
+        self, mark: Mark, policies: Sequence[Drive], clock: LearnerClock, failures: list[str], report: Report
+    ) -> tuple[Drive, ...]:
+        """Return the drives in each world, up to the first that failed: one failure decides the success."""
+        team = self._new_team(clock)
+        if team is not None:
+            team.teach_all(mark.labels)
+        drives: list[Drive] = []
+        for world, policy in zip(self.task.exam.worlds, policies, strict=True):
+            setup = ExamSetup(world, self.seed, learners=team)
+            (exam,) = await run_drives(self.factory, self.robot, self.task, [BatchExam(setup, mark.events)], report)
+            drives.append(drive_of(exam, verdict_by(policy, exam, self.task.exam.success)))
+            if team is not None:
+                failures.append(team.failure)
+            if drives[-1].judged and not drives[-1].passed:
+                break
+        return tuple(drives)
+
+    def _undo(self, lesson: RivalLesson, runtime: Runtime, team: LearnerTeam | None) -> Undo:
+        if team is not None:
+            other = self._new_team(LearnerClock())
+            assert other is not None
+            return undo_of_learner(team, other)
+        mid = None if self.task.mid is None else load_mid_level(self.task.mid)
+        other_system = empty_system(runtime.task, runtime.definition, load_critic(self.task.critic), mid)
+        return undo_of_rlas(runtime.level.system, other_system, lesson.marks[-1].events)
+
+
+def _rla_bytes(lesson: RivalLesson) -> int:
+    """Return the size of conditions and actions of the RLAs, packed as the labels of learners are."""
+    rlas = lesson.result.rlas
+    return len(pack(np.array([rla.condition for rla in rlas]), [rla.action for rla in rlas])) if rlas else 0

@@ -1,0 +1,63 @@
+"""Clock of a learner: the time that its lessons and decisions take on this machine."""
+
+import time
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
+
+
+class LearnerClock:
+    """Time of all learners that were made with it."""
+
+    def __init__(self) -> None:
+        self.retraining_ns = 0
+        """Time of all lessons, each with the first decision after it, which may fit the learner to it."""
+        self.longest_ns = 0
+        """Time of the longest decision."""
+
+    @property
+    def retraining_s(self) -> float:
+        """Time of all lessons with the first decision after each, in s."""
+        return self.retraining_ns / 1e9
+
+    @property
+    def longest_ms(self) -> float:
+        """Time of the longest decision in ms."""
+        return self.longest_ns / 1e6
+
+    def timed(self, make: LearnerFactory) -> LearnerFactory:
+        """Return a maker of the same learners whose time is taken."""
+        return lambda setting: _TimedLearner(make, setting, self)
+
+
+class _TimedLearner:
+    """Learner whose time is taken (`Learner`)."""
+
+    def __init__(self, make: LearnerFactory, setting: LearnerSetting, clock: LearnerClock) -> None:
+        self._learner: Learner = make(setting)
+        self._clock = clock
+        self._is_taught_since = False
+
+    def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
+        began_ns = time.perf_counter_ns()
+        action = self._learner.decide(situation, taught=taught)
+        took_ns = time.perf_counter_ns() - began_ns
+        self._clock.longest_ns = max(self._clock.longest_ns, took_ns)
+        if self._is_taught_since:
+            self._clock.retraining_ns += took_ns
+            self._is_taught_since = False
+        return action
+
+    def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
+        began_ns = time.perf_counter_ns()
+        self._learner.lesson(situation, action, why)
+        self._clock.retraining_ns += time.perf_counter_ns() - began_ns
+        self._is_taught_since = True
+
+    def snapshot(self) -> bytes:
+        return self._learner.snapshot()
+
+    def restore(self, data: bytes) -> None:
+        self._learner.restore(data)

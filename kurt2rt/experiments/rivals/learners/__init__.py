@@ -1,0 +1,1 @@
+"""Learners of other kinds than RLA systems; each module holds one."""

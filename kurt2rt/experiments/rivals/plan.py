@@ -1,0 +1,143 @@
+"""Plan of a league: every rival is taught as every robot, task by task, after the policy's own drives."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
+from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
+from kurt2rt.experiments.rivals.rival import SHIPPED, Rival
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.results import Results
+
+DECIDING = (PolicyJob, RivalJob)
+"""Classes whose code, and all that it imports, decides the results."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """Rival in one task: a job for each seed."""
+
+    task: str
+    rival: Rival
+    jobs: tuple[RivalJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class LeaguePlan:
+    """Jobs of a league, in the order of the tables."""
+
+    tasks: tuple[TaskSettings, ...]
+    seeds: tuple[int, ...]
+    after: tuple[int, ...]
+    policy_jobs: tuple[PolicyJob, ...]
+    entries: tuple[Entry, ...]
+
+    @property
+    def waves(self) -> tuple[tuple[PolicyJob | RivalJob, ...], ...]:
+        """Jobs in waves; the jobs of a wave need only results of earlier waves."""
+        return self.policy_jobs, tuple(job for entry in self.entries for job in entry.jobs)
+
+
+def make_plan(
+    tasks: Sequence[TaskSettings],
+    rivals: Sequence[Rival],
+    seeds: Sequence[int],
+    after: Sequence[int],
+    parts: JobParts,
+    *,
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
+) -> LeaguePlan:
+    """Check tasks and worlds, and return the jobs.
+
+    Args:
+        tasks: to teach, with their teachers.
+        rivals: rows, each once; the RLA system as shipped is added, because all others are compared with it.
+        seeds: one robot each.
+        after: numbers of presses after which the robots are examined, ascending.
+        parts: factory, robot and results of the jobs.
+        source_of: returns the hash of the program's source.
+
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        NoLearnerError: there is no such learner.
+    """
+    factory = parts["factory"]
+    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    rows = tuple(dict.fromkeys((Rival(SHIPPED), *rivals)))
+    policies: dict[tuple[str, int], PolicyJob] = {}
+    entries = []
+    for task in tasks:
+        worlds = (task.teaching.world, *task.exam.worlds)
+        factory.require_worlds(*dict.fromkeys(worlds))
+        require_course(factory, task, worlds)
+        made = fingerprints.of(task, worlds)
+        for seed in seeds:
+            policies[task.name, seed] = PolicyJob(task=task, seed=seed, made_of=made, **parts)
+        for rival in rows:
+            own = rival.task(task)
+            made = fingerprints.of(own, worlds, rival.source, repr(tuple(after)))
+            jobs = tuple(
+                RivalJob(
+                    task=own,
+                    seed=seed,
+                    rival=rival,
+                    after=tuple(after),
+                    policy=policies[task.name, seed],
+                    made_of=made,
+                    **parts,
+                )
+                for seed in seeds
+            )
+            entries.append(Entry(task.name, rival, jobs))
+    return LeaguePlan(tuple(tasks), tuple(seeds), tuple(after), tuple(policies.values()), tuple(entries))
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """Rival in one task with its outcomes."""
+
+    entry: Entry
+    outcomes: tuple[RivalOutcome, ...]
+    """One per robot, in the order of the seeds."""
+
+    @property
+    def judged(self) -> tuple[RivalOutcome, ...]:
+        """Outcomes of the robots that the policy's own drives can judge."""
+        return tuple(each for each in self.outcomes if each.checkpoints[-1].judged)
+
+    def passed(self, place: int) -> int:
+        """Return the number of judged robots that pass at the checkpoint of an index."""
+        return sum(each.checkpoints[place].passed for each in self.judged)
+
+    @property
+    def mean_share(self) -> float:
+        """Mean over all checkpoints of the share of judged robots that pass, 0 to 1."""
+        places = len(self.outcomes[0].checkpoints)
+        robots = len(self.judged)
+        return sum(map(self.passed, range(places))) / (places * robots) if robots else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class League:
+    """Plan and outcomes of a league."""
+
+    plan: LeaguePlan
+    policies: tuple[PolicyOutcome, ...]
+    rows: tuple[Row, ...]
+
+    def shipped(self, task: str) -> Row:
+        """Return the row of the RLA system as shipped, in a task of the league."""
+        return next(row for row in self.rows if row.entry.task == task and row.entry.rival.name == SHIPPED)
+
+
+def read_league(plan: LeaguePlan, results: Results) -> League:
+    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
+    return League(
+        plan,
+        tuple(results.read(job, PolicyOutcome) for job in plan.policy_jobs),
+        tuple(Row(entry, tuple(results.read(job, RivalOutcome) for job in entry.jobs)) for entry in plan.entries),
+    )

@@ -1,0 +1,102 @@
+"""Rivals of a league: the RLA system as it is shipped, the paper's plain reading of it, and learners."""
+
+from dataclasses import dataclass
+from importlib.metadata import version
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.learner.learner import LearnerFactory
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.task_settings import TaskSettings, taught_by
+from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
+
+SHIPPED = "rla"
+"""Name of the RLA system with the task's own settings, with which all others are compared."""
+PLAIN = "rla-plain"
+_TITLES = {
+    SHIPPED: "RLA, as shipped",
+    PLAIN: "RLA, plain reading of the paper",
+    "rla-door": "RLA through the door",
+    "1-nn": "1-NN without R",
+    "k-nn": "5-NN with R",
+    "weighted-vote": "locally weighted vote with R",
+    "gp": "Gaussian process, variance gate",
+    "svm": "RBF-SVM, margin gate",
+    "tree": "decision tree, refitted",
+    "forest": "random forest, vote gate",
+    "hoeffding": "Hoeffding tree, vote gate",
+    "arf": "adaptive random forest, vote gate",
+}
+PRESSES_LEAGUE = tuple(name for name in _TITLES if name != "rla-door")
+"""Rivals of `kurt2rt rivals` without --learner."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rival:
+    """Row of the league."""
+
+    name: str
+    """Name of the RLA system, or of a learner."""
+    gate: float | None = None
+    """Number by which a learner asks, of its own unit; None: its default."""
+
+    @classmethod
+    def parse(cls, text: str) -> "Rival":
+        """Return the rival of a text: a name, or NAME=GATE. Raises NoLearnerError."""
+        name, equals, gate = text.partition("=")
+        try:
+            rival = cls(name, float(gate) if equals else None)
+        except ValueError as error:
+            raise NoLearnerError(
+                f"{gate!r} is no number", where=f"learner {name}", do="give NAME=GATE, such as k-nn=0.8"
+            ) from error
+        if not rival.is_learner and equals:
+            raise NoLearnerError("has no gate", where=f"learner {name}", do="give its name alone")
+        if rival.is_learner:
+            find_learner(name)
+        return rival
+
+    @property
+    def is_learner(self) -> bool:
+        """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
+        return self.name not in (SHIPPED, PLAIN)
+
+    @property
+    def title(self) -> str:
+        """Name in tables, with a gate that is not the default."""
+        title = _TITLES.get(self.name, self.name)
+        return title if self.gate is None else f"{title} ({self.gate:g})"
+
+    @property
+    def label(self) -> str:
+        """Name in file names."""
+        name = self.name.replace(":", ".")
+        return name if self.gate is None else f"{name}-gate-{self.gate:g}"
+
+    @property
+    def source(self) -> str:
+        """Text that changes with all that decides the rival's results, besides the program. Raises NoLearnerError."""
+        if not self.is_learner:
+            return self.label
+        packages = " ".join(f"{name} {version(name)}" for name in ("scikit-learn", "river"))
+        return f"{self.label} {source_of_learner(self.name)} {packages if self.name in learner_names() else ''}"
+
+    def task(self, task: TaskSettings) -> TaskSettings:
+        """Return the task with the learning settings of this rival."""
+        if self.name != PLAIN:
+            return task
+        return taught_by(task.model_copy(update={"learning": task.plain}), task.teaching.profile)
+
+    def factory(self) -> LearnerFactory:
+        """Return the maker of the learner. Raises NoLearnerError."""
+        return find_learner(self.name)
+
+    def new_team(
+        self, task: TaskSettings, robot: RobotSettings, seed: int, make: LearnerFactory | None = None
+    ) -> LearnerTeam:
+        """Return learners of all behaviours of the task that know nothing; `make`: in place of the rival's own.
+
+        Raises NoLearnerError, and hal.settings.SettingsError for settings that do not fit each other.
+        """
+        setting = learner_setting(task, robot, seed=seed, gate=self.gate)
+        return LearnerTeam(self.name, make or self.factory(), setting, task.behaviours)

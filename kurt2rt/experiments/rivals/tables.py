@@ -1,0 +1,156 @@
+"""Tables of a league."""
+
+from collections.abc import Callable, Iterator, Sequence
+from statistics import median
+
+from kurt2rt.experiments.lockstep.report import wilson_interval
+from kurt2rt.experiments.rivals.outcome import RivalOutcome
+from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
+from kurt2rt.experiments.rivals.plan import League, Row
+from kurt2rt.experiments.study.table import Table
+
+NOT_TUNED = "Learners are not tuned, they have the defaults of their classes; the RLA system as shipped was tuned."
+
+
+def all_tables(league: League) -> Iterator[Table]:
+    """Yield all tables: success by presses, the comparison, the effort, the machine, and failures if there are any."""
+    yield success_table(league)
+    yield comparison_table(league)
+    yield effort_table(league)
+    yield machine_table(league)
+    if any(each.failure for row in league.rows for each in row.outcomes):
+        yield failure_table(league)
+
+
+def success_table(league: League) -> Table:
+    """Return the robots that pass in all worlds, by presses, with 95 % intervals."""
+    after, places = league.plan.after, range(len(league.plan.after) + 1)
+    lasting = ", ".join(f"{task.name} {task.exam.duration_s:.0f} s" for task in league.plan.tasks)
+    return Table(
+        "Robots that pass, by presses",
+        ("task", "learner", *(f"after {presses}" for presses in after), "at the end", "mean"),
+        tuple(
+            (
+                *_heading(row),
+                *(_share(row.passed(place), len(row.judged)) for place in places),
+                f"{row.mean_share:.0%}" if row.judged else "",
+            )
+            for row in league.rows
+        ),
+        words=2,
+        note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}), judged by "
+        "the drive of the teacher's policy from the same start; a world in which the policy does not pass is left out. "
+        "With 95 % intervals. A robot that gave cause for fewer presses has all that it was taught. Mean: of the "
+        f"shares in this row. {NOT_TUNED}",
+    )
+
+
+def comparison_table(league: League) -> Table:
+    """Return the paired comparison of each rival with the RLA system as shipped, at the end of the lessons."""
+    rows = []
+    for task in league.plan.tasks:
+        shipped = league.shipped(task.name)
+        others = [row for row in league.rows if row.entry.task == task.name and row is not shipped]
+        pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
+        p_values = [mcnemar_p(each) for each in pairs]
+        for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
+            rows.append((*_heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
+    return Table(
+        "Compared with the RLA system as shipped, robot by robot",
+        ("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
+        tuple(rows),
+        words=2,
+        note="At the end of the lessons, on the same robots. p: McNemar's exact test, two-sided; by Holm: corrected "
+        "for the number of rows of the task.",
+    )
+
+
+def effort_table(league: League) -> Table:
+    """Return the effort of the teacher, and collisions and alarms while the robots were taught."""
+    columns: Sequence[tuple[str, Callable[[RivalOutcome], float]]] = (
+        ("presses", lambda each: each.presses),
+        ("questions", lambda each: each.asks),
+        ("corrections", lambda each: each.corrections),
+        ("labels", lambda each: each.labels),
+        ("teacher drives, s", lambda each: each.driven_s),
+        ("robot waits, s", lambda each: each.waited_s),
+    )
+    return Table(
+        "Effort, and safety while it is taught",
+        ("task", "learner", *(name for name, _ in columns), "collisions", "alarms", "rescues"),
+        tuple(
+            (
+                *_heading(row),
+                *(f"{median(map(value, row.outcomes)):.0f}" for _, value in columns),
+                str(sum(each.collisions for each in row.outcomes)),
+                str(sum(each.alarms for each in row.outcomes)),
+                str(sum(each.rescues for each in row.outcomes)),
+            )
+            for row in league.rows
+        ),
+        words=2,
+        note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
+        "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
+        "teaches it nothing where it says so already.",
+    )
+
+
+def machine_table(league: League) -> Table:
+    """Return what learners take of the machine, and the undo of their last lesson."""
+    return Table(
+        "Machine and undo",
+        (
+            *("task", "learner", "retraining, s", "longest decision, ms", "p99 of a tick, ms", "knowledge, kB"),
+            *("undo, ms", "undo restores"),
+        ),
+        tuple(
+            (
+                *_heading(row),
+                *_of_learner(row),
+                f"{median(each.tick_p99_us for each in row.outcomes) / 1000:.2f}",
+                f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
+                f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
+                f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",
+            )
+            for row in league.rows
+        ),
+        words=2,
+        note="Medians, on the machine of the run, which may have done other work. The robot's clock stands still while "
+        "a learner is fitted: a decision that takes longer than 20 ms is refused by the guard of a real robot. Undo: "
+        "of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those of a "
+        "robot that never got it.",
+    )
+
+
+def failure_table(league: League) -> Table:
+    """Return the failures of learners, a row for each robot."""
+    return Table(
+        "Failures of learners",
+        ("task", "learner", "robot", "failure"),
+        tuple(
+            (*_heading(row), str(each.seed), each.failure)
+            for row in league.rows
+            for each in row.outcomes
+            if each.failure
+        ),
+        words=4,
+    )
+
+
+def _of_learner(row: Row) -> tuple[str, str]:
+    if not row.entry.rival.is_learner:
+        return "", ""
+    return (
+        f"{median(each.retraining_s for each in row.outcomes):.2f}",
+        f"{median(each.longest_decision_ms for each in row.outcomes):.1f}",
+    )
+
+
+def _heading(row: Row) -> tuple[str, str]:
+    return row.entry.task, row.entry.rival.title
+
+
+def _share(count: int, of: int) -> str:
+    if not of:
+        return "none judged"
+    return "{} of {} ({:.0%} to {:.0%})".format(count, of, *wilson_interval(count, of))

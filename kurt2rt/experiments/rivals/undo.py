@@ -1,0 +1,74 @@
+"""Undo of the last lesson: the time that it takes, and whether all decisions are those of before."""
+
+import time
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.rla.events import LessonUndone, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Origin
+from kurt2rt.core.rla.rla_system import RlaSystem
+
+
+class Undo(NamedTuple):
+    """Undo of a last lesson."""
+
+    seconds: float
+    restores: bool
+
+
+_Place = tuple[str, NDArray[np.float64]]
+"""Behaviour, and situation (d,)."""
+
+
+def undo_of_learner(taught: LearnerTeam, other: LearnerTeam) -> Undo:
+    """Undo the last label of a team, and compare with learners that were never taught it.
+
+    `other`: learners of the same kind that know nothing yet.
+    """
+    labels = taught.labels
+    if not labels:
+        return Undo(0.0, True)
+    last = labels[-1]
+    other.teach_all(label for label in labels if label.command_id != last.command_id)
+    began_s = time.perf_counter()
+    taught.undo(last.command_id)
+    taught.decide(last.behaviour, last.situation, taught=False)
+    seconds = time.perf_counter() - began_s
+    places = [(label.behaviour, label.situation) for label in labels]
+    return Undo(seconds, _decisions(taught, places) == _decisions(other, places))
+
+
+def undo_of_rlas(system: RlaSystem, other: RlaSystem, events: Sequence[TeachingEvent]) -> Undo:
+    """Undo the last standing lesson of an RLA system, and compare with RLAs that were never taught it.
+
+    `other`: an empty system of the same task. `events`: all lessons of `system`, oldest first.
+    """
+    last = system.last_standing_lesson
+    places = [
+        (event.rla.behaviour, np.array(event.rla.condition))
+        for event in events
+        if isinstance(event, RlaCreated) and event.rla.level == BASIC
+    ]
+    if last is None or not places:
+        return Undo(0.0, True)
+    other.apply_all(event for event in events if event.origin.command_id != last)
+    began_s = time.perf_counter()
+    system.apply(LessonUndone(last, Origin("undo", "", Phase.CORRECTIONS, 0)))
+    _choice(system, places[-1])
+    seconds = time.perf_counter() - began_s
+    return Undo(seconds, all(_choice(system, place) == _choice(other, place) for place in places))
+
+
+def _decisions(team: LearnerTeam, places: Sequence[_Place]) -> list[str | None]:
+    return [team.decide(behaviour, situation, taught=False) for behaviour, situation in places]
+
+
+def _choice(system: RlaSystem, place: _Place) -> str | None:
+    behaviour, situation = place
+    match = system.match(situation, behaviour, include_withdrawn=False)
+    return match.rla.action if match is not None and match.known else None

@@ -1,0 +1,61 @@
+"""`kurt2rt rivals` as a user meets it."""
+
+import json
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine
+
+SHORT = (
+    *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
+    *("--set", "exam.worlds=[a]", "--seeds", "3904", "--after", "1", "--jobs", "1", "--out", "made"),
+)
+BROKEN = """
+class Never:
+    def __init__(self, setting):
+        self.setting = setting
+
+    def decide(self, situation, *, taught):
+        return None
+
+    def lesson(self, situation, action, why):
+        pass
+
+    def snapshot(self):
+        return b""
+
+    def restore(self, data):
+        pass
+"""
+
+
+def test_rivals_are_taught_once_and_reported(kurt2rt: CommandLine) -> None:
+    words = ("rivals", "--learner", "k-nn", *SHORT)
+    said = kurt2rt(*words, "--json")
+    assert said.exit_code == 0, said.err
+    document = json.loads(said.out)
+    assert set(document) == {"tables", "not_judged", "report"}
+    assert [row[1] for row in document["tables"][0]["rows"]] == ["RLA, as shipped", "5-NN with R"]
+    assert Path(document["report"]).is_file()
+    kept = Path("made/results/k-nn/wall_following-3904.json")
+    before = kept.stat().st_mtime_ns
+    said = kurt2rt(*words)
+    assert said.exit_code == 0, said.err
+    assert "5-NN with R" in said.out
+    assert kept.stat().st_mtime_ns == before
+
+
+def test_check_names_broken_promises_and_fails(kurt2rt: CommandLine) -> None:
+    Path("my_never.py").write_text(BROKEN, encoding="utf-8")
+    said = kurt2rt("rivals", "--learner", "my_never:Never", "--learner", "k-nn", "--check")
+    assert said.exit_code == 1
+    assert said.out.splitlines() == [
+        "my_never:Never: breaks promises",
+        "  `decide` follows the first lesson in its situation: it does not",
+        "k-nn: keeps all promises",
+    ]
+    assert not Path("results").exists()
+
+
+def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
+    assert "there is no such learner" in kurt2rt.refused("rivals", "--learner", "deep-thought", *SHORT)
+    assert not Path("made").exists()

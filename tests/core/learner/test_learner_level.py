@@ -1,0 +1,119 @@
+import numpy as np
+
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.learner.learner import Why
+from kurt2rt.core.learner.learner_level import LearnerLevel
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.learner.rla_learner import RlaLearner
+from kurt2rt.core.rla.events import LessonUndone
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin
+from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
+from tests.core.learner.helpers import SETTING, label
+
+
+class RobotWithLearner:
+    """Level of an RLA learner with the actions a, b and c, and one tick in a call."""
+
+    def __init__(self, behaviours: tuple[str, ...] = ("",)) -> None:
+        self.actions = {name: Counted() for name in "abc"}
+        self.team = LearnerTeam("rla", RlaLearner, SETTING, behaviours)
+        self.active = ActiveBehaviour(behaviours)
+        self.level = LearnerLevel(self.team, self.actions, MINIMUM_TICKS, self.active)
+
+    def at(self, place: float, cause: DecisionCause | None = None) -> Decision:
+        return self.level.decide(situation(place), sensed(), cause)
+
+    def teach(self, place: float, action: str, command_id: str) -> None:
+        self.level.teach(np.array([place]), self.active.behaviour, action, Why.ANSWER, command_id)
+
+
+def test_it_asks_outside_of_all_lessons_and_drives_inside() -> None:
+    robot = RobotWithLearner()
+    assert robot.at(0.0) == Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
+    robot.teach(0.0, "a", "t-1")
+    drives = robot.at(9.0)
+    assert (drives.cause, drives.action, drives.asking) == (DecisionCause.LEARNER, "a", False)
+    assert robot.at(11.0).asking
+
+
+def test_it_asks_sooner_while_it_is_taught() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.level.taught = True
+    assert robot.at(4.0).action == "a"
+    assert robot.at(6.0).asking  # beyond half of R
+
+
+def test_action_is_held_for_its_minimum_time() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.teach(5.0, "b", "t-2")
+    actions = [robot.at(place).action for place in (0.0, *[5.0] * MINIMUM_TICKS)]
+    assert actions == [*"a" * MINIMUM_TICKS, "b"]
+
+
+def test_slow_ticks_do_not_count_for_the_minimum_time() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.teach(5.0, "b", "t-2")
+    robot.level.counts = False
+    assert {robot.at(place).action for place in (0.0, *[5.0] * 3 * MINIMUM_TICKS)} == {"a"}
+
+
+def test_lesson_acts_at_once_also_against_a_held_action() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.at(0.0)
+    robot.teach(3.0, "b", "t-2")
+    assert robot.at(3.0).action == "b"
+
+
+def test_undone_lesson_no_longer_drives() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.teach(3.0, "b", "t-2")
+    assert robot.at(3.0).action == "b"
+    robot.level.on_event(LessonUndone("t-2", Origin("u-1", "Ann", Phase.SUPERVISED, 9)))
+    assert robot.at(3.0).action == "a"
+
+
+def test_blocking_cause_stands_and_restarts_the_action() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.at(0.0)
+    robot.at(0.0)
+    stands = robot.at(0.0, DecisionCause.STOPPED)
+    assert stands == Decision(STANDSTILL, DecisionCause.STOPPED, None, None, None)
+    robot.at(0.0)
+    assert robot.actions["a"].starts == 2
+
+
+def test_action_that_is_lost_asks() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    robot.actions["a"].lost = True
+    assert robot.at(0.0).asking
+
+
+def test_another_behaviour_decides_at_once_by_its_own_lessons() -> None:
+    robot = RobotWithLearner(("left", "right"))
+    robot.teach(0.0, "a", "t-1")
+    robot.at(0.0)
+    robot.active.behaviour = "right"
+    assert robot.at(0.0).asking
+    robot.teach(0.0, "b", "t-2")
+    assert robot.at(0.0).action == "b"
+    robot.active.behaviour = "left"
+    assert robot.at(0.0).action == "a"
+
+
+def test_failed_learner_stands_also_in_the_middle_of_an_action() -> None:
+    robot = RobotWithLearner()
+    robot.teach(0.0, "a", "t-1")
+    assert robot.at(0.0).driving
+    robot.team.teach(label(1.0, "ask", "t-2"))  # the name that no RLA may have
+    assert robot.at(0.0) == Decision(STANDSTILL, DecisionCause.LEARNER_FAILED, None, None, None)
+    assert "InvalidEventError" in robot.team.failure

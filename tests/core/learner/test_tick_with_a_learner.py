@@ -1,0 +1,204 @@
+"""The tick with a learner that is no RLA system: taught, undone, failing, slow, and asked why."""
+
+from collections.abc import Iterator
+
+import anyio
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL
+from hal.robot_settings import load_robot
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import StandReason
+from kurt2rt.core.decision.standing_text import reason_text
+from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.learner.learner import LearnerSetting, Why
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.outcome import RefusalCode
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, ReplaceAction, Teach, Undo
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runtime import RuntimeOptions, build_runtime
+from simbridge.simulation import Kurt2SimulationFactory
+from tests.core.learner.helpers import SETTING, Parrot
+
+ROBOT = load_robot()
+TASK = load_task("wall_following")
+ACTIONS = ("forward", "spin_left", "spin_right", "teleport")
+
+
+class StalledClock(LockstepClock):
+    """Clock of a computer that a decision can hold up."""
+
+    def stall(self, seconds: float) -> None:
+        self._now_s += seconds
+
+
+class Wayward(Parrot):
+    """Parrot that a test can make fail."""
+
+    mischief = ""
+    clock: StalledClock
+
+    def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
+        if self.mischief == "raises":
+            raise ZeroDivisionError("no such number")
+        if self.mischief == "slow":
+            self.clock.stall(0.05)
+        return "jump" if self.mischief == "unknown" else super().decide(situation, taught=taught)
+
+
+class TaughtRobot:
+    """Simulated robot that decides by a parrot, and its teacher."""
+
+    def __init__(self) -> None:
+        self._simulation = Kurt2SimulationFactory(ROBOT).open("a", 4, "parrot")
+        self._clock = StalledClock(self._simulation.step)
+        self.team = LearnerTeam("parrot", self._make, SETTING._replace(actions=ACTIONS), ("",))
+        self.store = InMemoryEventStore()
+        self.runtime = build_runtime(
+            self._simulation.robot, ROBOT, TASK, (), self.store, self._clock, RuntimeOptions(learners=self.team)
+        )
+        self.records: list[TickRecord] = []
+
+    def _make(self, setting: LearnerSetting) -> Wayward:
+        self.parrot = Wayward(setting)
+        self.parrot.clock = self._clock
+        return self.parrot
+
+    def go_on(self, ticks: int, *commands: Command) -> TickRecord:
+        for command in commands:
+            self.runtime.inbox.put(command)
+        anyio.run(self.runtime.scheduler.run, ticks, self.records.append)
+        return self.records[-1]
+
+    def close(self) -> None:
+        self._simulation.close()
+
+    def why(self) -> str:
+        facts = collect_facts(self.runtime, self.records[-1], lambda command_id: command_id)
+        return " ".join((f"{headline(facts)}.", *format_reasons(facts)))
+
+
+@pytest.fixture
+def robot() -> Iterator[TaughtRobot]:
+    robot = TaughtRobot()
+    yield robot
+    robot.close()
+
+
+def test_answer_drives_on_the_tick_that_takes_it(robot: TaughtRobot) -> None:
+    assert robot.go_on(20).decision.asking
+    drives = robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    assert (drives.decision.cause, drives.decision.action) == (DecisionCause.LEARNER, "spin_left")
+    assert (drives.decision.rla_id, drives.decision.match) == (None, None)
+    assert drives.standing.reason is StandReason.DRIVES
+    assert np.array_equal(robot.team.labels[0].situation, drives.situation.vector)
+    assert [event.origin.command_id for event in robot.store.events] == ["t-1"]  # the lesson is kept as ever
+
+
+def test_learner_gets_also_a_lesson_that_changes_no_rla(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    robot.go_on(1, Correct("c-1", "Ann", "spin_left", decision_tick=robot.records[-1].tick))
+    assert [each.action for each in robot.team.labels] == ["spin_left", "spin_left"]
+    assert len(robot.store.events) == 1
+
+
+def test_correction_of_a_past_tick_is_about_its_situation(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    past = robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    robot.go_on(50)
+    result = robot.go_on(1, Correct("c-1", "Ann", "spin_right", decision_tick=past.tick)).results[0]
+    assert result.accepted
+    assert np.array_equal(robot.team.labels[-1].situation, past.situation.vector)
+
+
+def test_refused_lesson_teaches_nothing(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    refused = robot.go_on(1, Teach("t-1", "Ann", "jump"), Correct("c-1", "Ann", "forward", decision_tick=5000))
+    assert [result.accepted for result in refused.results] == [False, False]
+    assert robot.team.labels == ()
+    robot.go_on(1, Teach("t-2", "Ann", "forward"), Teach("t-2", "Ann", "forward"))
+    assert len(robot.team.labels) == 1  # a repeated command counts once
+
+
+def test_undo_takes_the_label_back(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    robot.go_on(1, Correct("c-1", "Ann", "spin_right"))
+    assert robot.go_on(1).decision.action == "spin_right"
+    undone = robot.go_on(1, Undo("u-1", "Ann"))
+    assert undone.results[0].accepted
+    assert undone.decision.action == "spin_left"
+    assert [each.command_id for each in robot.team.labels] == ["t-1"]
+
+
+def test_undo_of_a_hold_takes_all_of_its_labels_back(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    robot.go_on(100, Teach("t-1", "Ann", "spin_left"))
+    for _ in range(10):
+        robot.go_on(10, HoldAction("Ann", robot.records[-1].tick, 1, "spin_left"))
+    robot.go_on(50)
+    held = [each.why for each in robot.team.labels[1:]]
+    assert held == [Why.HOLD] * len(held)
+    assert len(held) > len(robot.store.events) - 1 > 0  # most change no RLA
+    robot.go_on(1, Undo("u-1", "Ann"))
+    assert [each.command_id for each in robot.team.labels] == ["t-1"]
+
+
+@pytest.mark.parametrize("command", [DeleteRla("d-1", "Ann", 1), ReplaceAction("r-1", "Ann", 1, "forward")])
+def test_command_about_an_rla_is_refused(robot: TaughtRobot, command: Command) -> None:
+    robot.go_on(20)
+    robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    assert robot.go_on(1, command).results[0].outcome.code is RefusalCode.NO_RLA_DECIDES
+
+
+@pytest.mark.parametrize(
+    ("mischief", "failure"),
+    [
+        ("raises", "parrot: ZeroDivisionError: no such number"),
+        ("unknown", "parrot: ValueError: decided 'jump', which is none of forward, spin_left, spin_right, teleport"),
+    ],
+)
+def test_failed_learner_stands_and_says_it(robot: TaughtRobot, mischief: str, failure: str) -> None:
+    robot.go_on(20)
+    assert robot.go_on(30, Teach("t-1", "Ann", "spin_left")).decision.driving
+    robot.parrot.mischief = mischief
+    stands = robot.go_on(1)
+    assert (stands.decision.cause, stands.decision.wheel_speeds) == (DecisionCause.LEARNER_FAILED, STANDSTILL)
+    assert reason_text(stands.standing) == f"its learner failed: {failure}"
+    assert "The learner that decides failed" in robot.why()
+    robot.parrot.mischief = ""
+    assert robot.go_on(50).guard_result.wheel_speeds == STANDSTILL  # it is not asked again
+
+
+def test_action_outside_of_the_repertoire_is_no_lesson(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    assert not robot.go_on(1, Teach("t-1", "Ann", "teleport")).results[0].accepted
+    assert robot.go_on(1).decision.asking
+
+
+def test_guard_stops_a_slow_learner(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    assert robot.go_on(30, Teach("t-1", "Ann", "spin_left")).guard_result.wheel_speeds != STANDSTILL
+    robot.parrot.mischief = "slow"
+    late = robot.go_on(1)
+    assert late.decision.driving
+    assert late.guard_result.wheel_speeds == STANDSTILL
+    assert GuardReason.COMMAND_TOO_OLD in late.guard_result.reasons
+    assert robot.go_on(100).standing.reason is StandReason.LATE  # most of them are missed
+
+
+def test_why_says_that_no_rla_decides(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
+    assert "A learner that is no RLA system drives: spin_left." in robot.why()
+    robot.parrot.said.clear()
+    robot.go_on(1)
+    assert "A learner that is no RLA system decides, and does not know this situation" in robot.why()

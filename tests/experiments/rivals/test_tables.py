@@ -1,0 +1,69 @@
+from pathlib import Path
+
+from matplotlib.image import imread
+
+from kurt2rt.experiments.rivals.figures import draw_curves
+from kurt2rt.experiments.rivals.report import write_report
+from kurt2rt.experiments.rivals.tables import (
+    NOT_TUNED,
+    all_tables,
+    comparison_table,
+    effort_table,
+    machine_table,
+    success_table,
+)
+from kurt2rt.experiments.study.results import Results
+from tests.experiments.rivals.outcomes import league_of, robot
+
+OURS = (robot(1, "stuck", "right", "right"), robot(2, "stuck", "stuck", "right"), robot(3, *["not judged"] * 3))
+THEIRS = (
+    robot(1, "right", "right", "stuck", collisions=2),
+    robot(2, "stuck", "stuck", "stuck", failure="1-nn: ValueError: empty"),
+    robot(3, "right", "right", "right", collisions=1),
+)
+
+
+def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
+    table = success_table(league_of(Results(tmp_path), OURS, THEIRS))
+    assert table.columns == ("task", "learner", "after 2", "after 5", "at the end", "mean")
+    ours, theirs = table.rows
+    assert ours[:2] == ("wall_following", "RLA, as shipped")
+    assert [cell.partition(" (")[0] for cell in ours[2:5]] == ["0 of 2", "1 of 2", "2 of 2"]
+    assert ours[5] == "50%"
+    assert [cell.partition(" (")[0] for cell in theirs[2:5]] == ["2 of 3", "2 of 3", "1 of 3"]
+    assert NOT_TUNED in table.note
+
+
+def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
+    table = comparison_table(league_of(Results(tmp_path), OURS, THEIRS))
+    assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500"),)
+
+
+def test_effort_tells_collisions_of_all_robots(tmp_path: Path) -> None:
+    ours, theirs = effort_table(league_of(Results(tmp_path), OURS, THEIRS)).rows
+    assert ours[2:] == ("8", "5", "3", "30", "6", "9", "0", "0", "0")
+    assert theirs[-3] == "3"
+
+
+def test_machine_leaves_times_of_a_learner_out_for_rlas(tmp_path: Path) -> None:
+    ours, theirs = machine_table(league_of(Results(tmp_path), OURS, THEIRS)).rows
+    assert ours[2:] == ("", "", "0.80", "5", "2.0", "3 of 3")
+    assert theirs[2:4] == ("0.50", "3.0")
+
+
+def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
+    *_, failures = all_tables(league_of(Results(tmp_path), OURS, THEIRS))
+    assert failures.rows == (("wall_following", "1-NN without R", "2", "1-nn: ValueError: empty"),)
+    assert len(list(all_tables(league_of(Results(tmp_path), OURS, OURS)))) == 4
+
+
+def test_report_says_that_nothing_was_tuned(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    picture = draw_curves(league, tmp_path / "rivals.png")
+    assert imread(picture.path).shape[1] > 500
+    page = tmp_path / "report.html"
+    write_report(league, list(all_tables(league)), picture, ["3 robots only"], "kurt2rt rivals", page)
+    text = page.read_text(encoding="utf-8")
+    assert NOT_TUNED in text
+    assert "3 robots only" in text
+    assert "1-NN without R" in text
