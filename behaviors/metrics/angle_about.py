@@ -1,6 +1,7 @@
 """The angle that a robot sweeps about a point."""
 
 import math
+from collections.abc import Sequence
 
 from hal.simulation import Pose
 
@@ -18,6 +19,10 @@ class AngleAbout:
         """Return the distance in m from the centre of the angle to the robot's centre."""
         return math.hypot(pose.x_m - self._x_m, pose.y_m - self._y_m)
 
+    def all_away_m(self, poses: Sequence[Pose]) -> list[float]:
+        """Return the distance in m from the centre of the angle to the robot's centre at each pose."""
+        return [math.hypot(x_m - self._x_m, y_m - self._y_m) for x_m, y_m, _ in poses]
+
     def interrupt(self) -> None:
         """Ignore the angle between the last pose and the next one."""
         self._angle_rad = None
@@ -28,3 +33,14 @@ class AngleAbout:
         if self._angle_rad is not None:
             self.rounds += math.remainder(angle_rad - self._angle_rad, math.tau) / math.tau
         self._angle_rad = angle_rad
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Add the angles to poses in a row, as so many calls of `update` would."""
+        angles_rad = [math.atan2(y_m - self._y_m, x_m - self._x_m) for x_m, y_m, _ in poses]
+        if not angles_rad:
+            return
+        rounds, before_rad = self.rounds, angles_rad[0] if self._angle_rad is None else self._angle_rad
+        for angle_rad in angles_rad:
+            rounds += math.remainder(angle_rad - before_rad, math.tau) / math.tau
+            before_rad = angle_rad
+        self.rounds, self._angle_rad = rounds, before_rad

@@ -1,6 +1,9 @@
 """Eights about the two posts of a world: round the western one counter-clockwise, round the eastern one clockwise."""
 
 import random
+from collections.abc import Sequence
+from itertools import groupby
+from operator import le
 from typing import Annotated
 
 from pydantic import Field
@@ -77,16 +80,37 @@ class Eights:
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(away_m[side] - self._wanted_m))
         self._ticks += 1
+        self._be_on(side)
+        self._sides[side].update(pose)
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        west_m, east_m = (
+            [each - post.radius_m for each in swept.all_away_m(poses)]
+            for swept, post in zip(self._sides, self._posts, strict=True)
+        )
+        for place in range(-self._ticks % MEASURE_EVERY, len(poses), MEASURE_EVERY):
+            away_m = west_m[place] if west_m[place] <= east_m[place] else east_m[place]
+            self._error_m.add(abs(away_m - self._wanted_m))
+        self._ticks += len(poses)
+        place = 0
+        for is_west, run in groupby(map(le, west_m, east_m)):
+            end, side = place + len(list(run)), 0 if is_west else 1
+            self._be_on(side)
+            self._sides[side].update_all(poses[place:end])
+            place = end
+
+    def abort(self) -> None:
+        """Do nothing: progress so far counts."""
+
+    def _be_on(self, side: int) -> None:
+        """Begin a round if the robot came to another post's side of the floor."""
         if side != self._side:
             if self._side is not None:
                 self._leave(self._side)
             self._side = side
             self._sides[side].interrupt()
             self._sides[side].rounds = 0.0
-        self._sides[side].update(pose)
-
-    def abort(self) -> None:
-        """Do nothing: progress so far counts."""
 
     def _leave(self, side: int) -> None:
         rounds = self._sides[side].rounds

@@ -1,6 +1,8 @@
 """Rounds about the single post of a world."""
 
 import random
+from collections.abc import Sequence
+from itertools import groupby
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -81,6 +83,21 @@ class Rounds:
             self._swept.interrupt()
         else:
             self._swept.update(pose)
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        away_m = [each - self._radius_m for each in self._swept.all_away_m(poses)]
+        for each in away_m[-self._ticks % MEASURE_EVERY :: MEASURE_EVERY]:
+            self._error_m.add(abs(each - self._settings.wanted_m))
+        self._ticks += len(poses)
+        place = 0
+        for is_near, run in groupby(each <= self._settings.within_m for each in away_m):
+            end = place + len(list(run))
+            if is_near:
+                self._swept.update_all(poses[place:end])
+            else:
+                self._swept.interrupt()
+            place = end
 
     def abort(self) -> None:
         """Do nothing: progress so far counts."""

@@ -2,6 +2,7 @@
 
 import math
 import random
+from collections.abc import Sequence
 
 from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
@@ -43,6 +44,15 @@ class Way:
         """Update the metric with the robot's pose."""
         self.progress += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
+
+    def update_all(self, poses: Sequence[Pose]) -> None:
+        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        progress, x_m, y_m = self.progress, self._pose.x_m, self._pose.y_m
+        for next_x_m, next_y_m, _ in poses:
+            progress += math.hypot(next_x_m - x_m, next_y_m - y_m)
+            x_m, y_m = next_x_m, next_y_m
+        self.progress = progress
+        self._pose = poses[-1] if poses else self._pose
 
     def abort(self) -> None:
         """Do nothing: progress so far counts."""

@@ -1,6 +1,7 @@
 """Distances in metres from infra-red counts."""
 
 from collections.abc import Callable
+from operator import itemgetter
 from typing import Annotated
 
 from pydantic import Field
@@ -37,8 +38,11 @@ class Distances:
         Raises KeyError for an unknown sensor.
         """
         distance_m = self._distance_m
-        places = tuple(self._index[name] for name in names)
-        return lambda counts: tuple([distance_m[counts[place]] for place in places])
+        if len(names) == 1:  # a getter of one place returns no tuple
+            place = self._index[names[0]]
+            return lambda counts: (distance_m[counts[place]],)
+        at, seen = distance_m.__getitem__, itemgetter(*(self._index[name] for name in names))
+        return lambda counts: tuple(map(at, seen(counts)))
 
     def ahead_m(self, *names: str) -> tuple[float, ...]:
         """Return the positions of the named sensors ahead of the robot's centre, in m. Raises KeyError."""

@@ -15,8 +15,9 @@ from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
+from kurt2rt.cli.options import task_option
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task
 
 _ALL = ",".join(BenchName)
 
@@ -35,13 +36,14 @@ def bench(
     only: _Only = _ALL,
     json: AsJson = False,
     folder: _Folder = Path(),
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following",
 ) -> None:
     """Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.
 
     lateness  how late ticks begin in a minute of driving; with asyncio.sleep
     tick      what each stage of these ticks takes
-    program   what share of a core the robot's program takes in real time, with its
-              simulated robot in a process of its own; with an empty loop
+    program   what share of a core the robot's program takes in real time, with
+              its simulated robot in a process of its own; with an empty loop
     match     how long the nearest RLA is sought; with a brute force
     loop      how many times real time a lesson in lockstep runs on one core
     lesson    how long a teacher waits until a lesson is durable; with fsync
@@ -59,11 +61,12 @@ def bench(
 
         kurt2rt bench --quick
         kurt2rt bench --only match,lesson --json
+        kurt2rt bench --only batch --task streets
     """
     benches = _chosen(only)
     require_json_file(file, as_json=json)
     machine = measure_machine()
-    results = _measure(benches, folder, QUICK if quick else FULL)
+    results = _measure(benches, folder, QUICK if quick else FULL, load_task(task))
     if json and file is None:
         typer.echo(as_json(results, machine))
     else:
@@ -72,12 +75,13 @@ def bench(
         file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
 
 
-def _measure(benches: frozenset[BenchName], folder: Path, lengths: Lengths) -> tuple[BenchResult, ...]:
+def _measure(
+    benches: frozenset[BenchName], folder: Path, lengths: Lengths, task: TaskSettings
+) -> tuple[BenchResult, ...]:
     # Late import: the simulator is an extra that a robot does not need.
     from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot()
-    task = load_task("wall_following")
     factory = Kurt2SimulationFactory(settings)
     fixture = BenchFixture(
         settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose), batches=factory

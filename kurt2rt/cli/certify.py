@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.text import Text
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
@@ -32,6 +33,7 @@ from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.certify.outcome import RunOutcome
+    from kurt2rt.experiments.lockstep.exam import ExamResult
 
 _FOLDER = Path("results/certify")
 _SECONDS = "exam.duration_s"
@@ -157,14 +159,18 @@ def _certify(options: _Options) -> None:
         certificate = read_certificate(plan, results)
         worst = worst_runs(certificate.outcomes, options.pictures)
         commands = [_exam_command(options, each) for each in worst]
-        bar.begin_next(len(worst) * task.exam.duration_s)
-        exams = drive_again(plan, worst, options.jobs, bar.update)
+        bar.say("all runs")
+        exams: list[ExamResult] = []
+        if worst:
+            bar.begin_next(len(worst) * task.exam.duration_s)
+            exams = drive_again(plan, worst, options.jobs, bar.update)
         bar.say("figures and report")
         pictures = list(draw_worst(exams, commands, factory, options.out))
         tables = list(all_tables(certificate, worst))
         write_report(certificate, tables, pictures, command, report)
     if not options.as_json:
-        print_whole(console_of(), *map(as_rich, tables), *commands, f"report  {report}")
+        to_copy = [Text(each, no_wrap=True) for each in commands]
+        print_whole(console_of(), *map(as_rich, tables), *to_copy, f"report  {report}")
         return
     print_json(
         {

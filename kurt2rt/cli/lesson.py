@@ -8,11 +8,11 @@ import typer
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
 from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
 from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_options, teaches_route
+from kurt2rt.cli.loop_options import requested_loops
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.shards import run_shard
@@ -21,16 +21,13 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
-from kurt2rt.experiments.lockstep.batch_mind import require_known
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
-from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
 from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.knowledge.files.archive_existing import archive_existing
@@ -79,16 +76,18 @@ def lesson(options: LessonOptions) -> None:
     """
     setup = _setup(_task_name(options), options)
     task = setup.task
-    if options.seeds is None and options.exams is not DriveLoop.BUS:
+    if options.seeds is None and options.exams is LoopRequest.BATCH:
         raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
     if options.seeds is None and options.shard is not None:
         raise typer.BadParameter("a shard is a part of many robots: give --seeds as well", param_hint="--shard")
-    if options.seeds is None and options.lessons is not DriveLoop.BUS:
+    if options.seeds is None and options.lessons is LoopRequest.BATCH:
         raise typer.BadParameter("a batch is for many robots: give --seeds as well", param_hint="--lessons")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
-    if DriveLoop.BATCH in (options.exams, options.lessons):
-        _require_batch(setup, options)
+    if task.mid is not None and LoopRequest.BATCH in (options.lessons, options.exams):
+        typer.echo(
+            f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", err=True
+        )
     if runs_errands(task):
         errands(setup, options)
     elif not teaches_route(task):
@@ -98,22 +97,6 @@ def lesson(options: LessonOptions) -> None:
         one_route(setup, options)
     else:
         many_routes(setup, options)
-
-
-def _require_batch(setup: LessonSetup, options: LessonOptions) -> None:
-    """Check before any lesson that a batch can drive what it shall. Raises BatchRefusedError, typer.BadParameter."""
-    from simbridge.wire.line import NO_WIRE
-
-    task, of_exams = setup.task, options.exams is DriveLoop.BATCH
-    hint = "--exams" if of_exams else "--lessons"
-    if options.wire != NO_WIRE:
-        raise typer.BadParameter(f"a batch has no wire: leave --wire out, or give {hint} bus", param_hint=hint)
-    if of_exams:
-        require_known(task, [ExamSetup(world, 0) for world in task.exam.worlds])
-    if options.lessons is DriveLoop.BATCH:
-        for each in _taught_tasks(task, options).values():
-            require_known_lesson(setup.robot, each)
-    say_if_interpreted()
 
 
 def _task_name(options: LessonOptions) -> str:
@@ -173,12 +156,22 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     tasks = _taught_tasks(setup.task, options)
     results = Results(out)
     parts = JobParts(factory=setup.factory, robot=setup.robot, results=results)
-    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, exams=options.exams, lessons=options.lessons)
+    loops = requested_loops(options.lessons, options.exams, wire=options.wire)
+    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, loops=loops)
     forget_lost_robots(plan, results)
     if options.shard is not None:
-        run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        run_shard(
+            plan,
+            results,
+            setup.command,
+            options.shard,
+            options.jobs,
+            options.on,
+            choice=plan.choice,
+            as_json=options.as_json,
+        )
         return
-    with study_run(plan, results, setup.command, options.jobs, options.on):
+    with study_run(plan, results, setup.command, options.jobs, options.on, choice=plan.choice):
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 

@@ -11,6 +11,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     Changes,
@@ -26,7 +27,7 @@ from kurt2rt.cli.options import (
 from kurt2rt.cli.shards import ShardOption
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 
 DEFAULT_TASK = "wall_following"
 LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
@@ -59,21 +60,8 @@ class LessonOptions:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     on: OnOption = None
-    exams: Annotated[
-        DriveLoop,
-        typer.Option(
-            help="With --seeds: what drives the exams. batch: compiled loops with equal results, some 30 times faster "
-            "(extra fast); 1 % of the exams, at least three, are driven on the bus too and must agree."
-        ),
-    ] = DriveLoop.BUS
-    lessons: Annotated[
-        DriveLoop,
-        typer.Option(
-            help="With --seeds: what drives the lessons of a basic task. batch: compiled stretches between the "
-            "teacher's commands, with equal results, some 10 times faster (extra fast); 1 % of the lessons, at least "
-            "three, are given on the bus too and must agree."
-        ),
-    ] = DriveLoop.BUS
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[
         Path | None,
         typer.Option(

@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     DEFAULT_OF_THE_TASK,
@@ -24,6 +25,7 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
@@ -48,6 +50,8 @@ class _Options:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     on: OnOption = None
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
@@ -67,6 +71,9 @@ def paper(options: _Options) -> None:
     teaches, drives and simulates, and the versions of what computes. When one of
     these has changed, what is in the folder is refused and not mixed in: give a
     new folder. Other seeds and other tasks may share a folder.
+
+    Compiled loops drive the tasks that they know, if the extra fast is installed
+    and the study is long, with equal results (--lessons, --exams).
 
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
     robots and worlds are others. With one of those, or with fewer than 20
@@ -109,12 +116,15 @@ def _run_study(options: _Options) -> None:
         readings,
         JobParts(factory=stage, robot=robot, results=results),
         tasks=options.task or (),
+        loops=requested_loops(options.lessons, options.exams),
     )
     command = typed_command("paper", options, {"seeds": typed_seeds})
     if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        run_shard(
+            plan, results, command, options.shard, options.jobs, options.on, choice=plan.choice, as_json=options.as_json
+        )
         return
-    with study_run(plan, results, command, options.jobs, options.on) as bar:
+    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, stage, results.folder))

@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     Changes,
@@ -26,6 +27,7 @@ from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.teacher_settings import SUPERHUMAN
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.phases.plan import PhasesPlan
@@ -50,6 +52,8 @@ class _Options:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     on: OnOption = None
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None
     as_json: AsJson = False
 
@@ -83,9 +87,18 @@ def phases(options: _Options) -> None:
 
     plan, results = _plan(options)
     if options.shard is not None:
-        run_shard(plan, results, _command(options), options.shard, options.jobs, options.on, as_json=options.as_json)
+        run_shard(
+            plan,
+            results,
+            _command(options),
+            options.shard,
+            options.jobs,
+            options.on,
+            choice=plan.choice,
+            as_json=options.as_json,
+        )
         return
-    with study_run(plan, results, _command(options), options.jobs, options.on) as bar:
+    with study_run(plan, results, _command(options), options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))
@@ -105,7 +118,9 @@ def _plan(options: _Options) -> "tuple[PhasesPlan, Results]":
     robot, task = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
     results = Results(options.out or _FOLDER / (task.name + ("-quick" if options.quick else "")))
     parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
-    return make_plan(task, parse_seeds(_seeds(options)), parts, quick=options.quick), results
+    loops = requested_loops(options.lessons, options.exams)
+    plan = make_plan(task, parse_seeds(_seeds(options)), parts, quick=options.quick, loops=loops)
+    return plan, results
 
 
 def _write_report(plan: "PhasesPlan", results: "Results", options: _Options) -> "tuple[PhasesStudy, Path]":

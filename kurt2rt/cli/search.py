@@ -71,6 +71,7 @@ def search(options: _Options) -> None:
     from kurt2rt.experiments.search.settings import load_search
     from kurt2rt.experiments.search.tables import all_tables, verdict_text
     from kurt2rt.experiments.search.trials import run_trials, trials_time_s
+    from kurt2rt.experiments.study.bus_witness import require_no_difference
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
@@ -88,6 +89,7 @@ def search(options: _Options) -> None:
     trials_s = trials_time_s(plan, trials)
     whole_s = trials_s + check_time_s(plan)
     with open_executor(options.on, options.jobs) as executor, results.held(), one_bar(whole_s) as bar:
+        require_no_difference(results, {plan.made_of.source})
         journal = TrialJournal(plan)
         run_trials(plan, journal, trials, options.jobs, bar.update, executor)
         record = begin_check(plan, journal, trials)

@@ -7,6 +7,7 @@ import typer
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
+from kurt2rt.experiments.study.loop_choice import NO_CHOICE, LoopChoice
 from kurt2rt.experiments.study.plan import StudyPlan
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.shard import Shard, shard_of
@@ -32,6 +33,7 @@ def run_shard(
     jobs: int,
     on: str | None,
     *,
+    choice: LoopChoice = NO_CHOICE,
     as_json: bool = False,
 ) -> None:
     """Run the jobs of a shard that have no result, and print what to do next.
@@ -41,6 +43,7 @@ def run_shard(
         shard: value of --shard.
         jobs: number of processes.
         on: value of --on.
+        choice: loops of the plan's jobs.
         as_json: print one JSON document instead.
 
     Raises:
@@ -49,7 +52,7 @@ def run_shard(
         ClusterError: no scheduler answers, or its address is not safe.
     """
     own = shard_of(plan, Shard.parse(shard))
-    with study_run(plan, results, command, jobs, on, part=own):
+    with study_run(plan, results, command, jobs, on, part=own, choice=choice):
         pass
     count = sum(map(len, own.waves))
     if as_json:

@@ -4,7 +4,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from kurt2rt.cli.executor_option import open_executor
+from kurt2rt.cli.loop_options import say_choice
 from kurt2rt.cli.progress import OneBar, one_bar
+from kurt2rt.experiments.study.bus_witness import require_no_difference
+from kurt2rt.experiments.study.loop_choice import NO_CHOICE, LoopChoice
 from kurt2rt.experiments.study.plan import StudyPlan, missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_record import record_study
@@ -12,7 +15,14 @@ from kurt2rt.experiments.study.study_record import record_study
 
 @contextmanager
 def study_run(
-    plan: StudyPlan, results: Results, command: str, jobs: int, on: str | None, *, part: StudyPlan | None = None
+    plan: StudyPlan,
+    results: Results,
+    command: str,
+    jobs: int,
+    on: str | None,
+    *,
+    part: StudyPlan | None = None,
+    choice: LoopChoice = NO_CHOICE,
 ) -> Iterator[OneBar]:
     """Run the jobs of a study that have no result; the context holds the folder while tables and figures are made.
 
@@ -22,16 +32,23 @@ def study_run(
         jobs: number of processes.
         on: value of --on.
         part: jobs to run; None: all of the plan.
+        choice: loops of the plan's jobs, which is said if any job is run.
 
     Yields:
         The progress bar.
 
     Raises:
         StudyError: another run writes to the folder, or it has results of other settings.
+        BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
         ClusterError: no scheduler answers, or its address is not safe.
     """
     own = plan if part is None else part
-    with open_executor(on, jobs) as executor, results.held(), one_bar(missing_time_s(own, results)) as bar:
-        record_study(results.folder, plan, command)
-        run_missing(own, results, jobs, bar.update, executor)
-        yield bar
+    with open_executor(on, jobs) as executor, results.held():
+        require_no_difference(results, {job.made_of.source for wave in plan.waves for job in wave})
+        missing_s = missing_time_s(own, results)
+        if missing_s:
+            say_choice(choice)
+        with one_bar(missing_s) as bar:
+            record_study(results.folder, plan, command)
+            run_missing(own, results, jobs, bar.update, executor)
+            yield bar

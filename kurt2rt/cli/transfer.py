@@ -11,6 +11,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     Changes,
@@ -30,6 +31,7 @@ from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
@@ -95,6 +97,8 @@ class _Options:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     on: OnOption = None
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -132,15 +136,18 @@ def transfer(options: _Options) -> None:
         parse_seeds(options.seeds),
         (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
         JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
+        loops=requested_loops(options.lessons, options.exams),
     )
     figure, command = (
         options.out / "transfer.png",
         typed_command("transfer", options, {"task": options.task, "seeds": options.seeds}),
     )
     if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        run_shard(
+            plan, results, command, options.shard, options.jobs, options.on, choice=plan.choice, as_json=options.as_json
+        )
         return
-    with study_run(plan, results, command, options.jobs, options.on) as bar:
+    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figure")
         study = read_study(plan, results)
         draw_curves(study, figure)

@@ -146,12 +146,16 @@ def wrapped(text: Text, width: int) -> list[Text]:
 def print_whole(console: Console, *parts: RenderableType) -> None:
     """Print tables and paragraphs and break no word; an empty line parts a table from what is above and below it.
 
-    Raises TypeError for a part that is neither a table nor a text.
+    A text with `no_wrap`, such as a command to be copied, stays in one line. Raises TypeError for a part that is
+    neither a table nor a text.
     """
     below_table, parted = False, True
     for part in _flattened(parts):
         is_table = isinstance(part, TextTable)
-        lines = list(part.lines(console.width)) if isinstance(part, TextTable) else wrapped(part, console.width)
+        if isinstance(part, TextTable):
+            lines = list(part.lines(console.width))
+        else:
+            lines = [part] if part.no_wrap else wrapped(part, console.width)
         if not parted and (is_table or below_table) and lines and lines[0].plain:
             console.print()
         for line in lines:

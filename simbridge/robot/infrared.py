@@ -63,27 +63,17 @@ class InfraredSensors:
         self._read(range(len(self.counts)), pose)
 
     def _read(self, sensors: Sequence[int], pose: Pose) -> None:
-        # The most expensive part of a cycle: names are looked up once, and no list is built.
-        readings, gains, all_rays, ray_m = self.counts, self.gains, self.rays, self.ray_m
-        law, normal = self._law, self._noise.normal
+        # The most expensive part of a cycle: names are looked up once.
+        readings, gains, all_rays, ray_m, law = self.counts, self.gains, self.rays, self.ray_m, self._law
         noise_ratio, noise_least = self._noise_ratio, self._noise_least
-        x_m, y_m, heading_rad = pose
-        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
-        self._sight.set_origin(x_m, y_m)
-        distance_m = self._sight.distance_m
-        for i in sensors:
-            free_m = ray_m
-            for ahead_m, left_m, along_x, along_y in all_rays[i]:
-                free_m = distance_m(
-                    x_m + ahead_m * cos - left_m * sin,
-                    y_m + ahead_m * sin + left_m * cos,
-                    along_x * cos - along_y * sin,
-                    along_x * sin + along_y * cos,
-                    free_m,
-                )
+        turn = (math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        self._sight.set_origin(pose.x_m, pose.y_m)
+        least_distance_m = self._sight.least_distance_m
+        for i, noise in zip(sensors, self._noise.next_normals(len(sensors)), strict=True):
+            free_m = least_distance_m(pose, turn, all_rays[i], ray_m)
             counts = counts_at(free_m - RECESS_M, law) * gains[i]
             sigma = noise_ratio * counts
-            reading = round(counts + (sigma if sigma > noise_least else noise_least) * normal())
+            reading = round(counts + (sigma if sigma > noise_least else noise_least) * noise)
             readings[i] = reading if 0 <= reading <= _HIGHEST_COUNTS else (_HIGHEST_COUNTS if reading > 0 else 0)
 
 

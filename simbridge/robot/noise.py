@@ -1,5 +1,7 @@
 """Random numbers of the simulation, drawn in blocks because single draws cost 1 µs each."""
 
+import copy
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,12 @@ class Noise:
         self.drawn = 0
         """Numbers drawn so far; with the seed the whole state of the stream."""
 
+    def __deepcopy__(self, memo: dict[int, object]) -> "Noise":
+        # Numbers that lie ahead are replaced and never changed, so copies share them; copying each took 0.5 ms.
+        twin = copy.copy(self)
+        twin._generator, twin._fractions = copy.deepcopy(self._generator, memo), self._fractions.copy()
+        return twin
+
     def normal(self) -> float:
         """Return the next standard normal number, dimensionless."""
         if self._used == len(self._block):
@@ -29,6 +37,15 @@ class Noise:
         self._used += 1
         self.drawn += 1
         return self._block[self._used - 1]
+
+    def next_normals(self, count: int) -> list[float]:
+        """Return the next `count` standard normal numbers, as so many calls of `normal` would."""
+        begin, end = self._used, self._used + count
+        if end > len(self._block):
+            return [self.normal() for _ in range(count)]
+        self._used = end
+        self.drawn += count
+        return self._block[begin:end]
 
     def normals(self, count: int) -> NDArray[np.float64]:
         """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""

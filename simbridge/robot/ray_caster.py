@@ -4,16 +4,20 @@ The physics engine can answer this too, at four times the cost; rays are most of
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.worlds.geometry import Point, edges_of
 from simbridge.worlds.world_settings import WorldSettings
 
 _MARGIN_M = 0.25
 """Extra range of cached faces, so that they serve until the robot has moved by it."""
+Ray = tuple[float, float, float, float]
+"""Start, ahead and left in m, and direction, ahead and left, in the frame of the body."""
 _CORNER = 1e-9
 """Tolerance that keeps a ray from slipping between the two faces of a corner."""
 
@@ -44,21 +48,34 @@ class RayCaster:
 
     def distance_m(self, x_m: float, y_m: float, along_x: float, along_y: float, farthest_m: float) -> float:
         """Return the distance in m from a point along a unit vector to the nearest wall, at most `farthest_m`."""
+        return self.least_distance_m(Pose(x_m, y_m, 0.0), (1.0, 0.0), [(0.0, 0.0, along_x, along_y)], farthest_m)
+
+    def least_distance_m(self, pose: Pose, turn: tuple[float, float], rays: Sequence[Ray], farthest_m: float) -> float:
+        """Return the distance in m to the nearest hit of some rays of a robot, at most `farthest_m`.
+
+        `turn`: cosine and sine of the heading of `pose`.
+        """
+        # The most expensive loop of a cycle: one call for all rays of a sensor.
+        x_m, y_m, _ = pose
+        cos, sin = turn
         nearest_m = farthest_m
-        for corner_x, corner_y, edge_x, edge_y in self._faces:
-            across = along_x * edge_y - along_y * edge_x
-            if across == 0.0:
-                continue  # parallel: the ray hits the adjacent faces instead
-            dx, dy = corner_x - x_m, corner_y - y_m
-            away_m = (dx * edge_y - dy * edge_x) / across
-            if 0.0 <= away_m < nearest_m and -_CORNER <= (dx * along_y - dy * along_x) / across <= 1.0 + _CORNER:
-                nearest_m = away_m
-        for centre_x, centre_y, radius2 in self._posts:
-            dx, dy = centre_x - x_m, centre_y - y_m
-            ahead_m = dx * along_x + dy * along_y
-            half_chord2 = radius2 - (dx * dx + dy * dy - ahead_m * ahead_m)
-            if ahead_m > 0.0 and half_chord2 >= 0.0:
-                nearest_m = min(nearest_m, max(0.0, ahead_m - math.sqrt(half_chord2)))
+        for ahead_m, left_m, along_ahead, along_left in rays:
+            from_x_m, from_y_m = x_m + ahead_m * cos - left_m * sin, y_m + ahead_m * sin + left_m * cos
+            along_x, along_y = along_ahead * cos - along_left * sin, along_ahead * sin + along_left * cos
+            for corner_x, corner_y, edge_x, edge_y in self._faces:
+                across = along_x * edge_y - along_y * edge_x
+                if across == 0.0:
+                    continue  # parallel: the ray hits the adjacent faces instead
+                dx, dy = corner_x - from_x_m, corner_y - from_y_m
+                away_m = (dx * edge_y - dy * edge_x) / across
+                if 0.0 <= away_m < nearest_m and -_CORNER <= (dx * along_y - dy * along_x) / across <= 1.0 + _CORNER:
+                    nearest_m = away_m
+            for centre_x, centre_y, radius2 in self._posts:
+                dx, dy = centre_x - from_x_m, centre_y - from_y_m
+                along_m = dx * along_x + dy * along_y
+                half_chord2 = radius2 - (dx * dx + dy * dy - along_m * along_m)
+                if along_m > 0.0 and half_chord2 >= 0.0:
+                    nearest_m = min(nearest_m, max(0.0, along_m - math.sqrt(half_chord2)))
         return nearest_m
 
     def _gather(self, centre: Point) -> None:

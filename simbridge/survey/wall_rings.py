@@ -79,6 +79,7 @@ class WallRings:
             self._gather(x_m, y_m)
         ahead_x, ahead_y = math.cos(heading_rad), math.sin(heading_rad)
         best, least_m = None, math.inf
+        followed_ring, followed_m = (-1, 0.0) if followed is None else followed
         for corner_x, corner_y, along_x, along_y, face_m, before_m, ring in self._near:
             dx, dy = x_m - corner_x, y_m - corner_y
             on_face_m = dx * along_x + dy * along_y
@@ -90,13 +91,14 @@ class WallRings:
             if away_m > _NEAR_M:
                 continue
             cost_m = away_m + _AGAINST_M * (1.0 - along_x * ahead_x - along_y * ahead_y)
-            place = RingPlace(int(ring), before_m + on_face_m)
-            if followed is not None and place.ring == followed.ring:
-                moved_m = math.remainder(place.along_m - followed.along_m, self.lengths_m[place.ring])
+            if cost_m - _KEPT_M >= least_m:
+                continue  # also if it were next to the last place
+            if ring == followed_ring:
+                moved_m = math.remainder(before_m + on_face_m - followed_m, self.lengths_m[followed_ring])
                 cost_m -= _KEPT_M if abs(moved_m) <= _STRETCH_M else 0.0
             if cost_m < least_m:
-                best, least_m = place, cost_m
-        return best
+                best, least_m = (ring, before_m + on_face_m), cost_m
+        return None if best is None else RingPlace(int(best[0]), best[1])
 
     def _gather(self, x_m: float, y_m: float) -> None:
         """Keep the faces that matter until the robot has gone 0.25 m."""

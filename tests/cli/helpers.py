@@ -151,3 +151,9 @@ def started(
         cwd=folder,
         env={"PYTHONPATH": str(ROOT), **environment},
     )
+
+
+def results_in(folder: str) -> dict[str, bytes]:
+    """Contents of all results but witnesses, by their path in the folder."""
+    paths = Path(folder, "results").rglob("*.json")
+    return {str(path.relative_to(folder)): path.read_bytes() for path in paths if "witnesses" not in path.parts}

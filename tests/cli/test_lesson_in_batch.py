@@ -1,6 +1,7 @@
 """`kurt2rt lesson --exams batch` and `--lessons batch`."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -18,30 +19,40 @@ def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: st
     assert told[0]["robots"] == told[1]["robots"]
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        ((), "give --seeds"),
-        (("--seeds", "1-2", "--task", "route"), "course route"),
-        (("--seeds", "1-2", "--wire", "lossy"), "no wire"),
-    ],
-)
-def test_lesson_refuses_exams_that_a_batch_does_not_know(
-    kurt2rt: CommandLine, words: tuple[str, ...], why: str
+@pytest.mark.parametrize("option", ["--exams", "--lessons"])
+@pytest.mark.parametrize(("words", "why"), [((), "give --seeds"), (("--seeds", "1-2", "--wire", "lossy"), "no wire")])
+def test_lesson_refuses_a_batch_that_cannot_be(
+    kurt2rt: CommandLine, option: str, words: tuple[str, ...], why: str
 ) -> None:
-    assert why in kurt2rt.refused("lesson", *SHORT, "--exams", "batch", *words)
+    assert why in kurt2rt.refused("lesson", *SHORT, option, "batch", *words)
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        ((), "give --seeds"),
-        (("--seeds", "1-2", "--task", "route"), "course route"),
-        (("--seeds", "1-2", "--wire", "lossy"), "no wire"),
-        (("--seeds", "1-2", "--teacher", "ordinary", "--controls"), "drives by hand"),
-    ],
-)
-def test_lesson_refuses_lessons_that_a_batch_does_not_know(
-    kurt2rt: CommandLine, words: tuple[str, ...], why: str
-) -> None:
-    assert why in kurt2rt.refused("lesson", *SHORT, "--lessons", "batch", *words)
+def test_lesson_of_an_unknown_task_goes_to_the_bus_and_says_so(kurt2rt: CommandLine) -> None:
+    asks = ("--set", "learning.doubt.asks=true", "--lessons", "batch", "--exams", "bus")
+    told = kurt2rt("lesson", *SHORT, "--seeds", "1", "--jobs", "1", *asks)
+    assert told.exit_code == 0, told.err
+    assert "wall_following: lessons on the CAN bus, because a batch does not know a robot that asks" in told.err
+
+
+def test_lesson_says_how_many_jobs_are_in_the_batch(kurt2rt: CommandLine) -> None:
+    told = kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--lessons", "batch")
+    assert "2 jobs in the batch, 2 of them on the CAN bus too\n" in told.err
+    assert len(list(Path("results/lesson/results/witnesses").glob("*.json"))) == 2
+
+
+def test_lesson_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: CommandLine) -> None:
+    words = ("lesson", *SHORT, "--seeds", "1", "--jobs", "1", "--lessons", "batch")
+    assert kurt2rt(*words).exit_code == 0
+    (path,) = Path("results/lesson/results/witnesses").glob("*.json")
+    path.write_text(path.read_text().replace('"differing":[]', '"differing":["lesson.asks"]'))
+    for loop in ("batch", "bus"):
+        assert "differ in lesson.asks; all results" in kurt2rt.refused(*words[:-1], loop)
+
+
+def test_lesson_on_the_bus_keeps_the_record_of_its_witnesses(kurt2rt: CommandLine) -> None:
+    words = ("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--lessons")
+    for loop in ("batch", "bus"):
+        assert kurt2rt(*words, loop, "--out", "made").exit_code == 0
+    merged = kurt2rt("results", "merge", "all", "made")
+    assert merged.exit_code == 0, merged.err
+    assert "4 of 4" in merged.out

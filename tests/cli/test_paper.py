@@ -8,7 +8,7 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.experiments.study.provenance import settings_hash
-from tests.cli.helpers import CommandLine, unknown_name
+from tests.cli.helpers import CommandLine, results_in, unknown_name
 
 COMMAND = "kurt2rt paper --seeds 100 --task short.yaml --no-plain"
 
@@ -92,3 +92,33 @@ def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine
     assert [path.read_bytes() for path in results] == contents
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
     assert changed == [place == 3 for place in range(28)]
+
+
+def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    words = ("paper", "--task", short_task(tmp_path), "--seeds", "100-101", "--jobs", "1", "--no-plain")
+    told = {loop: kurt2rt(*words, "--out", loop, "--lessons", loop, "--exams", loop) for loop in ("batch", "bus")}
+    assert [each.exit_code for each in told.values()] == [0, 0]
+    assert "2 jobs in the batch, 2 of them on the CAN bus too" in told["batch"].err
+    assert results_in("batch") == results_in("bus")
+    assert len(list(Path("batch/results/witnesses/shipped").glob("short_circle-*.json"))) == 2
+
+
+def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    words = ("paper", "--task", short_task(tmp_path), "--jobs", "1", "--no-plain", "--out", "made")
+    kurt2rt(*words, "--seeds", "100", "--lessons", "bus", "--exams", "bus")
+    (path,) = Path("made/results/shipped").glob("*.json")
+    stamp_ns = path.stat().st_mtime_ns
+    told = kurt2rt(*words, "--seeds", "100-101", "--lessons", "batch", "--exams", "batch")
+    assert told.exit_code == 0, told.err
+    assert path.stat().st_mtime_ns == stamp_ns
+    # The robot of the bus has a witness all the same, so that the study has its share of them.
+    assert len(list(Path("made/results/witnesses").rglob("*.json"))) == 2
+
+
+@pytest.mark.deep
+def test_paper_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
+    for loop in ("batch", "bus"):
+        told = kurt2rt("paper", "--quick", "--jobs", "2", "--out", loop, "--lessons", loop, "--exams", loop)
+        assert told.exit_code == 0, told.err
+    assert results_in("batch") == results_in("bus")
+    assert len(results_in("bus")) == 28

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine, unknown_name
+from tests.cli.helpers import CommandLine, results_in, unknown_name
 
 QUICK = ("phases", "--quick", "--seeds", "0", "--jobs", "1")
 
@@ -50,3 +50,13 @@ def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLin
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
     assert changed == [place == 4 for place in range(14)]
     assert f"kurt2rt phases --task {task} --quick --seeds 0" in (folder / "report.html").read_text()
+
+
+@pytest.mark.deep
+def test_phases_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
+    for loop in ("batch", "bus"):
+        told = kurt2rt(*QUICK, "--out", loop, "--lessons", loop, "--exams", loop)
+        assert told.exit_code == 0, told.err
+    assert results_in("batch") == results_in("bus")
+    assert len(results_in("bus")) == 14
+    assert len(list(Path("batch/results/witnesses").glob("*/*.json"))) == 3

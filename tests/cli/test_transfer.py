@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import CommandLine, results_in
 
 SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
@@ -30,3 +30,12 @@ def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
 def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
     assert "world a" in kurt2rt.refused("transfer", "--world", "a", *SHORT)
     assert not Path("made").exists()
+
+
+def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
+    words = ("transfer", "--seeds", "1100", "--after", "1", "--after", "0", "--teacher", "superhuman", *SHORT[:-1])
+    for loop in ("batch", "bus"):
+        told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
+        assert told.exit_code == 0, told.err
+    assert results_in("batch") == results_in("bus")
+    assert len(list(Path("batch/results/witnesses").rglob("*.json"))) == 2

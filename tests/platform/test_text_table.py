@@ -1,5 +1,7 @@
 """Tables at any width: no word is broken, nothing is lost."""
 
+from io import StringIO
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -91,6 +93,14 @@ def test_a_word_longer_than_the_line_stands_alone_and_whole() -> None:
         "/a/very/long/path",
         "now",
     ]
+
+
+def test_text_that_must_not_wrap_is_printed_in_one_line() -> None:
+    printed = StringIO()
+    console = Console(width=20, file=printed)
+    command = "kurt2rt exam mine.knowledge --seed 20017"
+    print_whole(console, Text(command, no_wrap=True), "a text that is too long")
+    assert printed.getvalue() == f"{command}\na text that is too\nlong\n"
 
 
 def test_row_with_another_number_of_cells_is_refused() -> None:

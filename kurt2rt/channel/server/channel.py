@@ -85,7 +85,7 @@ class Channel:
         return self.site.states_skipped
 
     def after_tick(self, record: TickRecord) -> None:
-        """Answer the commands of the tick, and publish the state if it is due. Never waits."""
+        """Answer the commands of the tick, and publish the state if it is due and a device looks. Never waits."""
         handler, tick = self.handler, record.tick
         handler.tick = tick
         for result in record.results:
@@ -102,7 +102,11 @@ class Channel:
         self._ticks += 1
         # A faster simulation still publishes STATES_PER_S states per second of real time.
         speed = 1 if self._speed is None else max(1, round(min(self._speed.reached, self._speed.wanted)))
-        if self._ticks % (self._every_ticks * speed) == 0:
+        if not self.site.observers:
+            # A state takes as long as the tick itself.
+            self.site.forget_state()
+            self._states.pause()
+        elif self._ticks % (self._every_ticks * speed) == 0 or self.site.waits_for_state:
             self.site.publish(encode_state(self._states.build(record)))
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:

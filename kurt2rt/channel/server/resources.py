@@ -134,6 +134,15 @@ class RobotSite:
         except KeyError:
             return None
 
+    @property
+    def waits_for_state(self) -> bool:
+        """True if a device waits for its first state."""
+        return bool(self._observers) and not self._state
+
+    def forget_state(self) -> None:
+        """Let the next device wait for a new state, because none is published without an observer."""
+        self._state = b""
+
     def publish(self, state: bytes) -> None:
         """Send a state, encoded by `encode_state`, to all observers; never waits."""
         self._state = state

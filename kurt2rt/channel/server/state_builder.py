@@ -64,6 +64,10 @@ class StateBuilder:
         """Keep the surprise of a tick, which lasts one tick; call it for each tick."""
         self._surprise = surprise_state(record) or self._surprise
 
+    def pause(self) -> None:
+        """Look at the lateness again with the next state; call it in ticks without an observer."""
+        self._count = 0
+
     def build(self, record: TickRecord) -> State:
         """Return the state of the robot after a tick."""
         runtime, parts = self._runtime, self._parts

@@ -13,6 +13,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch
 from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
+from kurt2rt.experiments.lockstep.batch_mind import guides_robots
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.platform.ledger import percentiles_of
 
@@ -34,8 +35,10 @@ class BatchLengths:
 
 async def measure_batch(
     fixture: BenchFixture, lengths: BatchLengths, on_progress: OnProgress
-) -> tuple[BenchResult, BenchResult]:
+) -> tuple[BenchResult, ...]:
     """Return the time of a robot's tick in exams, with all their measures, and in runs of a certificate, on one core.
+
+    A batch knows no runs of a task whose course guides the robot on its way; they are left out.
 
     Raises BatchRefusedError without a batch, and for a task that it does not know.
     """
@@ -56,7 +59,8 @@ async def measure_batch(
         tick_ns, run_ns = [], []
         for done in range(lengths.batches):
             tick_ns.append(_time_batch(fixture, factory, task, exams))
-            run_ns.append(_time_runs(factory, taught, runs))
+            if not guides_robots(task):
+                run_ns.append(_time_runs(factory, taught, runs))
             on_progress((2 + done) / steps)
         bus_ns, driven = [], []
         for done, exam in enumerate(exams[: lengths.on_bus]):
@@ -67,10 +71,8 @@ async def measure_batch(
     compared = [(one, other) for one, other in zip(finished, driven, strict=False) if one is not None]
     equal = sum(one == other for one, other in compared)
     tick = percentiles_of([round(each) for each in tick_ns])
-    run = percentiles_of([round(each) for each in run_ns])
     on_bus_us = percentiles_of([round(each) for each in bus_ns]).median_us
     reference = Reference("on the bus", on_bus_us, tick.median_us)
-    run_reference = Reference("on the bus", on_bus_us, run.median_us)
     exams_result = BenchResult(
         "batch",
         "exam in a batch, a tick",
@@ -84,6 +86,10 @@ async def measure_batch(
         f"{1e6 / tick.median_us:,.0f} robot ticks a second; {equal} of {len(compared)} exams equal to the bus, "
         f"{sum(each is None for each in finished)} left the batch",
     )
+    if not run_ns:
+        return (exams_result,)
+    run = percentiles_of([round(each) for each in run_ns])
+    run_reference = Reference("on the bus", on_bus_us, run.median_us)
     runs_result = BenchResult(
         "batch",
         "run of certify in a batch, a tick",

@@ -19,8 +19,9 @@ from kurt2rt.experiments.certify.run import Run
 from kurt2rt.experiments.lockstep.batch_mind import (
     build_drive_settings,
     build_minds,
+    guides_robots,
+    refused,
     require_known,
-    require_no_borders,
 )
 from kurt2rt.experiments.lockstep.episode import build_stuck_rule
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
@@ -78,7 +79,8 @@ def opened_batch(factory: BatchFactory, subject: Subject, runs: Sequence[Run]) -
     robot, task = subject.robot, subject.task
     setups = [ExamSetup(run.world, run.number) for run in runs]
     require_known(task, setups)
-    require_no_borders(task)
+    if guides_robots(task):
+        raise refused(task, f"runs of course {task.course.kind}, which guides the robot on its way")
     with _opened(factory, task, setups) as simulations:
         minds = build_minds(simulations, robot, task, [(subject.events, setup) for setup in setups])
         exam = task.exam

@@ -5,7 +5,7 @@ import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import pairwise, starmap
+from itertools import groupby, pairwise, starmap
 
 from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetric
 from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Stretch
@@ -35,7 +35,8 @@ def examine_in_batch(
 ) -> list[ExamResult | None]:
     """Drive all exams at once, and return their results in order; None for one that belongs on the CAN bus.
 
-    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch.
+    A result is equal to that of `examine`. A robot that a watch would stop leaves the batch, and so does a stuck one
+    that is rescued.
 
     Raises:
         BatchRefusedError: the batch does not know the task, its policy or an action.
@@ -141,12 +142,14 @@ class _Drive:
         self._trail += [Position(pose.x_m, pose.y_m) for pose in [*poses[:-1], self._pose][first::_TRAIL_STRIDE]]
         self._ticks += ticks
         self._is_stuck = stuck_after is not None
+        if self._is_stuck and not self._setup.stuck_ends:
+            self._left = True
 
     def result(self) -> ExamResult | None:
         """Return the result of the exam; None if the robot left the batch."""
         if self._left:
             return None
-        if self._is_stuck and self._setup.stuck_ends:
+        if self._is_stuck:
             self._metric.abort()
         duration_s = self._ticks * self._period_s
         return ExamResult(
@@ -200,18 +203,18 @@ class _Drive:
                 self._collision_positions.append(Position(pose.x_m, pose.y_m))
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
-        before = self._action
-        for action, pose in zip(stretch.actions[:ticks], stretch.poses, strict=False):
-            if action == before:
-                self._unknown_ticks += action == STANDS
-                continue
-            # A robot that asks in its first tick has not changed its action: before, it had none.
-            self._action_changes += not (before is None and action == STANDS)
-            if action == STANDS:
-                self._unknown_ticks += 1
-                self._ask_positions.append(Position(pose.x_m, pose.y_m))
-            before = action
-        self._action = before
+        place = 0
+        for action, run in groupby(stretch.actions[:ticks]):
+            if action != self._action:
+                # A robot that asks in its first tick has not changed its action: before, it had none.
+                self._action_changes += not (self._action is None and action == STANDS)
+                if action == STANDS:
+                    pose = stretch.poses[place]
+                    self._ask_positions.append(Position(pose.x_m, pose.y_m))
+                self._action = action
+            length = len(list(run))
+            self._unknown_ticks += length if action == STANDS else 0
+            place += length
 
 
 def _step_m(before: Pose, after: Pose) -> float:

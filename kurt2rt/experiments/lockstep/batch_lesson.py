@@ -23,9 +23,9 @@ from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_settings
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
+from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson import TrainingRun
 from kurt2rt.experiments.lockstep.lesson_ahead import LessonAhead
-from kurt2rt.experiments.lockstep.lesson_driver import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime

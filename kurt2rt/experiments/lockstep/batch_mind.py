@@ -25,7 +25,15 @@ from hal.batch import (
 )
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.perception.definition import Extreme, Feature, Orientation, Reading, SituationDefinition
+from kurt2rt.core.perception.definition import (
+    Extreme,
+    Feature,
+    Orientation,
+    Reading,
+    SituationDefinition,
+    load_situation,
+)
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
@@ -50,10 +58,9 @@ def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
         raise refused(task, "a mid level")
 
 
-def require_no_borders(task: TaskSettings) -> None:
-    """Check that the course of a task does not reposition the robot on the way. Raises BatchRefusedError."""
-    if task.course.kind in _BORDER_COURSES:
-        raise refused(task, f"runs of course {task.course.kind}, which guides the robot on its way")
+def guides_robots(task: TaskSettings) -> bool:
+    """Return whether the course of a task repositions robots, or wants another behaviour, on their way."""
+    return task.course.kind in _BORDER_COURSES
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
@@ -68,8 +75,23 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "a learner that is no RLA system")
     if any(setup.broken for setup in setups):
         raise refused(task, "a broken sensor")
-    if not all(setup.stuck_ends for setup in setups):
-        raise refused(task, "rescues")
+
+
+def require_known_exams(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch can examine robots that are taught a task, and drive its policy. Raises BatchRefusedError.
+
+    Raises hal.settings.SettingsError if settings of the task do not fit each other.
+    """
+    require_known(task, [ExamSetup(task.teaching.world, 0)])
+    if not isinstance(task.policy.build(settings.infrared), TabledPolicy):
+        raise refused(task, f"policy {task.policy.kind}")
+    definition = load_situation(task.situation, settings.infrared.names)
+    changed = ((each.features, each.weight) for each in task.learning.weights)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    feature_table(definition, settings, weights, task)
+    unknown = sorted(set(load_task_repertoire(task, settings)) - set(build_drive_settings(settings, task).actions))
+    if unknown:
+        raise refused(task, f"action {', '.join(unknown)}")
 
 
 def build_drive_settings(

@@ -10,26 +10,19 @@ from hal.batch_lesson import LessonFactory
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
 from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, ExamDriver, require_equal
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
+from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
-from kurt2rt.experiments.lockstep.lesson_driver import (
-    LESSON_ON_BUS,
-    GivenLesson,
-    LessonDriver,
-    require_equal_lessons,
-)
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
-from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 
@@ -69,7 +62,7 @@ async def run_lesson(
     report: Report,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
     plan: LessonPlan | None = None,
-    driver: LessonDriver = LESSON_ON_BUS,
+    loop: DriveLoop = DriveLoop.BUS,
 ) -> tuple[TrainingResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; return the result and all events the file then holds.
 
@@ -84,40 +77,31 @@ async def run_lesson(
         report: progress callback.
         on_saved: gets each acknowledgement of a durable lesson.
         plan: None: the task's own lesson, phases 1 and 2. A batch knows no other one.
-        driver: loop that drives the robot; a batch begins without knowledge.
+        loop: drives the robot; a batch begins without knowledge, and leaves some robots to the CAN bus.
 
     Raises:
         KnowledgeError: the file cannot be used.
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command, or a lesson was not stored.
-        BatchRefusedError: the driver is a batch, which does not know the lesson.
-        BatchDiffersError: the batch and a witness on the CAN bus differ.
+        BatchRefusedError: a batch, which does not know the lesson, shall drive it.
     """
-    in_batch = driver.loop is DriveLoop.BATCH
-    if in_batch and plan is not None:
+    if loop is DriveLoop.BATCH and plan is not None:
         raise refused(task, "a plan of its own")
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
         on_progress = keeping.telling(report, f"teaching in world {world}", whole_s)
-
-        async def on_bus(training: TrainingStore) -> TrainingResult:
-            with closing(factory.open(world, seed, plan.purpose)) as simulation:
-                return await teach(simulation, settings, task, training, seed=seed, on_progress=on_progress, plan=plan)
-
         given: GivenLesson | None = None
-        if in_batch:
+        if loop is DriveLoop.BATCH:
             if keeping.opened.events:
                 raise refused(task, "knowledge to go on from")
-            # A witness takes the time, and goes through the lesson once more.
-            in_batch_progress = (lambda _done_s: None) if driver.is_witnessed else on_progress
-            given = _teach_in_batch(factory, settings, task, seed, in_batch_progress)
+            given = _teach_in_batch(factory, settings, task, seed, on_progress)
         if given is None:
-            lesson = await on_bus(keeping.training)
+            with closing(factory.open(world, seed, plan.purpose)) as simulation:
+                lesson = await teach(
+                    simulation, settings, task, keeping.training, seed=seed, on_progress=on_progress, plan=plan
+                )
         else:
-            if driver.is_witnessed:
-                store = InMemoryEventStore()
-                require_equal_lessons(given, GivenLesson(await on_bus(TrainingStore(store)), store.events))
             lesson = given.result
             for event in given.events:
                 keeping.writer.submit(event)
@@ -126,32 +110,41 @@ async def run_lesson(
     return lesson, read_lessons(knowledge, settings, task)
 
 
-async def run_exam(
+async def run_drives(
     factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
-    events: Sequence[TeachingEvent],
-    setup: ExamSetup,
+    drives: Sequence[BatchExam],
     report: Report,
-) -> ExamResult:
-    """Open the setup's world, drive there without a teacher and return the result.
+    loop: DriveLoop = DriveLoop.BUS,
+) -> list[ExamResult]:
+    """Drive exams without a teacher, each in its world, and return their results in order.
 
-    `events`: lessons of the robot; the policy's own drive does without them.
+    Args:
+        factory: opens the simulations.
+        settings: of the robot.
+        task: of all exams.
+        drives: setups with the lessons of the robot.
+        report: progress callback.
+        loop: a batch drives all at once, and leaves some robots to the CAN bus.
 
     Raises:
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command.
+        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+        BatchRefusedError: a batch, which does not know the task, shall drive it.
     """
-    drive_name = _drive_name(setup)
-    with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
-        return await examine(
-            simulation,
-            settings,
-            task,
-            events,
-            setup,
-            lambda done_s: report(drive_name, done_s, task.exam.duration_s),
-        )
+    finished: list[ExamResult | None] = [None] * len(drives)
+    if loop is DriveLoop.BATCH:
+        finished = _run_in_batch(factory, settings, task, drives)
+    results = []
+    for each, in_batch in zip(drives, finished, strict=True):
+        if in_batch is None:
+            in_batch = await _run_on_bus(factory, settings, task, each, report)
+        else:
+            report(_drive_name(each.setup), task.exam.duration_s, task.exam.duration_s)
+        results.append(in_batch)
+    return results
 
 
 async def run_exams(
@@ -163,7 +156,7 @@ async def run_exams(
     *,
     seed: int,
     report: Report,
-    driver: ExamDriver = ON_BUS,
+    loop: DriveLoop = DriveLoop.BUS,
     broken: SensorBreak | None = None,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
@@ -176,7 +169,7 @@ async def run_exams(
         worlds: names of the worlds.
         seed: of robot and start pose.
         report: progress callback.
-        driver: loop that drives the exams.
+        loop: drives the exams.
         broken: sensor of the robot that breaks, but not while the teacher's policy drives; None: none.
 
     Returns:
@@ -185,29 +178,31 @@ async def run_exams(
     Raises:
         SettingsError: task and world do not fit.
         LessonLostError: the robot refused a command.
-        BatchRefusedError: the driver is a batch, which does not know the task.
-        BatchDiffersError: the batch and a witness on the CAN bus differ.
+        BatchRefusedError: a batch, which does not know the task, shall drive it.
     """
     setups = [
         each for world in worlds for each in (ExamSetup(world, seed, broken=broken), ExamSetup(world, seed, True))
     ]
-    finished: list[ExamResult | None] = [None] * len(setups)
-    if driver.loop is DriveLoop.BATCH:
-        finished = _run_in_batch(factory, settings, task, [BatchExam(setup, events) for setup in setups])
-    drives = []
-    for setup, in_batch in zip(setups, finished, strict=True):
-        drive = in_batch
-        if drive is None or setup.world in driver.witnesses:
-            drive = await run_exam(factory, settings, task, events, setup, report)
-        else:
-            report(_drive_name(setup), task.exam.duration_s, task.exam.duration_s)
-        if in_batch is not None:
-            require_equal(in_batch, drive)
-        drives.append(drive)
+    drives = await run_drives(factory, settings, task, [BatchExam(each, events) for each in setups], report, loop)
     return tuple(
         WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success))
         for learned, teacher in zip(drives[::2], drives[1::2], strict=True)
     )
+
+
+async def _run_on_bus(
+    factory: SimulationFactory, settings: RobotSettings, task: TaskSettings, drive: BatchExam, report: Report
+) -> ExamResult:
+    setup, name = drive.setup, _drive_name(drive.setup)
+    with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
+        return await examine(
+            simulation,
+            settings,
+            task,
+            drive.events,
+            setup,
+            lambda done_s: report(name, done_s, task.exam.duration_s),
+        )
 
 
 def _run_in_batch(

@@ -1,14 +1,13 @@
-"""Choice of the loop that drives exams: the CAN bus, or a batch with witnesses on the CAN bus."""
+"""Loops that drive lessons and exams: over the CAN bus, or in a batch with witnesses on the CAN bus."""
 
+import hashlib
 import math
-import random
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeVar
 
 from hal.errors import UserError
-from kurt2rt.experiments.lockstep.exam import ExamResult
 
 _DriveT = TypeVar("_DriveT")
 
@@ -30,38 +29,30 @@ class BatchDiffersError(UserError):
 
 
 @dataclass(frozen=True, slots=True)
-class ExamDriver:
-    """Loop of the exams of one robot."""
+class DriveLoops:
+    """Loops of one robot's lesson and exams."""
 
-    loop: DriveLoop = DriveLoop.BUS
-    witnesses: frozenset[str] = frozenset()
-    """Worlds whose exams in the batch are driven on the CAN bus too, and must have the same results there."""
+    lesson: DriveLoop = DriveLoop.BUS
+    exams: DriveLoop = DriveLoop.BUS
 
-
-ON_BUS = ExamDriver()
-
-
-def choose_drivers(loop: DriveLoop, robots: int, worlds: Sequence[str]) -> list[ExamDriver]:
-    """Return the driver of each robot's exams in `worlds`: 1 % of them, at least three, have a witness."""
-    if loop is DriveLoop.BUS:
-        return [ON_BUS] * robots
-    exams = [(robot, world) for robot in range(robots) for world in worlds]
-    chosen = choose_witnesses(exams, f"{robots} robots")
-    return [ExamDriver(loop, frozenset(world for other, world in chosen if other == robot)) for robot in range(robots)]
+    @property
+    def in_batch(self) -> bool:
+        """Return whether a batch drives any of them."""
+        return DriveLoop.BATCH in (self.lesson, self.exams)
 
 
-def choose_witnesses(drives: Sequence[_DriveT], of: str) -> list[_DriveT]:
-    """Return 1 % of the drives of a study, at least three, by chance; `of`: seed of the chance."""
-    wanted = min(len(drives), max(LEAST_WITNESSES, math.ceil(WITNESS_SHARE * len(drives))))
-    return random.Random(f"witnesses of {of}").sample(drives, wanted)
+ON_BUS = DriveLoops()
 
 
-def require_equal(batch: ExamResult, bus: ExamResult) -> None:
-    """Check that an exam in the batch had the result of the CAN bus. Raises BatchDiffersError."""
-    differing = [each.name for each in fields(ExamResult) if getattr(batch, each.name) != getattr(bus, each.name)]
-    if differing:
-        raise BatchDiffersError(
-            f"the batch and the CAN bus differ in {', '.join(differing)}; all results of the batch are refused",
-            where=f"exam in world {bus.world}, seed {bus.seed}",
-            do="report it, and give --exams bus",
-        )
+def choose_witnesses(drives: Sequence[_DriveT], of: str, *, least: int = LEAST_WITNESSES) -> list[_DriveT]:
+    """Return 1 % of the drives of a study, by chance.
+
+    The order of the drives decides nothing, and most drives that are chosen stay so in a larger study.
+
+    Args:
+        drives: each with a text of its own.
+        of: seed of the chance.
+        least: number of witnesses of a small study; all of its drives if there are fewer.
+    """
+    wanted = min(len(drives), max(least, math.ceil(WITNESS_SHARE * len(drives))))
+    return sorted(drives, key=lambda drive: hashlib.sha256(f"witness of {of}: {drive}".encode()).digest())[:wanted]

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from hal.simulation import Position
 from kurt2rt.core.task_settings import TaskSettings
@@ -21,6 +22,8 @@ class TaughtJob(StudyJob):
     """Robot of one task, one reading of the paper and one seed, taught and examined."""
 
     outcome = TaughtOutcome
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
     reading: Reading
     unseen: tuple[str, ...]
     """Generated worlds of this robot's exams, besides those of the task."""
@@ -50,9 +53,9 @@ class TaughtJob(StudyJob):
 
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
-        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
-        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report)
-        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report)
+        factory, robot, task, seed, loops = self.factory, self.robot, self.task, self.seed, self.loops
+        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report, loop=loops.lesson)
+        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, loop=loops.exams)
         return self._outcome(lesson, exams)
 
     def _outcome(self, lesson: TrainingResult, exams: Iterable[WorldResult]) -> TaughtOutcome:
@@ -78,7 +81,8 @@ class GrowthJob(StudyJob):
     """Robot of one confidence radius, taught in phase 1 only: a curve of Fig. 2."""
 
     outcome = GrowthOutcome
-    keeps_knowledge = False
+    keeps_knowledge: ClassVar[bool] = False
+    gives_lesson: ClassVar[bool] = True
     reading: Reading
 
     @property
@@ -106,7 +110,15 @@ class GrowthJob(StudyJob):
 
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
-        lesson, _ = await run_lesson(self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report)
+        lesson, _ = await run_lesson(
+            self.factory,
+            self.robot,
+            self.task,
+            knowledge,
+            seed=self.seed,
+            report=report,
+            loop=self.loops.lesson,
+        )
         return GrowthOutcome(made_of=self.made_of, seed=self.seed, radius=self.radius, growth=lesson.growth)
 
 

@@ -1,9 +1,10 @@
 """Plan of the paper study: a job for each experiment, reading and seed."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hal.robot_settings import RobotSettings
 from hal.settings import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.phase_settings import PHASES
@@ -14,7 +15,8 @@ from kurt2rt.experiments.paper.jobs import GrowthJob, TaughtJob, with_radius_onl
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
 from kurt2rt.experiments.study.eligibility import ROBOTS
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import StudyError
 
@@ -53,19 +55,31 @@ class PaperPlan:
     experiments: tuple[PaperExperiment, ...]
     growth: tuple[Growth, ...]
     """Empty when its task is not among those to be done."""
+    choice: LoopChoice = NO_CHOICE
+    """Loops of the jobs."""
 
     @property
-    def waves(self) -> tuple[tuple[TaughtJob | GrowthJob, ...], ...]:
-        """All jobs in one wave: no job needs another."""
-        return (tuple(self.jobs),)
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """All jobs and witnesses in one wave: no job needs another."""
+        return ((*self.jobs, *self.choice.witnesses(self.jobs)),)
 
     @property
     def jobs(self) -> list[TaughtJob | GrowthJob]:
-        """All jobs of the study, in the order of the report."""
+        """All jobs of the study, in the order of the report, without witnesses."""
         return [
             *(job for experiment in self.experiments for job in experiment.jobs),
             *(job for growth in self.growth for job in growth.jobs),
         ]
+
+    def driven(self, loops: RequestedLoops, robot: RobotSettings) -> "PaperPlan":
+        """Return the plan with jobs that these loops drive. Raises hal.settings.SettingsError."""
+        choice = choose_loops(self.jobs, loops, robot)
+        return replace(
+            self,
+            experiments=tuple(replace(each, jobs=choice.apply(each.jobs)) for each in self.experiments),
+            growth=tuple(replace(each, jobs=choice.apply(each.jobs)) for each in self.growth),
+            choice=choice,
+        )
 
     def experiments_of(self, reading: Reading) -> tuple[PaperExperiment, ...]:
         """Return the experiments of one reading."""
@@ -81,6 +95,7 @@ def make_plan(
     *,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
     tasks: Sequence[str] = (),
+    loops: RequestedLoops = ALL_ON_BUS,
 ) -> PaperPlan:
     """Check every task and world, and return the jobs.
 
@@ -92,6 +107,7 @@ def make_plan(
         parts: factory, robot and results of the jobs.
         source_of: returns the hash of the program's source.
         tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
+        loops: requested for lessons and exams.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -109,7 +125,7 @@ def make_plan(
     source = source_of(factory)
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
     maker = _JobMaker(paper, tuple(seeds), parts, fingerprints)
-    return PaperPlan(
+    plan = PaperPlan(
         paper,
         extent,
         maker.seeds,
@@ -117,6 +133,7 @@ def make_plan(
         tuple(maker.experiment(*each) for each in taught),
         tuple(maker.growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
     )
+    return plan.driven(loops, robot)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,9 +1,8 @@
 """Exams of one stage, and the critic compared with the judge."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import closing
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from behaviors.judges.judge import Judge
 from hal.robot_settings import RobotSettings
@@ -12,8 +11,10 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 
@@ -48,13 +49,16 @@ class Examiner:
     task: TaskSettings
     seed: int
     report: Report
+    loop: DriveLoop = DriveLoop.BUS
+    """Loop of the exams; a batch leaves robots that are rescued to the CAN bus."""
 
     async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
         """Let the teacher's own policy drive in each world; return the outcomes in order.
 
         Raises SettingsError if task and world do not fit.
         """
-        drives = [await self._drive(world, (), None, None, teacher_policy=True) for world in worlds]
+        setups = [ExamSetup(world, self.seed, teacher_policy=True, stuck_ends=False) for world in worlds]
+        drives = await self._run([BatchExam(each) for each in setups], self.loop)
         return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
 
     async def robots(
@@ -79,12 +83,13 @@ class Examiner:
             UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
         """
         progress = {each.world: each.progress for each in teachers}
-        outcomes = []
-        for world in worlds:
-            drive = await self._drive(world, events, saved, autonomous_values, teacher_policy=False)
-            verdict = drive.verdict(progress[world], self.task.exam.success)
-            outcomes.append(_outcome(drive, succeeded=verdict is ExamVerdict.PASSED))
-        return tuple(outcomes)
+        exams = [self._exam(world, events, saved, autonomous_values) for world in worlds]
+        drives = await self._run(exams, self.loop)
+        verdicts = [each.verdict(progress[each.world], self.task.exam.success) for each in drives]
+        return tuple(
+            _outcome(drive, succeeded=verdict is ExamVerdict.PASSED)
+            for drive, verdict in zip(drives, verdicts, strict=True)
+        )
 
     async def critic(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> tuple[Judgement, ...]:
         """Drive in the world of the training without learning, and return the opinions of critic and judge.
@@ -93,42 +98,25 @@ class Examiner:
         """
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
-        await self._drive(
-            self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.on_tick
-        )
+        exam = self._exam(self.task.teaching.world, events, saved, None)
+        setup = replace(exam.setup, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
+        # A batch has no record of each tick.
+        await self._run([replace(exam, setup=setup)], DriveLoop.BUS)
         return tuple(scoring.judgements)
 
-    async def _drive(
+    def _exam(
         self,
         world: str,
         events: Sequence[TeachingEvent],
         saved: Statistics | None,
         autonomous_values: Statistics | None,
-        *,
-        teacher_policy: bool,
-        on_record: Callable[[TickRecord], None] = lambda _: None,
-    ) -> ExamResult:
-        who = "the teacher's own drive" if teacher_policy else "exam without teacher"
-        setup = ExamSetup(
-            world,
-            self.seed,
-            teacher_policy,
-            saved,
-            autonomous_values,
-            # A robot without knowledge only stands: its exam need not last.
-            stuck_ends=not events and not teacher_policy,
-            appraises=True,
-            on_tick=lambda record, _metric: on_record(record),
-        )
-        with closing(self.factory.open(world, self.seed, "exam")) as simulation:
-            return await examine(
-                simulation,
-                self.robot,
-                self.task,
-                events,
-                setup,
-                lambda done_s: self.report(f"{who}, world {world}", done_s, self.task.exam.duration_s),
-            )
+    ) -> BatchExam:
+        # A robot without knowledge only stands: its exam need not last.
+        setup = ExamSetup(world, self.seed, saved=saved, autonomous_values=autonomous_values, stuck_ends=not events)
+        return BatchExam(setup, events)
+
+    async def _run(self, exams: Sequence[BatchExam], loop: DriveLoop) -> list[ExamResult]:
+        return await run_drives(self.factory, self.robot, self.task, exams, self.report, loop)
 
 
 def _outcome(exam: ExamResult, *, succeeded: bool) -> ExamOutcome:

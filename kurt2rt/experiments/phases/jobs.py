@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile
 from pathlib import Path
+from typing import ClassVar
 
 from behaviors.primitives import primitive_speeds
 from kurt2rt.core.critic.settings import load_critic
@@ -33,6 +34,7 @@ class PhasesJob(StudyJob):
     """Job of one step in one robot's training."""
 
     outcome = JobOutcome
+    gives_exams: ClassVar[bool] = True
 
     @property
     @abstractmethod
@@ -50,12 +52,14 @@ class PhasesJob(StudyJob):
 
     def examiner(self, report: Report) -> Examiner:
         """Return the robot's examiner."""
-        return Examiner(self.factory, self.robot, self.task, self.seed, report)
+        return Examiner(self.factory, self.robot, self.task, self.seed, report, self.loops.exams)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FirstPhasesJob(PhasesJob):
     """Training run of phases 1 and 2, with exams before it, of the knowledge of phase 1, and of all knowledge."""
+
+    gives_lesson: ClassVar[bool] = True
 
     @property
     def step(self) -> str:
@@ -79,7 +83,9 @@ class FirstPhasesJob(PhasesJob):
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
         robot, task, worlds, examiner = self.robot, self.task, self.task.exam.worlds, self.examiner(report)
-        lesson, events = await run_lesson(self.factory, robot, task, knowledge, seed=self.seed, report=report)
+        lesson, events = await run_lesson(
+            self.factory, robot, task, knowledge, seed=self.seed, report=report, loop=self.loops.lesson
+        )
         teachers = await examiner.teachers(worlds)
         answered = list(takewhile(lambda event: event.origin.phase is Phase.SUPERVISED, events))
 

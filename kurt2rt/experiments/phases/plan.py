@@ -10,7 +10,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.phases.jobs import FirstPhasesJob, Job, StepJob
 from kurt2rt.experiments.phases.steps import PHASE_2, PhaseStep, phases_of, steps_of
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
 
 DECIDING = (FirstPhasesJob, StepJob)
@@ -35,13 +36,20 @@ class PhasesPlan:
     """A part only."""
     source: str
     """Hash of the program's source."""
-    waves: tuple[tuple[Job, ...], ...]
+    steps: tuple[tuple[Job, ...], ...]
     """Jobs in waves; the jobs of a wave need only results of earlier waves."""
+    choice: LoopChoice = NO_CHOICE
+    """Loops of the jobs."""
 
     @property
     def jobs(self) -> list[Job]:
-        """Jobs of all waves, in order."""
-        return [job for wave in self.waves for job in wave]
+        """Jobs of all waves, in order, without witnesses."""
+        return [job for wave in self.steps for job in wave]
+
+    @property
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """Jobs and their witnesses in waves."""
+        return tuple((*wave, *self.choice.witnesses(wave)) for wave in self.steps)
 
 
 def make_plan(
@@ -50,6 +58,7 @@ def make_plan(
     parts: JobParts,
     *,
     quick: bool = False,
+    loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> PhasesPlan:
     """Check task and worlds, and return the jobs.
@@ -59,6 +68,7 @@ def make_plan(
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         quick: all steps, each so short that it says nothing but that everything works.
+        loops: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -99,7 +109,8 @@ def make_plan(
                 made_of=made[step.name],
             )
             waves[_depth(step, by_name)].append(job)
-    return PhasesPlan(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
+    choice = choose_loops([job for wave in waves for job in wave], loops, robot)
+    return PhasesPlan(task, tuple(seeds), quick, source, tuple(map(choice.apply, waves)), choice)
 
 
 def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:

@@ -108,7 +108,7 @@ def check_time_s(plan: SearchPlan) -> float:
     """Return the robot time of the whole check, in s."""
     task = plan.space.task(plan.space.shipped)
     sets = plan.search.check.best + 1
-    return sets * sum(job.robot_time_s for job in plan.jobs.check(task, SHIPPED, 0, sets))
+    return sets * sum(job.robot_time_s for job in plan.jobs.check(task, SHIPPED))
 
 
 def run_check(
@@ -131,15 +131,16 @@ def run_check(
     """
     results = plan.jobs.parts["results"]
     sets = {SHIPPED: plan.space.shipped, **{label_of(each): journal.values(each) for each in record.candidates}}
-    jobs = {
-        label: plan.jobs.check(plan.space.task(values), label, place, len(sets))
-        for place, (label, values) in enumerate(sets.items())
-    }
-    wave = JobWave(tuple(job for of_label in jobs.values() for job in of_label))
-    done_s = sum(job.robot_time_s for job in wave.jobs) - missing_time_s(wave, results)
-    run_missing(
-        wave, results, processes, lambda told: on_progress(told._replace(done_s=done_s + told.done_s)), executor
-    )
+    jobs = {label: plan.jobs.check(plan.space.task(values), label) for label, values in sets.items()}
+    checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
+    whole_s = sum(job.robot_time_s for job in checked_jobs)
+    done_s = whole_s - missing_time_s(JobWave(checked_jobs), results)
+    wave = JobWave((*checked_jobs, *plan.jobs.witnesses_of_check(checked_jobs)))
+
+    def update(told: PoolProgress) -> None:
+        on_progress(told._replace(done_s=min(whole_s, done_s + told.done_s)))
+
+    run_missing(wave, results, processes, update, executor)
 
     def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
         return tuple(job.score(results) for job in of_label)

@@ -1,14 +1,14 @@
 """Jobs of a search: one robot of a trial, or of the check."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import ClassVar
 
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.exam_driver import ExamDriver, choose_drivers
-from kurt2rt.experiments.lockstep.lesson_driver import LessonDriver, choose_lesson_drivers
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoops, choose_witnesses
 from kurt2rt.experiments.search.score import RobotScore, robot_score
-from kurt2rt.experiments.search.settings import SEED, Robots, SearchSettings
+from kurt2rt.experiments.search.settings import Robots, SearchSettings
+from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import Results
@@ -58,39 +58,35 @@ class JobMaker:
 
     def trial(self, task: TaskSettings, trial: int) -> tuple[SearchJob, ...]:
         """Return the jobs of a trial, in the order in which its robots are taught."""
-        robots = self.search.search
-        count = robots.seeds.count
-        own = self._drivers(robots, count)
-        if trial:  # 1 % of their drives are on the CAN bus too; of the first trial, which has all robots, three
-            own = self._drivers(robots, self.search.trials * count)[trial * count : (trial + 1) * count] or own
-        return self._jobs("trials", label_of(trial), task, robots, own)
+        return self._jobs("trials", label_of(trial), task, self.search.search)
 
-    def check(self, task: TaskSettings, label: str, place: int, of: int) -> tuple[SearchJob, ...]:
-        """Return the jobs of the check of one set of settings, which is number `place`, from 0, among `of` sets."""
-        robots = self.search.check
-        count = robots.seeds.count
-        drivers = self._drivers(robots, of * count)
-        return self._jobs("check", label, task, robots, drivers[place * count : (place + 1) * count])
+    def check(self, task: TaskSettings, label: str) -> tuple[SearchJob, ...]:
+        """Return the jobs of the check of one set of settings."""
+        return self._jobs("check", label, task, self.search.check)
 
-    def _drivers(self, robots: Robots, count: int) -> list[tuple[LessonDriver, ExamDriver]]:
-        """Return the loops of the lessons and exams of so many robots."""
-        lessons = choose_lesson_drivers(self.search.lessons, count)
-        return list(zip(lessons, choose_drivers(self.search.exams, count, robots.worlds), strict=True))
+    def witnesses_of_trials(self, jobs: Sequence[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        """Return the witnesses of these jobs: of 1 % of all trials, and of three of the first, which has all robots."""
+        seeds, of_trials = self.search.search.seeds.seeds, [label_of(trial) for trial in range(self.search.trials)]
+        chosen = {
+            name
+            for labels in (of_trials[:1], of_trials)
+            for name in choose_witnesses([f"{label}, seed {seed}" for label in labels for seed in seeds], "trials")
+        }
+        return self._witnesses(job for job in jobs if f"{job.label}, seed {job.seed}" in chosen)
 
-    def _jobs(
-        self,
-        part: str,
-        label: str,
-        task: TaskSettings,
-        robots: Robots,
-        drivers: Sequence[tuple[LessonDriver, ExamDriver]],
-    ) -> tuple[SearchJob, ...]:
-        jobs = []
-        for seed, (lesson, driver) in zip(robots.seeds.seeds, drivers, strict=True):
+    def witnesses_of_check(self, jobs: Sequence[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        """Return the witnesses of the check, whose jobs these are."""
+        chosen = choose_witnesses([job.stem for job in jobs], "check")
+        return self._witnesses(job for job in jobs if job.stem in chosen)
+
+    def _witnesses(self, jobs: Iterable[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.loops.in_batch)))
+
+    def _jobs(self, part: str, label: str, task: TaskSettings, robots: Robots) -> tuple[SearchJob, ...]:
+        jobs, loops = [], DriveLoops(self.search.lessons, self.search.exams)
+        for seed in robots.seeds.seeds:
             worlds = robots.worlds_of(seed)
             own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
-            here = ExamDriver(driver.loop, frozenset(each.replace(SEED, str(seed)) for each in driver.witnesses))
             made = self.fingerprints.of(own, (task.teaching.world, *worlds))
-            job = SearchJob(part=part, label=label, task=own, seed=seed, driver=here, made_of=made, **self.parts)
-            jobs.append(replace(job, lesson_driver=lesson))
+            jobs.append(SearchJob(part=part, label=label, task=own, seed=seed, loops=loops, made_of=made, **self.parts))
         return tuple(jobs)

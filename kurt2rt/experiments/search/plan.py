@@ -7,9 +7,8 @@ from pathlib import Path
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
-from kurt2rt.experiments.lockstep.batch_mind import require_known
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.search.jobs import JobMaker, SearchJob
 from kurt2rt.experiments.search.settings import SearchSettings
@@ -67,7 +66,7 @@ def make_plan(
     if search.lessons is DriveLoop.BATCH:
         require_known_lesson(parts["robot"], task)
     if search.exams is DriveLoop.BATCH:
-        require_known(task, [ExamSetup(world, seed) for world, seed in exams])
+        require_known_exams(parts["robot"], task)
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     # More trials, and another number of them checked, leave each trial as it is.
     decides = search.model_dump_json(exclude={"trials": True, "check": {"best"}})

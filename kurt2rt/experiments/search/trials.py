@@ -53,7 +53,8 @@ def run_trials(
         running = [number for number in numbers if journal.trials[number].state is TrialState.RUNNING]
 
         def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
-            run_missing(JobWave(wave), plan.jobs.parts["results"], processes, on_wave, executor)
+            whole = JobWave((*wave, *plan.jobs.witnesses_of_trials(wave)))
+            run_missing(whole, plan.jobs.parts["results"], processes, on_wave, executor)
 
         _run_together(plan, journal, running, to_beat, run, update)
 
@@ -77,11 +78,13 @@ def _run_together(
     for step in range(robots):
         wave = tuple(jobs[number][step] for number in numbers)
 
-        def update(progress: PoolProgress, before_s: float = before_s) -> None:
-            on_progress(PoolProgress(before_s + progress.done_s, progress.running))
+        wave_s = sum(job.robot_time_s for job in wave)
+
+        def update(progress: PoolProgress, before_s: float = before_s, wave_s: float = wave_s) -> None:
+            on_progress(PoolProgress(before_s + min(progress.done_s, wave_s), progress.running))
 
         run(wave, update)
-        before_s += sum(job.robot_time_s for job in wave)
+        before_s += wave_s
         for number in numbers:
             journal.report(number, step, score_of(scores(number, step + 1), plan.search.objective))
         if step < robots - 1:

@@ -1,8 +1,6 @@
 """Executor of jobs on other machines: Dask workers run parcels, and only this machine writes results."""
 
 import logging
-import math
-import random
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -12,13 +10,13 @@ from distributed import CancelledError, Client, Future, LocalCluster, as_complet
 from distributed.scheduler import KilledWorker
 
 from hal.errors import UserError
+from kurt2rt.experiments.lockstep.exam_driver import choose_witnesses
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
 from kurt2rt.experiments.study.results import Results
 
 LOCAL = "local"
-_WITNESS_SHARE = 0.01
 _AHEAD = 2
 """Parcels on their way for each worker, so that none waits for its next one."""
 _TIMEOUT_S = 10.0
@@ -94,7 +92,7 @@ class ClusterExecutor:
             Exception: any error of a job.
         """
         waiting = sorted(jobs, key=lambda job: -job.robot_time_s)
-        witnessed = _witnessed(jobs)
+        witnessed = set(choose_witnesses([job.file for job in jobs], "jobs on two workers", least=1))
         running: dict[Future, StoredJob] = {}
         done_s = 0.0
         finished = as_completed()
@@ -165,13 +163,6 @@ def require_witness(client: Client, future: Future, job: StoredJob, parcel: Parc
             where=job.name,
             do="do it on a third machine, and leave the wrong one out",
         )
-
-
-def _witnessed(jobs: Sequence[StoredJob]) -> set[str]:
-    """Return the results that two workers must agree on: 1 %, at least one."""
-    names = sorted(job.file for job in jobs)
-    count = math.ceil(_WITNESS_SHARE * len(names))
-    return set(random.Random(f"witnesses of {len(names)} jobs").sample(names, count))
 
 
 def _files_of(future: Future, job: StoredJob) -> dict[str, bytes]:

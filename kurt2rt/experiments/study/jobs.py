@@ -12,6 +12,7 @@ from hal.settings import Settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoops
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 from kurt2rt.experiments.study.provenance import Provenance
@@ -33,11 +34,17 @@ class SimulationJob(ABC):
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
     replaces_others: ClassVar[bool] = False
+    gives_lesson: ClassVar[bool] = False
+    """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
+    gives_exams: ClassVar[bool] = False
+    """True if the job examines robots that were taught its task, as a batch can."""
     factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     made_of: Provenance
     results: Results
+    loops: DriveLoops = ON_BUS
+    """Loops that drive, which change no result."""
 
     @property
     @abstractmethod

@@ -112,7 +112,7 @@ def _require_one_study(parts: Sequence[_Part]) -> None:
                 first, whose = known.setdefault(job.file, (job, part.folder))
                 _require_same_make(part.folder, job.file, job.made_of, first.made_of, whose)
             same, whose = commands.setdefault(record.file, (record, part.folder))
-            if same != record:
+            if not same.is_same_study(record):
                 raise StudyError(
                     f"has other jobs than {whose} for the command {record.command}", where=part.folder, do=_MAKE_AGAIN
                 )

@@ -1,5 +1,6 @@
 """Many jobs in parallel processes."""
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -16,6 +17,7 @@ from typing import NamedTuple, Protocol, TypeVar
 from threadpoolctl import threadpool_limits
 
 from hal.errors import ExitCode, UserError
+from kurt2rt.platform.gc_control import freeze_survivors
 
 Progress = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
@@ -93,17 +95,21 @@ def _run_here(
 ) -> list[ResultT]:
     results: dict[int, ResultT] = {}
     before_s = 0.0
-    for place in order:
-        job = jobs[place]
-        on_progress(PoolProgress(before_s, (job.name,)))
+    try:
+        for place in order:
+            job = jobs[place]
+            on_progress(PoolProgress(before_s, (job.name,)))
 
-        def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
-            on_progress(PoolProgress(before_s + done_s, (job.name,)))
+            def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
+                on_progress(PoolProgress(before_s + done_s, (job.name,)))
 
-        with threadpool_limits(limits=1), _named(job):
-            results[place] = job.run(_now_and_then(tell))
-        before_s += job.robot_time_s
-        on_done(place)
+            freeze_survivors()
+            with threadpool_limits(limits=1), _named(job):
+                results[place] = job.run(_now_and_then(tell))
+            before_s += job.robot_time_s
+            on_done(place)
+    finally:
+        gc.unfreeze()
     on_progress(PoolProgress(before_s, ()))
     return [results[place] for place in range(len(jobs))]
 
@@ -176,6 +182,7 @@ def _run_in_worker(
 ) -> ResultT:
     workers[place] = os.getpid()
     # As on the command line: this process shares the machine with its siblings.
+    freeze_survivors()
     with threadpool_limits(limits=1):
         return job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))
 

@@ -8,10 +8,9 @@ from typing import ClassVar
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, ExamDriver, choose_drivers
-from kurt2rt.experiments.lockstep.lesson_driver import LESSON_ON_BUS, LessonDriver, choose_lesson_drivers
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
 from kurt2rt.experiments.study.results import Results
@@ -29,10 +28,8 @@ class CurriculumJob(StudyJob):
     """Training run and exams of one robot."""
 
     outcome = SeedOutcome
-    driver: ExamDriver = ON_BUS
-    """Loop of the exams."""
-    lesson_driver: LessonDriver = LESSON_ON_BUS
-    """Loop of the lesson."""
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
 
     @property
     def robot_time_s(self) -> float:
@@ -42,14 +39,12 @@ class CurriculumJob(StudyJob):
     async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
         """Teach the robot into the file `knowledge`, examine it and return the outcome.
 
-        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
+        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError.
         """
-        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
-        lesson, events = await run_lesson(
-            factory, robot, task, knowledge, seed=seed, report=report, driver=self.lesson_driver
-        )
+        factory, robot, task, seed, loops = self.factory, self.robot, self.task, self.seed, self.loops
+        lesson, events = await run_lesson(factory, robot, task, knowledge, seed=seed, report=report, loop=loops.lesson)
         exams = await run_exams(
-            factory, robot, task, events, task.exam.worlds, seed=seed, report=report, driver=self.driver
+            factory, robot, task, events, task.exam.worlds, seed=seed, report=report, loop=loops.exams
         )
         result = seed_result(CurriculumResult(lesson, exams))
         return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
@@ -98,10 +93,18 @@ class SeedPlan:
     jobs: Mapping[str, tuple[SeedJob, ...]]
     """Jobs of each way of teaching, by its label, in the order of the seeds."""
 
+    choice: LoopChoice
+    """Loops of the jobs."""
+
     @property
-    def waves(self) -> tuple[tuple[SeedJob, ...], ...]:
-        """All jobs in one wave: no job needs another."""
-        return (tuple(job for jobs in self.jobs.values() for job in jobs),)
+    def every_job(self) -> tuple[SeedJob, ...]:
+        """Jobs of all ways of teaching, without witnesses."""
+        return tuple(job for jobs in self.jobs.values() for job in jobs)
+
+    @property
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """All jobs and witnesses in one wave: no job needs another."""
+        return ((*self.every_job, *self.choice.witnesses(self.every_job)),)
 
 
 def make_plan(
@@ -110,8 +113,7 @@ def make_plan(
     parts: JobParts,
     *,
     wire: str,
-    exams: DriveLoop = DriveLoop.BUS,
-    lessons: DriveLoop = DriveLoop.BUS,
+    loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> SeedPlan:
     """Return the jobs.
@@ -121,8 +123,7 @@ def make_plan(
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         wire: name of the simulated wire.
-        exams: loop that drives the exams.
-        lessons: loop that drives the lessons.
+        loops: requested for lessons and exams.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -130,23 +131,18 @@ def make_plan(
     """
     factory = parts["factory"]
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
-    worlds = next(iter(tasks.values())).exam.worlds
-    robots = len(tasks) * len(seeds)
-    drivers = iter(zip(choose_drivers(exams, robots, worlds), choose_lesson_drivers(lessons, robots), strict=True))
     jobs = {}
     for place, (label, task) in enumerate(tasks.items()):
         made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds), wire)
         end = f"-control-{place}" if place else ""
-        jobs[label] = tuple(
-            SeedJob(task=task, seed=seed, label=end, driver=driver, lesson_driver=lesson_driver, made_of=made, **parts)
-            for seed, (driver, lesson_driver) in zip(seeds, drivers, strict=False)
-        )
-    return SeedPlan(jobs)
+        jobs[label] = tuple(SeedJob(task=task, seed=seed, label=end, made_of=made, **parts) for seed in seeds)
+    choice = choose_loops([job for each in jobs.values() for job in each], loops, parts["robot"])
+    return SeedPlan({label: choice.apply(each) for label, each in jobs.items()}, choice)
 
 
 def forget_lost_robots(plan: SeedPlan, results: Results) -> None:
     """Delete each result whose robot has no knowledge file, because its robot is taught again. Raises OSError."""
-    for job in plan.waves[0]:
+    for job in plan.every_job:
         if not job.knowledge.exists():
             (results.folder / job.file).unlink(missing_ok=True)
 

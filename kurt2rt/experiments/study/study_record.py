@@ -1,8 +1,9 @@
 """Record of a study in its folder: the command, and all jobs with their provenance, done or not."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path, PurePosixPath
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import AfterValidator, ValidationError
 
@@ -13,6 +14,8 @@ from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.platform.durable_files import write_durably
 
 _FOLDER = "studies"
+WITNESSES = "witnesses"
+"""Folder, within that of the results, of comparisons of the batch with the CAN bus."""
 
 
 def _stay_within(path: str) -> str:
@@ -35,6 +38,11 @@ class JobRecord(Settings):
     name: str
     seed: int
     made_of: Provenance
+
+    @property
+    def is_witness(self) -> bool:
+        """Return whether it compares the batch with the CAN bus, and a study on the CAN bus alone does without it."""
+        return self.file.startswith(f"results/{WITNESSES}/")
 
 
 class StudyRecord(Settings):
@@ -59,6 +67,16 @@ class StudyRecord(Settings):
         """Versions of Python and of the computing packages, each set once."""
         return list(dict.fromkeys(job.made_of.versions for job in self.jobs))
 
+    def with_witnesses(self, other: Self) -> Self:
+        """Return the record with the witnesses of another record of its command, too."""
+        own = {job.file for job in self.jobs}
+        more = tuple(job for job in other.jobs if job.is_witness and job.file not in own)
+        return self.model_copy(update={"jobs": (*self.jobs, *more)})
+
+    def is_same_study(self, other: Self) -> bool:
+        """Return whether another record has the same jobs, besides witnesses."""
+        return [job for job in self.jobs if not job.is_witness] == [job for job in other.jobs if not job.is_witness]
+
     def missing(self, folder: Path) -> list[JobRecord]:
         """Return the jobs that have no result in a folder."""
         return [job for job in self.jobs if not (folder / job.file).exists()]
@@ -66,6 +84,8 @@ class StudyRecord(Settings):
 
 def record_study(folder: Path, plan: StudyPlan, command: str) -> None:
     """Store the record of the whole plan in a folder of results, in place of an earlier one of its command.
+
+    Witnesses of the earlier one stay, because those on the CAN bus alone are not planned.
 
     `command`: typed words that decide the numbers. Raises OSError.
     """
@@ -78,7 +98,13 @@ def record_study(folder: Path, plan: StudyPlan, command: str) -> None:
 
 
 def write_record(folder: Path, record: StudyRecord) -> None:
-    """Store a record in a folder of results, in place of an earlier one of its command. Raises OSError."""
+    """Store a record in a folder of results, in place of an earlier one of its command, but with its witnesses.
+
+    Raises OSError.
+    """
+    if (folder / record.file).exists():
+        with suppress(StudyError):  # a damaged one has no witnesses
+            record = record.with_witnesses(*_each_record([folder / record.file]))
     write_durably(folder / record.file, record.model_dump_json(indent=1) + "\n")
 
 

@@ -3,13 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import Report, run_exam, run_lesson
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.route.lesson import copy_knowledge
@@ -49,6 +52,7 @@ class Examiner:
     world: str
     seed: int
     report: Report
+    loop: DriveLoop = DriveLoop.BUS
 
     async def drive_policy(self) -> Drive:
         """Return the policy's own drive; it passes if it has no collision, alarm or standstill.
@@ -69,8 +73,9 @@ class Examiner:
         return drive_of(exam, verdict_by(policy, exam, self.task.exam.success))
 
     async def _drive(self, events: Sequence[TeachingEvent], *, teacher_policy: bool) -> ExamResult:
-        setup = ExamSetup(self.world, self.seed, teacher_policy)
-        return await run_exam(self.factory, self.robot, self.task, events, setup, self.report)
+        exam = BatchExam(ExamSetup(self.world, self.seed, teacher_policy), events)
+        (result,) = await run_drives(self.factory, self.robot, self.task, [exam], self.report, self.loop)
+        return result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,6 +83,8 @@ class HomeJob(StudyJob):
     """Lesson at home, and the exam there."""
 
     outcome = HomeOutcome
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
 
     @property
     def name(self) -> str:
@@ -99,8 +106,10 @@ class HomeJob(StudyJob):
 
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
-        lesson, events = await run_lesson(self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report)
-        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
+        lesson, events = await run_lesson(
+            self.factory, self.robot, self.task, knowledge, seed=self.seed, report=report, loop=self.loops.lesson
+        )
+        at_home = _examiner(self, self.task, report)
         policy = await at_home.drive_policy()
         return HomeOutcome(
             made_of=self.made_of,
@@ -122,6 +131,7 @@ class TransferJob(StudyJob):
     """
 
     outcome = TransferOutcome
+    gives_exams: ClassVar[bool] = True
     variant: Variant
     world: str
     """Name of the new world."""
@@ -162,7 +172,7 @@ class TransferJob(StudyJob):
         lesson, events = await run_lesson(
             self.factory, self.robot, task, knowledge, seed=self.seed, report=report, plan=plan
         )
-        there = Examiner(self.factory, self.robot, task, self.world, self.seed, report)
+        there = _examiner(self, task, report)
         policy = await there.drive_policy()
         checkpoints = await self._checkpoints(there, policy, lesson, events, known)
         when_right = next((each.lessons for each in checkpoints if each.drive.passed), checkpoints[-1].lessons)
@@ -209,5 +219,9 @@ class TransferJob(StudyJob):
         before = self.results.read(self.home, HomeOutcome)
         if self.variant.knows_home and len(events) == before.lessons:
             return before.drive
-        at_home = Examiner(self.factory, self.robot, self.task, self.task.teaching.world, self.seed, report)
-        return await at_home.examine(events, before.policy)
+        return await _examiner(self, self.task, report).examine(events, before.policy)
+
+
+def _examiner(job: StudyJob, task: TaskSettings, report: Report) -> Examiner:
+    """Return the examiner of a robot in the world that a task is taught in."""
+    return Examiner(job.factory, job.robot, task, task.teaching.world, job.seed, report, job.loops.exams)

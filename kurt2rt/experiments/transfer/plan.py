@@ -2,14 +2,16 @@
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.transfer.jobs import HomeJob, TransferJob
@@ -43,11 +45,29 @@ class TransferPlan:
     after: tuple[int, ...]
     home_jobs: tuple[HomeJob, ...]
     experiments: tuple[TransferExperiment, ...]
+    choice: LoopChoice = NO_CHOICE
+    """Loops of the jobs."""
 
     @property
-    def waves(self) -> tuple[tuple[HomeJob | TransferJob, ...], ...]:
-        """Jobs in waves; the jobs of a wave need only results of earlier waves."""
-        return self.home_jobs, tuple(job for each in self.experiments for job in each.jobs)
+    def transfer_jobs(self) -> tuple[TransferJob, ...]:
+        """Jobs in the new worlds."""
+        return tuple(job for each in self.experiments for job in each.jobs)
+
+    @property
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """Jobs and their witnesses in waves; the jobs of a wave need only results of earlier waves."""
+        home, there = self.home_jobs, self.transfer_jobs
+        return (*home, *self.choice.witnesses(home)), (*there, *self.choice.witnesses(there))
+
+    def driven(self, loops: RequestedLoops, robot: RobotSettings) -> "TransferPlan":
+        """Return the plan with jobs that these loops drive. Raises hal.settings.SettingsError."""
+        choice = choose_loops((*self.home_jobs, *self.transfer_jobs), loops, robot)
+        return replace(
+            self,
+            home_jobs=choice.apply(self.home_jobs),
+            experiments=tuple(replace(each, jobs=choice.apply(each.jobs)) for each in self.experiments),
+            choice=choice,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +89,7 @@ def make_plan(
     variants: Sequence[Variant],
     parts: JobParts,
     *,
+    loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> TransferPlan:
     """Check task and worlds, and return the jobs.
@@ -79,6 +100,7 @@ def make_plan(
         seeds: one robot each.
         variants: ways of teaching in the new worlds.
         parts: factory, robot and results of the jobs.
+        loops: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -113,7 +135,7 @@ def make_plan(
             **parts,
         )
 
-    return TransferPlan(
+    plan = TransferPlan(
         task,
         tuple(seeds),
         new.after,
@@ -124,6 +146,7 @@ def make_plan(
             for variant in variants
         ),
     )
+    return plan.driven(loops, parts["robot"])
 
 
 @dataclass(frozen=True, slots=True)

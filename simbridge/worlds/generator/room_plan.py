@@ -26,10 +26,16 @@ class RoomPlan:
         """Corners of the outline, counter-clockwise, the first repeated."""
         self.walls: list[WallSettings] = []
         self.tables: list[PolygonObstacleSettings] = []
+        self._floor: shapely.Polygon | None = None
 
     @property
     def floor(self) -> shapely.Polygon:
         """Free area with islands as holes, without chinks behind leaning walls."""
+        if self._floor is None:  # most additions are refused, and each of them looks at it
+            self._floor = self._compute_floor()
+        return self._floor
+
+    def _compute_floor(self) -> shapely.Polygon:
         corners = [*(wall.corners for wall in self.walls), *(table.corners for table in self.tables)]
         shapes = [shapely.Polygon(each) for each in corners]
         pieces = polygons_of(shapely.Polygon(self.corners).difference(shapely.union_all(shapes)))
@@ -50,7 +56,7 @@ class RoomPlan:
             or not is_drivable(outline, FOLLOWING_M)
         ):
             return False
-        self.corners = rounded
+        self.corners, self._floor = rounded, None
         return True
 
     def stand(self, wall: WallSettings) -> bool:
@@ -58,6 +64,7 @@ class RoomPlan:
         if not self._is_free(wall.corners):
             return False
         self.walls.append(wall)
+        self._floor = None
         return True
 
     def lay(self, table: PolygonObstacleSettings) -> bool:
@@ -65,6 +72,7 @@ class RoomPlan:
         if not self._is_free(table.corners):
             return False
         self.tables.append(table)
+        self._floor = None
         return True
 
     def edges(self, least_m: float) -> list[tuple[Point, Point]]:

@@ -1,10 +1,11 @@
 """Ways through a world, drawn by hand."""
 
 import math
+import random
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from behaviors.metrics.task_metric import TaskMetric
+from behaviors.metrics.task_metric import StretchMetric, TaskMetric
 from hal.simulation import Pose
 
 Point = tuple[float, float]
@@ -24,7 +25,7 @@ def arc(centre: Point, radius_m: float, from_deg: float, to_deg: float) -> list[
     """Points of an arc; counter-clockwise when the angle grows."""
     steps = max(2, round(abs(to_deg - from_deg) / 2))
     angles = [math.radians(from_deg + (to_deg - from_deg) * k / steps) for k in range(steps + 1)]
-    return [(centre[0] + radius_m * math.cos(angle), centre[1] + radius_m * math.sin(angle)) for angle in angles]
+    return [_on_circle(centre, radius_m, angle) for angle in angles]
 
 
 def put(course: TaskMetric, at: Point, towards_deg: float) -> None:
@@ -37,3 +38,26 @@ def follow(course: TaskMetric, points: Sequence[Point]) -> None:
         course.update(pose)
         if course.needs_reset:
             return
+
+
+def follow_in_stretches(course: StretchMetric, poses: Sequence[Pose], ticks: int) -> None:
+    """Drive along poses, so many ticks at once."""
+    for begin in range(0, len(poses), ticks):
+        course.update_all(poses[begin : begin + ticks])
+
+
+def noisy_poses(centre: Point, seed: int, ticks: int = 3000) -> list[Pose]:
+    """Poses of a drive that wanders about a point, nearer and farther, to and fro."""
+    chance, poses, angle_rad, away_m, way = random.Random(seed), [], 0.0, 0.6, 1.0
+    for _ in range(ticks):
+        way = -way if chance.random() < 0.003 else way
+        angle_rad += way * chance.uniform(0.0, 0.03)
+        away_m = min(2.0, max(0.3, away_m + chance.gauss(0.0, 0.02)))
+        poses.append(
+            Pose(centre[0] + away_m * math.cos(angle_rad), centre[1] + away_m * math.sin(angle_rad), angle_rad)
+        )
+    return poses
+
+
+def _on_circle(centre: Point, radius_m: float, angle_rad: float) -> Point:
+    return centre[0] + radius_m * math.cos(angle_rad), centre[1] + radius_m * math.sin(angle_rad)

@@ -5,9 +5,11 @@ import pytest
 
 from behaviors.metrics.junctions import QUARTERS, Junctions, JunctionsSettings
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import TaskMetric
+from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetric
+from hal.areas import holds
 from hal.settings import SettingsError
-from tests.behaviors.metrics.paths import Point, follow, put
+from hal.simulation import Pose
+from tests.behaviors.metrics.paths import Point, along, follow, put
 from tests.behaviors.metrics.worlds import course_in
 from tests.experiments.helpers import STAGE
 
@@ -153,6 +155,50 @@ def test_lateral_deviation_counts_in_streets_only() -> None:
     assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
     follow(course, [(2.5, 1.9), (2.5, 2.5)])  # within the junction
     assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
+
+
+def wandering(seed: int) -> list[Pose]:
+    """Return poses of a way through Manhattan that also cuts corners, with all junctions in reach."""
+    chance = random.Random(seed)
+    points = [(chance.uniform(0.1, 6.1), chance.uniform(0.1, 6.1)) for _ in range(12)]
+    return list(along(points, 0.02))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_junctions_in_stretches_have_the_bits_of_single_ticks(seed: int) -> None:
+    poses = wandering(seed)
+    measured = []
+    for ticks in (1, 7, 500):
+        course = in_manhattan(ALL, seed)
+        assert isinstance(course, StretchMetric)
+        course.reset(poses[0])
+        for begin in range(0, len(poses), ticks):
+            course.update_all(poses[begin : begin + ticks])
+        measured.append((course.progress, dict(course.findings), course.behaviour))
+    assert measured[0][1]["junctions"] > 0.0
+    assert measured[1:] == measured[:1] * 2
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_junctions_change_the_behaviour_at_their_borders_only(seed: int) -> None:
+    poses, course = wandering(seed), in_manhattan(ALL, seed)
+    assert isinstance(course, BorderMetric)
+    every, margin_m, areas = course.borders
+    course.reset(poses[0])
+    inside = next((area for area in areas if holds(*poses[0][:2], area, 0.0)), None)
+    changes = 0
+    for tick, pose in enumerate(poses):
+        before, was_inside = (course.behaviour, course.needs_reset), inside
+        course.update(pose)
+        if tick % every == 0:
+            if inside is None:
+                inside = next((area for area in areas if holds(*pose[:2], area, 0.0)), None)
+            elif not holds(*pose[:2], inside, margin_m):
+                inside = None
+        changed = (course.behaviour, course.needs_reset) != before
+        assert not changed or inside is not was_inside
+        changes += changed
+    assert changes > 0
 
 
 def test_street_map_handles_widths_and_missing_blocks() -> None:

@@ -31,15 +31,18 @@ from kurt2rt.channel.protocol.requests import (
     StopRequest,
     WorldRequest,
 )
+from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair, revoke
 from kurt2rt.channel.server.channel import Channel, open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
+from kurt2rt.channel.server.state_builder import StateBuilder
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.tick_record import TickRecord
 from tests.channel.channel_fixture import BOOT, ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
@@ -407,6 +410,33 @@ async def test_everyone_who_looks_gets_it(school: School) -> None:
     for observer in observers:
         assert await observer.ticks() == [5, 10]
         await observer.removed()
+
+
+async def test_a_state_is_made_only_while_a_device_looks(school: School, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[int] = []
+    build = StateBuilder.build
+
+    def noted(builder: StateBuilder, record: TickRecord) -> State:
+        made.append(record.tick)
+        return build(builder, record)
+
+    monkeypatch.setattr(StateBuilder, "build", noted)
+    school.desk.run(ticks=20)
+    assert made == []
+    observer = Observer(school.phone(), look())
+    await turns()
+    first = school.desk.run().tick
+    assert await observer.ticks() == [first]  # in the next tick, not in the next twentieth of a second
+    school.desk.run(ticks=20)
+    assert len(made) == 1 + 4
+    await observer.removed()
+    school.desk.run(ticks=20)
+    assert len(made) == 1 + 4
+    call = asyncio.create_task(school.phone("ben").call(look(observe=None)))
+    await turns()
+    assert not call.done()  # the last state is a fifth of a second old
+    newest = school.desk.run().tick
+    assert decode_state((await call).payload).tick == newest
 
 
 @pytest.mark.parametrize("observe", [None, 1])

@@ -30,7 +30,7 @@ def with_phases(**changed: float) -> TaskSettings:
 
 
 def test_waves_need_only_the_waves_before() -> None:
-    waves = [{job.step for job in wave} for wave in planned().waves]
+    waves = [{job.step for job in wave} for wave in planned().steps]
     assert waves[0] == {PHASE_2}
     place = {step: number for number, wave in enumerate(waves) for step in wave}
     assert place[REWARDS] < place[PHASE_4] < place[CRITIC_ALONE] == place[PHASE_5] < place[LONG_RUN]

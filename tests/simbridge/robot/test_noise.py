@@ -1,5 +1,6 @@
 """Random numbers of the simulation, one by one and many at once."""
 
+import copy
 import random
 
 import pytest
@@ -28,3 +29,15 @@ def test_fractions_between_normals_shift_no_normal() -> None:
         found += noise.normals(3000).tolist() if many else [noise.normal() for _ in range(3000)]
         expected.append(found)
     assert expected[0] == expected[1]
+
+
+def test_copied_stream_goes_on_by_itself() -> None:
+    noise, alone = Noise(1, "slip"), Noise(1, "slip")
+    for each in (noise, alone):
+        each.fraction()
+        each.normals(100)
+        each.normal()
+    twin = copy.deepcopy(noise)
+    expected = [[alone.normal() for _ in range(3000)], [alone.fraction() for _ in range(3000)], alone.drawn]
+    for each in (twin, noise):
+        assert [each.normals(3000).tolist(), [each.fraction() for _ in range(3000)], each.drawn] == expected

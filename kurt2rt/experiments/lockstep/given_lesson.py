@@ -1,23 +1,11 @@
-"""Choice of the loop that drives lessons: the CAN bus, or a batch with witnesses on the CAN bus."""
+"""Lesson that was given: its result, and what it taught."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop, choose_witnesses
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-
-
-@dataclass(frozen=True, slots=True)
-class LessonDriver:
-    """Loop of one lesson."""
-
-    loop: DriveLoop = DriveLoop.BUS
-    is_witnessed: bool = False
-    """Give a lesson of the batch on the CAN bus too; both must be equal."""
-
-
-LESSON_ON_BUS = LessonDriver()
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +14,6 @@ class GivenLesson:
 
     result: TrainingResult
     events: Sequence[TeachingEvent]
-
-
-def choose_lesson_drivers(loop: DriveLoop, lessons: int) -> list[LessonDriver]:
-    """Return the driver of each lesson of a study: 1 % of them, at least three, have a witness."""
-    if loop is DriveLoop.BUS:
-        return [LESSON_ON_BUS] * lessons
-    witnesses = set(choose_witnesses(range(lessons), f"{lessons} lessons"))
-    return [LessonDriver(loop, place in witnesses) for place in range(lessons)]
 
 
 def require_equal_lessons(batch: GivenLesson, bus: GivenLesson) -> None:

@@ -1,0 +1,84 @@
+"""Lessons of a study in a batch."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.batch_refusal import BatchRefusedError
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
+from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.experiments.lockstep import curriculum
+from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
+from kurt2rt.experiments.lockstep.given_lesson import GivenLesson, require_equal_lessons
+from kurt2rt.experiments.lockstep.lesson_plan import plan_of
+from kurt2rt.knowledge.journal.loading import read_knowledge
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+
+TASK = short_task(supervised_s=3.0, corrections_s=1.0, exam_s=1.0)
+
+
+def lesson(file: Path, loop: DriveLoop, task: TaskSettings = TASK) -> GivenLesson:
+    async def run() -> GivenLesson:
+        return GivenLesson(*await run_lesson(STAGE, ROBOT, task, file, seed=1, report=lambda *_: None, loop=loop))
+
+    return anyio.run(run)
+
+
+def test_file_of_a_lesson_in_a_batch_is_that_of_the_bus(tmp_path: Path) -> None:
+    batch, bus = lesson(tmp_path / "batch", DriveLoop.BATCH), lesson(tmp_path / "bus", DriveLoop.BUS)
+    assert batch.events
+    require_equal_lessons(batch, bus)
+    assert read_knowledge(tmp_path / "batch", ROBOT, TASK) == read_knowledge(tmp_path / "bus", ROBOT, TASK)
+
+
+def test_lesson_that_differs_is_named_with_its_parts(tmp_path: Path) -> None:
+    true = lesson(tmp_path / "k", DriveLoop.BATCH)
+    wrong = GivenLesson(replace(true.result, asks=true.result.asks + 1), true.events[:-1])
+    with pytest.raises(BatchDiffersError, match="differ in asks, lessons"):
+        require_equal_lessons(wrong, true)
+
+
+def test_robot_that_leaves_the_batch_is_taught_on_the_bus(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(curriculum, "teach_in_batch", lambda *_given, **_named: None)
+    assert lesson(tmp_path / "k", DriveLoop.BATCH).events == lesson(tmp_path / "bus", DriveLoop.BUS).events
+
+
+def test_batch_refuses_to_go_on_from_knowledge(tmp_path: Path) -> None:
+    lesson(tmp_path / "k", DriveLoop.BATCH)
+    with pytest.raises(BatchRefusedError, match="knowledge to go on from"):
+        lesson(tmp_path / "k", DriveLoop.BATCH)
+
+
+def test_batch_refuses_another_plan(tmp_path: Path) -> None:
+    async def run() -> None:
+        plan = replace(plan_of(TASK), most_presses=3)
+        await run_lesson(
+            STAGE, ROBOT, TASK, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan, loop=DriveLoop.BATCH
+        )
+
+    with pytest.raises(BatchRefusedError, match="a plan of its own"):
+        anyio.run(run)
+
+
+@pytest.mark.parametrize(
+    ("task", "why"),
+    [
+        (load_task("route"), "course route"),
+        (load_task("wall_following", changes={"learning.doubt.asks": "true"}), "asks at a doubt"),
+        (load_task("wall_following", changes={"teaching.teacher.delete_after": "2"}), "deletes RLAs"),
+    ],
+)
+def test_batch_refuses_lessons_that_it_does_not_know(task: TaskSettings, why: str) -> None:
+    with pytest.raises(BatchRefusedError, match=why):
+        require_known_lesson(ROBOT, task)
+
+
+def test_batch_refuses_a_teacher_who_drives_by_hand() -> None:
+    profile = load_teacher("ordinary")
+    shows = profile.model_copy(update={"shows": profile.shows.model_copy(update={"times": 1})})
+    with pytest.raises(BatchRefusedError, match="drives by hand"):
+        require_known_lesson(ROBOT, taught_by(load_task("circle"), shows))

@@ -1,0 +1,84 @@
+"""Witnesses of jobs in the batch."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.lockstep import curriculum
+from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
+from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
+from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError
+from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
+from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.loop_choice import LoopRequest, RequestedLoops
+from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.experiments.study.seeds import SeedPlan, make_plan, read_results
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+
+TASK = short_task(2.5, 1.0, 1.0)
+IN_BATCH = LoopRequest.BATCH
+
+
+def run(folder: Path, asked: LoopRequest = IN_BATCH) -> SeedPlan:
+    results = Results(folder)
+    parts, loops = JobParts(factory=STAGE, robot=ROBOT, results=results), RequestedLoops(asked, asked)
+    plan = make_plan({"": TASK}, [5], parts, wire="none", loops=loops, source_of=lambda _: "tested")
+    with results.held():
+        run_missing(plan, results, 1, lambda _: None)
+    return plan
+
+
+def witness_of(plan: SeedPlan) -> BusWitnessJob:
+    (witness,) = plan.choice.witnesses(plan.every_job)
+    return witness
+
+
+def test_batch_and_bus_come_to_the_same_result(tmp_path: Path) -> None:
+    plan, on_bus = run(tmp_path / "batch"), run(tmp_path / "bus", LoopRequest.BUS)
+    results = Results(tmp_path / "batch")
+    assert read_results(plan, results) == read_results(on_bus, Results(tmp_path / "bus"))
+    assert results.read(witness_of(plan), BusWitnessOutcome).differing == ()
+    assert results.missing(plan.waves[0]) == []
+    require_no_difference(results, ["tested"])
+    assert not list((tmp_path / "bus").rglob("witnesses"))
+
+
+def wrong_exams(*given: object) -> list[ExamResult | None]:
+    results = examine_in_batch(*given)  # type: ignore[arg-type]
+    return [None if each is None else replace(each, progress=each.progress + 1e-12) for each in results]
+
+
+def wrong_lesson(*given: object, **named: object) -> GivenLesson | None:
+    true = teach_in_batch(*given, **named)  # type: ignore[arg-type]
+    return true and replace(true, events=true.events[:-1])
+
+
+@pytest.mark.parametrize(
+    ("name", "wrong", "said"),
+    [
+        ("examine_in_batch", wrong_exams, r"wall_following, seed 5: .* differ in exams\.0\.learned\.progress"),
+        ("teach_in_batch", wrong_lesson, r"wall_following, seed 5: .* lessons or statistics in the knowledge file"),
+    ],
+)
+def test_one_difference_refuses_the_folder_for_good(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, wrong: object, said: str
+) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(curriculum, name, wrong)
+        with pytest.raises(BatchDiffersError, match=said):
+            run(tmp_path)
+    with pytest.raises(BatchDiffersError, match=said):
+        require_no_difference(Results(tmp_path), ["tested"])
+    require_no_difference(Results(tmp_path), ["of another program"])
+
+
+def test_damaged_witness_is_named(tmp_path: Path) -> None:
+    plan = run(tmp_path)
+    path = tmp_path / witness_of(plan).file
+    path.write_text("{}")
+    with pytest.raises(StudyError, match=f"{path.name}: is no witness"):
+        require_no_difference(Results(tmp_path), ["tested"])

@@ -1,0 +1,93 @@
+"""Choice of the loops that drive a study."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
+from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.paper.jobs import GrowthJob
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopRequest, RequestedLoops, choose_loops
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.seeds import make_plan
+from kurt2rt.experiments.study.shard import Shard, shard_of
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.paper.outcomes import MADE_OF
+
+PARTS = JobParts(factory=STAGE, robot=ROBOT, results=Results(Path("never-made")))
+IN_BATCH = RequestedLoops(LoopRequest.BATCH, LoopRequest.BATCH)
+AUTO = RequestedLoops(LoopRequest.AUTO, LoopRequest.AUTO, compiled=True)
+KNOWN, UNKNOWN = short_task(), taught_by_named(load_task("route"), None)
+BOTH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
+
+
+def jobs(robots: int, task: TaskSettings = KNOWN) -> tuple[StudyJob, ...]:
+    plan = make_plan({"": task}, range(robots), PARTS, wire="none", source_of=lambda _: "tested")
+    return plan.every_job
+
+
+def test_known_task_is_driven_in_the_batch_with_three_witnesses() -> None:
+    choice = choose_loops(jobs(20), IN_BATCH, ROBOT)
+    assert {job.loops for job in choice.apply(jobs(20))} == {BOTH}
+    assert len(choice.witnesses(jobs(20))) == len(choice.witnessed) == 3
+    assert choice.refusals == ()
+
+
+def test_witnesses_are_one_percent_of_a_large_study() -> None:
+    task = KNOWN
+    many = [GrowthJob(task=task, reading="shipped", seed=seed, made_of=MADE_OF, **PARTS) for seed in range(450)]
+    choice = choose_loops(many, IN_BATCH, ROBOT)
+    assert {each.exams for each in choice.loops.values()} == {DriveLoop.BUS}  # a curve of growth has no exam
+    assert len(choice.witnessed) == 5
+
+
+def test_unknown_task_goes_to_the_bus_and_is_named() -> None:
+    choice = choose_loops((*jobs(4), *jobs(4, UNKNOWN)), IN_BATCH, ROBOT)
+    assert {job.loops for job in choice.apply(jobs(4, UNKNOWN))} == {ON_BUS}
+    assert {job.loops for job in choice.apply(jobs(4))} == {BOTH}
+    (refusal,) = choice.refusals
+    assert refusal.startswith("route: lessons and exams on the CAN bus, because a batch does not know course route")
+
+
+@pytest.mark.parametrize(
+    ("asked", "expected"),
+    [
+        (ALL_ON_BUS, ON_BUS),
+        (RequestedLoops(LoopRequest.BATCH, LoopRequest.BUS), DriveLoops(DriveLoop.BATCH, DriveLoop.BUS)),
+        (RequestedLoops(LoopRequest.BUS, LoopRequest.BATCH), DriveLoops(DriveLoop.BUS, DriveLoop.BATCH)),
+    ],
+)
+def test_each_kind_of_drive_has_the_loop_that_is_asked(asked: RequestedLoops, expected: DriveLoops) -> None:
+    assert {job.loops for job in choose_loops(jobs(4), asked, ROBOT).apply(jobs(4))} == {expected}
+
+
+@pytest.mark.parametrize(
+    ("exam_s", "robots", "compiled", "loops"),
+    [
+        (300.0, 20, True, BOTH),
+        (300.0, 20, False, ON_BUS),
+        (300.0, 3, True, ON_BUS),  # all have witnesses, so nothing is saved
+        (1.0, 20, True, ON_BUS),
+    ],
+)
+def test_auto_takes_a_compiled_batch_that_saves_time(
+    exam_s: float, robots: int, compiled: bool, loops: DriveLoops
+) -> None:
+    asked = RequestedLoops(LoopRequest.AUTO, LoopRequest.AUTO, compiled)
+    given = jobs(robots, short_task(exam_s=exam_s))
+    assert {job.loops for job in choose_loops(given, asked, ROBOT).apply(given)} == {loops}
+
+
+def test_auto_names_no_task_if_nothing_is_driven_in_the_batch() -> None:
+    choice = choose_loops((*jobs(4), *jobs(4, UNKNOWN)), AUTO, ROBOT)
+    assert choice.loops == {}
+    assert choice.refusals == ()
+
+
+def test_choice_of_a_shard_is_that_of_the_study() -> None:
+    plan = make_plan({"": KNOWN}, range(10), PARTS, wire="none", loops=IN_BATCH, source_of=lambda _: "tested")
+    parts = [shard_of(plan, Shard(number, 3)) for number in (1, 2, 3)]
+    together = [job for part in parts for wave in part.waves for job in wave]
+    assert {job.file for job in together} == {job.file for wave in plan.waves for job in wave}
+    assert len(together) == 10 + 3
