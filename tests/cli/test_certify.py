@@ -68,9 +68,13 @@ def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons:
     assert (gone.read_bytes(), [path.stat().st_mtime_ns for path in others]) == before
 
 
-def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: CommandLine, lessons: Path) -> None:
-    said = kurt2rt("certify", lessons, *SHORT, "--set", "learning.past_weight=0.5")
+def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(
+    kurt2rt: CommandLine, lessons: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kurt2rt.experiments.certify.plan.find_refusal", lambda *_: "the batch does not know it")
+    said = kurt2rt("certify", lessons, *SHORT)
     assert said.exit_code == 0, said.err
+    assert "the batch does not know it: all runs are driven there" in said.err
     assert "All runs were driven on the CAN loop" in said.out
 
 
