@@ -75,6 +75,7 @@ ALONE = ("--set", "learning.doubt.asks=true", "--set", "learning.doubt.alone=tru
 def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: CommandLine, lessons: Path) -> None:
     said = kurt2rt("certify", lessons, *SHORT, *ALONE)
     assert said.exit_code == 0, said.err
+    assert "stands at a doubt without a teacher" in said.err
     assert "All runs were driven on the CAN loop" in said.out
 
 
