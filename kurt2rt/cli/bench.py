@@ -38,7 +38,7 @@ def bench(
     folder: _Folder = Path(),
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following",
 ) -> None:
-    """Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.
+    """Measure what the runtime takes, on this machine, with the simulated robot: 7 minutes.
 
     lateness  how late ticks begin in a minute of driving; with asyncio.sleep
     tick      what each stage of these ticks takes

@@ -37,9 +37,9 @@ def requested_loops(lessons: LoopRequest, exams: LoopRequest, *, wire: str | Non
 
 
 def say_choice(choice: LoopChoice) -> None:
-    """Say on standard error how many robots a batch drives, how many witnesses there are, and what it does not know."""
+    """Say on standard error how many jobs a batch drives, how many have a witness, and what the batch does not know."""
     for refusal in choice.refusals:
         typer.echo(refusal, err=True)
     if choice.loops:
-        robots = f"{len(choice.loops)} job{'' if len(choice.loops) == 1 else 's'}"
-        typer.echo(f"{robots} in the batch, {len(choice.witnessed)} of them on the CAN bus too", err=True)
+        jobs = f"{len(choice.loops)} job{'' if len(choice.loops) == 1 else 's'}"
+        typer.echo(f"the study has {jobs} in the batch, {len(choice.witnessed)} of them on the CAN bus too", err=True)

@@ -5,8 +5,11 @@ from numpy.typing import NDArray
 
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
+
+_LEARNER = DecisionCause.LEARNER
+"""Name for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
 
 
 class DecisionHistory:
@@ -23,6 +26,7 @@ class DecisionHistory:
         self._teachable = [False] * capacity
         self._slow = [False] * capacity
         self._rlas: list[int | None] = [None] * capacity
+        self._by_learner = [False] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
         self._circumstances: list[AppraisalFeatures | None] = [None] * capacity
@@ -66,6 +70,7 @@ class DecisionHistory:
         self._teachable[row] = teachable and has_situation
         self._slow[row] = slow
         rla_id = self._rlas[row] = decision.rla_id
+        self._by_learner[row] = decision.cause is _LEARNER and decision.action is not None
         self._behaviours[row] = behaviour
         self._answering[row] = rla_id if rla_id is not None and decision.answers and not slow else 0
         self._circumstances[row] = circumstances
@@ -85,6 +90,7 @@ class DecisionHistory:
         self._teachable[:] = other._teachable
         self._slow[:] = other._slow
         self._rlas[:] = other._rlas
+        self._by_learner[:] = other._by_learner
         self._behaviours[:] = other._behaviours
         self._circumstances[:] = other._circumstances
         self._opinions[:] = other._opinions
@@ -118,6 +124,10 @@ class DecisionHistory:
     def driving_rla(self, tick: int) -> int | None:
         """Return the id of the RLA that drove in a stored tick; None if none did."""
         return self._rlas[tick % self._capacity]
+
+    def drove(self, tick: int) -> bool:
+        """Return whether an RLA or another learner drove in a stored tick."""
+        return self.driving_rla(tick) is not None or self._by_learner[tick % self._capacity]
 
     def behaviour(self, tick: int) -> str:
         """Return the active taught behaviour of a stored tick."""

@@ -49,17 +49,17 @@ class LatePresses:
         return Outcome(outcome.code, {**outcome.fields, **fields})
 
     def _decision(self, given: int, back_ticks: int) -> int:
-        """Return the first tick from `back_ticks` before `given` on in which an RLA drove.
+        """Return the first tick from `back_ticks` before `given` on in which an RLA or another learner drove.
 
         If none drove in `given`, the robot stood there and the press is about that situation. If the robot asked
         meanwhile and drove on by itself, the press answers that question.
         """
         recent, asked = self._recent, self._delay.last_asked_tick
-        if recent.contains(given) and recent.driving_rla(given) is not None:
+        if recent.contains(given) and recent.drove(given):
             if asked is not None and given - back_ticks <= asked < given and recent.contains(asked):
                 return asked
             for tick in range(max(0, given - back_ticks), given):
-                if recent.contains(tick) and recent.driving_rla(tick) is not None and recent.has_situation(tick):
+                if recent.contains(tick) and recent.drove(tick) and recent.has_situation(tick):
                     return tick
         return given
 

@@ -71,6 +71,8 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "a robot that avoids obstacles that it remembers")
     if doubt is not None and doubt.asks and doubt.alone:
         raise refused(task, "a robot that stands at a doubt without a teacher")
+    if any(setup.learners for setup in setups):
+        raise refused(task, "a learner that is no RLA system")
     if any(setup.broken for setup in setups):
         raise refused(task, "a broken sensor")
 

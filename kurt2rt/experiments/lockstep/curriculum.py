@@ -110,6 +110,34 @@ async def run_lesson(
     return lesson, read_lessons(knowledge, settings, task)
 
 
+async def run_exam(
+    factory: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    setup: ExamSetup,
+    report: Report,
+) -> ExamResult:
+    """Open the setup's world, drive there over the CAN bus without a teacher and return the result.
+
+    `events`: lessons of the robot; the policy's own drive does without them.
+
+    Raises:
+        SettingsError: task and world do not fit.
+        LessonLostError: the robot refused a command.
+    """
+    drive_name = _drive_name(setup)
+    with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
+        return await examine(
+            simulation,
+            settings,
+            task,
+            events,
+            setup,
+            lambda done_s: report(drive_name, done_s, task.exam.duration_s),
+        )
+
+
 async def run_drives(
     factory: SimulationFactory,
     settings: RobotSettings,
@@ -140,7 +168,7 @@ async def run_drives(
     results = []
     for each, in_batch in zip(drives, finished, strict=True):
         if in_batch is None:
-            in_batch = await _run_on_bus(factory, settings, task, each, report)
+            in_batch = await run_exam(factory, settings, task, each.events, each.setup, report)
         else:
             report(_drive_name(each.setup), task.exam.duration_s, task.exam.duration_s)
         results.append(in_batch)
@@ -188,21 +216,6 @@ async def run_exams(
         WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success))
         for learned, teacher in zip(drives[::2], drives[1::2], strict=True)
     )
-
-
-async def _run_on_bus(
-    factory: SimulationFactory, settings: RobotSettings, task: TaskSettings, drive: BatchExam, report: Report
-) -> ExamResult:
-    setup, name = drive.setup, _drive_name(drive.setup)
-    with closing(factory.open(setup.world, setup.seed, "exam")) as simulation:
-        return await examine(
-            simulation,
-            settings,
-            task,
-            drive.events,
-            setup,
-            lambda done_s: report(name, done_s, task.exam.duration_s),
-        )
 
 
 def _run_in_batch(

@@ -12,8 +12,9 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
-from kurt2rt.experiments.lockstep.curriculum import Report, run_exam
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
 from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
@@ -49,12 +50,12 @@ class PolicyJob(StudyJob):
 
     async def measure(self, knowledge: Path, report: Report) -> PolicyOutcome:  # noqa: ARG002 - nothing is taught
         """Let the policy drive, and return the outcome. Raises SettingsError if task and world do not fit."""
-        drives = []
-        for world in self.task.exam.worlds:
-            setup = ExamSetup(world, self.seed, teacher_policy=True)
-            drive = await run_exam(self.factory, self.robot, self.task, (), setup, report)
-            drives.append(drive_of(drive, drive.verdict(drive.progress, self.task.exam.success)))
-        return PolicyOutcome(made_of=self.made_of, seed=self.seed, drives=tuple(drives))
+        exams = [BatchExam(ExamSetup(world, self.seed, teacher_policy=True)) for world in self.task.exam.worlds]
+        drives = tuple(
+            drive_of(each, each.verdict(each.progress, self.task.exam.success))
+            for each in await run_drives(self.factory, self.robot, self.task, exams, report)
+        )
+        return PolicyOutcome(made_of=self.made_of, seed=self.seed, drives=drives)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -162,7 +163,7 @@ class RivalJob(StudyJob):
         drives: list[Drive] = []
         for world, policy in zip(self.task.exam.worlds, policies, strict=True):
             setup = ExamSetup(world, self.seed, learners=team)
-            exam: ExamResult = await run_exam(self.factory, self.robot, self.task, mark.events, setup, report)
+            (exam,) = await run_drives(self.factory, self.robot, self.task, [BatchExam(setup, mark.events)], report)
             drives.append(drive_of(exam, verdict_by(policy, exam, self.task.exam.success)))
             if team is not None:
                 failures.append(team.failure)

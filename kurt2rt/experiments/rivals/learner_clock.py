@@ -1,4 +1,4 @@
-"""Clock of a learner: the time that its lessons and decisions take on this machine."""
+"""Clock of a learner: the processor time of its lessons and decisions, which other work does not lengthen."""
 
 import time
 
@@ -9,7 +9,7 @@ from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting
 
 
 class LearnerClock:
-    """Time of all learners that were made with it."""
+    """Processor time of all learners that were made with it."""
 
     def __init__(self) -> None:
         self.retraining_ns = 0
@@ -41,9 +41,9 @@ class _TimedLearner:
         self._is_taught_since = False
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
-        began_ns = time.perf_counter_ns()
+        began_ns = time.thread_time_ns()
         action = self._learner.decide(situation, taught=taught)
-        took_ns = time.perf_counter_ns() - began_ns
+        took_ns = time.thread_time_ns() - began_ns
         self._clock.longest_ns = max(self._clock.longest_ns, took_ns)
         if self._is_taught_since:
             self._clock.retraining_ns += took_ns
@@ -51,9 +51,9 @@ class _TimedLearner:
         return action
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
-        began_ns = time.perf_counter_ns()
+        began_ns = time.thread_time_ns()
         self._learner.lesson(situation, action, why)
-        self._clock.retraining_ns += time.perf_counter_ns() - began_ns
+        self._clock.retraining_ns += time.thread_time_ns() - began_ns
         self._is_taught_since = True
 
     def snapshot(self) -> bytes:

@@ -60,12 +60,12 @@ class RivalOutcome(Settings):
     """Checkpoints after the numbers of presses of the league, ascending; the last one is at the end of the lesson."""
     knowledge_bytes: int
     retraining_s: float
-    """Time of the machine for all lessons, each with the first decision after it; 0 for RLAs of the robot's level."""
+    """Processor time of all lessons, each with the first decision after it; 0 for RLAs of the robot's level."""
     longest_decision_ms: float
-    """Time of the machine for the longest decision; 0 for RLAs of the robot's level."""
+    """Processor time of the longest decision; 0 for RLAs of the robot's level."""
     tick_p99_us: float
-    """99th percentile of the time of the machine for a tick, in the last minute of the lesson."""
+    """99th percentile of the duration of a tick in the last minute of the lesson, with other work of the machine."""
     undo_s: float
-    """Time of the machine for the undo of the last lesson, with a decision after it."""
+    """Processor time of the undo of the last lesson, with a decision after it."""
     undo_restores: bool
     """True if that undo restores the decisions of before in the situations of all lessons."""

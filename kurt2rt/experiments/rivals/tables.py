@@ -41,7 +41,7 @@ def success_table(league: League) -> Table:
         note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}), judged by "
         "the drive of the teacher's policy from the same start; a world in which the policy does not pass is left out. "
         "With 95 % intervals. A robot that gave cause for fewer presses has all that it was taught. Mean: of the "
-        f"shares in this row. {NOT_TUNED}",
+        f"shares in this row. {NOT_TUNED} All see the situation with the weights of the RLAs.",
     )
 
 
@@ -115,10 +115,11 @@ def machine_table(league: League) -> Table:
             for row in league.rows
         ),
         words=2,
-        note="Medians, on the machine of the run, which may have done other work. The robot's clock stands still while "
-        "a learner is fitted: a decision that takes longer than 20 ms is refused by the guard of a real robot. Undo: "
-        "of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those of a "
-        "robot that never got it.",
+        note="Medians of processor time; a tick's is a duration, which other work of the machine lengthens. "
+        "Retraining: all lessons, each with the decision after it. The robot's clock stands still meanwhile: the guard "
+        "of a real robot would refuse a decision that takes longer than 20 ms, and the robot would stand for a moment. "
+        "Undo: of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those "
+        "of a robot that never got it.",
     )
 
 

@@ -119,6 +119,17 @@ def test_correction_of_a_past_tick_is_about_its_situation(robot: TaughtRobot) ->
     assert np.array_equal(robot.team.labels[-1].situation, past.situation.vector)
 
 
+def test_late_press_is_about_a_decision_of_before(robot: TaughtRobot) -> None:
+    robot.go_on(20)
+    robot.go_on(100, Teach("t-1", "Ann", "spin_left"))
+    pressed = robot.go_on(1, Correct("c-1", "Ann", "spin_right", late=True, seen_tick=robot.records[-1].tick))
+    fields = pressed.results[0].outcome.fields
+    meant = next(each for each in robot.records if each.tick == fields["decision_tick"])
+    assert meant.tick < pressed.tick - 10
+    assert np.array_equal(robot.team.labels[-1].situation, meant.situation.vector)
+    assert robot.team.labels[-1].why is Why.LATE
+
+
 def test_refused_lesson_teaches_nothing(robot: TaughtRobot) -> None:
     robot.go_on(20)
     refused = robot.go_on(1, Teach("t-1", "Ann", "jump"), Correct("c-1", "Ann", "forward", decision_tick=5000))
