@@ -78,7 +78,7 @@ class StretchMetric(TaskMetric, Protocol):
 
 
 @runtime_checkable
-class BorderMetric(TaskMetric, Protocol):
+class BorderMetric(StretchMetric, Protocol):
     """Metric that changes its behaviour, or needs a reset, only in `reset` and where the robot crosses a border."""
 
     @property

@@ -109,8 +109,7 @@ class _Course:
     def follow(self, batch: Batch, robot: int) -> None:
         """Follow the newest stretch of a robot, and guide it."""
         if not batch.reason_to_leave(robot):
-            for pose in batch.stretch(robot).poses:
-                self._metric.update(pose)
+            self._metric.update_all(batch.stretch(robot).poses)
             self.guide.look_after(batch, robot)
 
 
