@@ -68,7 +68,8 @@ def main() -> None:
     part, parts = (int(number) for number in arguments.shard.split("/"))
     if not 1 <= part <= parts:
         parser.error(f"there is no shard {arguments.shard}")
-    chosen = list(whole_lessons(arguments.lessons))[part - 1 :: parts]
+    ends = [arguments.lessons * each // parts for each in (part - 1, part)]
+    chosen = list(whole_lessons(arguments.lessons))[slice(*ends)]
     outcomes: Counter[str] = Counter()
     began_s = time.monotonic()
     with ProcessPoolExecutor(arguments.jobs, get_context("spawn")) as processes:
