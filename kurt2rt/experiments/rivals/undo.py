@@ -56,6 +56,7 @@ def undo_of_rlas(system: RlaSystem, other: RlaSystem, events: Sequence[TeachingE
     ]
     if last is None or not places:
         return Undo(0.0, True)
+    system.radius_share = other.radius_share  # the robot was taught until now, and asked sooner
     other.apply_all(event for event in events if event.origin.command_id != last)
     began_s = time.thread_time()
     system.apply(LessonUndone(last, Origin("undo", "", Phase.CORRECTIONS, 0)))

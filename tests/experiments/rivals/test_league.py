@@ -13,7 +13,10 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.rla_learner import RlaLearner
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.events import ActionWithdrawn, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.lesson import teach
@@ -26,7 +29,7 @@ from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.plan import League, read_league
 from kurt2rt.experiments.rivals.registry import NoLearnerError
 from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED, Rival
-from kurt2rt.experiments.rivals.undo import undo_of_learner
+from kurt2rt.experiments.rivals.undo import undo_of_learner, undo_of_rlas
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.core.learner.helpers import SETTING, Parrot, label
@@ -179,6 +182,20 @@ def test_undo_that_restores_other_decisions_is_seen() -> None:
         team.teach_all(labels)
         assert undo_of_learner(team, other).restores is restores
         assert [each.command_id for each in team.labels] == ["t-1"]
+
+
+def test_undo_of_rlas_is_compared_at_the_whole_radius() -> None:
+    taught, other = RlaSystem(1, 10.0), RlaSystem(1, 10.0)
+    created = [
+        RlaCreated(Rla(number, (place,), "a", None, Origin(f"t-{number}", "Ann", Phase.SUPERVISED, number)))
+        for number, place in enumerate((0.0, 3.0, 100.0), 1)
+    ]
+    withdrawn = ActionWithdrawn(2, "a", Origin("w-1", "Ann", Phase.REINFORCEMENT, 4))
+    events: list[TeachingEvent] = [*created[:2], withdrawn, created[2]]
+    taught.apply_all(events)
+    taught.radius_share = 0.1
+    assert undo_of_rlas(taught, other, events).restores
+    assert [rla.rla_id for rla in taught.rlas] == [1, 2]
 
 
 def test_clock_counts_the_decision_after_a_lesson() -> None:
