@@ -17,7 +17,7 @@ _GRACE_LABELS = 5
 class OnlineTrees(LabelLearner):
     """Learner of labels in a stream; only a restore learns them all from the beginning.
 
-    It asks if no label lies within R, or if the best action has a smaller probability than the gate; 0.4 by default.
+    It asks if no label lies within R, or if the best action has a smaller probability than the gate; 0.2 by default.
     """
 
     def __init__(self, setting: LearnerSetting) -> None:
@@ -48,7 +48,7 @@ class OnlineTrees(LabelLearner):
         if not shares:
             return None
         best = max(sorted(shares), key=shares.__getitem__)
-        return best if shares[best] / sum(shares.values()) >= self.gate(0.4) else None
+        return best if shares[best] / sum(shares.values()) >= self.gate(0.2) else None
 
 
 class HoeffdingTree(OnlineTrees):
