@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.experiments.study.local_executor import open_processes
 from kurt2rt.experiments.study.plan import Executor
 
 OnOption = Annotated[
@@ -21,13 +22,15 @@ OnOption = Annotated[
 
 
 @contextmanager
-def open_executor(address: str | None, jobs: int) -> Iterator[Executor | None]:
-    """Yield the executor of --on; None without it, for processes of this machine.
+def open_executor(address: str | None, jobs: int) -> Iterator[Executor]:
+    """Yield the executor of --on; without it, one with processes of this machine.
 
-    `jobs`: number of workers of `local`. Raises ClusterError if no scheduler answers, or the address is not safe.
+    `jobs`: number of processes, or of workers of `local`. Raises ClusterError if no scheduler answers, or the address
+    is not safe.
     """
     if address is None:
-        yield None
+        with open_processes(jobs) as local:
+            yield local
         return
     # Not at the top: Dask is an extra, and takes a second.
     from kurt2rt.experiments.study.cluster import open_cluster

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from multiprocessing import connection
 from multiprocessing.managers import SyncManager
 from multiprocessing.process import BaseProcess
-from typing import NamedTuple, Protocol, TypeVar
+from typing import NamedTuple, Protocol, Self, TypeVar
 
 from threadpoolctl import threadpool_limits
 
@@ -80,11 +80,8 @@ def run_jobs(
         JobKilledError: a process was killed from outside.
         Exception: any error of a job.
     """
-    # The longest last would leave the other processes idle at the end.
-    order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
-    if processes == 1 or len(jobs) <= 1:
-        return _run_here(jobs, order, on_done, on_progress)
-    return _run_apart(jobs, order, min(processes, len(jobs)), on_done, on_progress)
+    with JobProcesses(min(processes, max(1, len(jobs)))) as pool:
+        return pool.run(jobs, on_done, on_progress)
 
 
 def _run_here(
@@ -114,51 +111,91 @@ def _run_here(
     return [results[place] for place in range(len(jobs))]
 
 
-def _run_apart(
-    jobs: Sequence[Job[ResultT]],
-    order: Sequence[int],
-    processes: int,
-    on_done: Callable[[int], None],
-    on_progress: Callable[[PoolProgress], None],
-) -> list[ResultT]:
-    # Fresh interpreters: a fork would share the parent's threads and buses half-way.
-    context = multiprocessing.get_context("spawn")
-    results: dict[int, ResultT] = {}
-    manager = SyncManager(ctx=context)
-    manager.start(_belong_to_the_parent)
-    with manager:
-        clocks = manager.dict()
-        workers = manager.dict()
-        others = set(multiprocessing.active_children())
-        with ProcessPoolExecutor(processes, mp_context=context, initializer=_belong_to_the_parent) as pool:
-            places: dict[Future[ResultT], int] = {}
-            begun: set[BaseProcess] = set()
-            try:
-                for place in order:
-                    places[pool.submit(_run_in_worker, jobs[place], place, clocks, workers)] = place
-                    begun.update(set(multiprocessing.active_children()) - others)
-                waiting = set(places)
-                while waiting:
-                    done, waiting = wait(waiting, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
-                    for future in done:
-                        with _named(jobs[places[future]]):
-                            results[places[future]] = future.result()
-                        on_done(places[future])
-                    left = [place for place in order if place not in results]
-                    on_progress(_pool_progress(jobs, left, processes, clocks))
-            except BrokenProcessPool as error:
+class JobProcesses:
+    """Processes that run the jobs of several waves; a context that ends them.
+
+    They are started for the first wave of more than one job, and kept: each takes seconds to import what a job needs.
+    """
+
+    def __init__(self, processes: int) -> None:
+        """Run at most `processes` jobs at once; 1: jobs run in this process."""
+        self._processes = processes
+        # Fresh interpreters: a fork would share the parent's threads and buses half-way.
+        self._context = multiprocessing.get_context("spawn")
+        self._manager: SyncManager | None = None
+        self._pool: ProcessPoolExecutor | None = None
+        self._others: set[BaseProcess] = set()
+        self._begun: set[BaseProcess] = set()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._pool is not None:
+            self._pool.shutdown()
+        if self._manager is not None:
+            self._manager.shutdown()
+
+    def run(
+        self,
+        jobs: Sequence[Job[ResultT]],
+        on_done: Callable[[int], None] = lambda _: None,
+        on_progress: Callable[[PoolProgress], None] = lambda _: None,
+    ) -> list[ResultT]:
+        """Run all jobs as `run_jobs` does; after an error no others can be run."""
+        # The longest last would leave the other processes idle at the end.
+        order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
+        if self._processes == 1 or len(jobs) <= 1:
+            return _run_here(jobs, order, on_done, on_progress)
+        return self._run_apart(jobs, order, on_done, on_progress)
+
+    def _started(self) -> tuple[ProcessPoolExecutor, SyncManager]:
+        if self._pool is None or self._manager is None:
+            self._manager = SyncManager(ctx=self._context)
+            self._manager.start(_belong_to_the_parent)
+            self._others = set(multiprocessing.active_children())
+            self._pool = ProcessPoolExecutor(
+                self._processes, mp_context=self._context, initializer=_belong_to_the_parent
+            )
+        return self._pool, self._manager
+
+    def _run_apart(
+        self,
+        jobs: Sequence[Job[ResultT]],
+        order: Sequence[int],
+        on_done: Callable[[int], None],
+        on_progress: Callable[[PoolProgress], None],
+    ) -> list[ResultT]:
+        pool, manager = self._started()
+        results: dict[int, ResultT] = {}
+        clocks, workers = manager.dict(), manager.dict()
+        places: dict[Future[ResultT], int] = {}
+        try:
+            for place in order:
+                places[pool.submit(_run_in_worker, jobs[place], place, clocks, workers)] = place
+                self._begun.update(set(multiprocessing.active_children()) - self._others)
+            waiting = set(places)
+            while waiting:
+                done, waiting = wait(waiting, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
+                for future in done:
+                    with _named(jobs[places[future]]):
+                        results[places[future]] = future.result()
+                    on_done(places[future])
                 left = [place for place in order if place not in results]
-                pool.shutdown()  # how each process ended is known once the pool has waited for all
-                killed = _killed(left, dict(workers), begun) or left[:processes]
-                names = " or ".join(jobs[place].name for place in killed)
-                raise JobKilledError("its process was killed, as happens when memory runs out", where=names) from error
-            except BaseException:
-                # Else what failed would be said when the jobs that run now are through, minutes later.
-                pool.shutdown(wait=False, cancel_futures=True)
-                for process in set(multiprocessing.active_children()) - others:
-                    process.terminate()
-                raise
-    return [results[place] for place in range(len(jobs))]
+                on_progress(_pool_progress(jobs, left, self._processes, clocks))
+        except BrokenProcessPool as error:
+            left = [place for place in order if place not in results]
+            pool.shutdown()  # how each process ended is known once the pool has waited for all
+            killed = _killed(left, dict(workers), self._begun) or left[: self._processes]
+            names = " or ".join(jobs[place].name for place in killed)
+            raise JobKilledError("its process was killed, as happens when memory runs out", where=names) from error
+        except BaseException:
+            # Else what failed would be said when the jobs that run now are through, minutes later.
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in set(multiprocessing.active_children()) - self._others:
+                process.terminate()
+            raise
+        return [results[place] for place in range(len(jobs))]
 
 
 def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable[BaseProcess]) -> list[int]:

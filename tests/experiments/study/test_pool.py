@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress, Progress, run_jobs
+from kurt2rt.experiments.study.pool import JobKilledError, JobProcesses, PoolProgress, Progress, run_jobs
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,32 @@ def test_other_processes_come_to_the_same() -> None:
     assert run_jobs(JOBS, 2, on_done=done.append, on_progress=told.append) == run_jobs(JOBS, 1)
     assert sorted(done) == [0, 1, 2]
     assert told[-1] == (70.0, ())
+
+
+@dataclass(frozen=True)
+class Asked:
+    """Tells the process that it runs in."""
+
+    name: str
+    robot_time_s: float = 1.0
+
+    def run(self, tell: Progress) -> int:
+        del tell
+        return os.getpid()
+
+
+@pytest.mark.deep
+def test_processes_are_kept_from_wave_to_wave() -> None:
+    with JobProcesses(2) as processes:
+        waves = [set(processes.run([Asked(str(number)) for number in range(4)])) for _ in range(3)]
+    used = set.union(*waves)
+    assert os.getpid() not in used
+    assert len(used) <= 2
+
+
+def test_a_single_job_of_a_wave_starts_no_process() -> None:
+    with JobProcesses(2) as processes:
+        assert processes.run([Asked("alone")]) == [os.getpid()]
 
 
 @pytest.mark.deep
