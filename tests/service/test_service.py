@@ -73,7 +73,8 @@ async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
     with rig() as here:
         last = await here.serve(tmp_path / "knowledge", lambda _: None, duration_s=0.3)
     assert here.now.tick >= 30  # beyond, when the last ones were missed
-    assert {record.decision.cause for record in here.records} == {DecisionCause.UNKNOWN}
+    causes = {record.decision.cause for record in here.records}
+    assert causes - {DecisionCause.BLIND} == {DecisionCause.UNKNOWN}  # a loop that hung has old readings
     assert all(record.guard_result.wheel_speeds == STANDSTILL for record in here.records)
     assert len(here.questions) == 1
     assert last is not None
