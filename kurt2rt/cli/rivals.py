@@ -19,6 +19,7 @@ from kurt2rt.cli.options import (
     changes_of,
     parse_seeds,
     results_option,
+    task_option,
     teacher_option,
 )
 from kurt2rt.cli.shards import ShardOption, run_shard
@@ -48,15 +49,7 @@ class _Options:
             show_default=False,
         ),
     ] = None
-    task: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME|PATH",
-            help="Task: a name in config/tasks, or the path of a YAML file; may be given again. "
-            "Default: wall_following.",
-            show_default=False,
-        ),
-    ] = None
+    task: Annotated[list[str] | None, task_option("Repeat for several. Default: wall_following.")] = None
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4100-4119.")] = "4100-4119"
     after: Annotated[

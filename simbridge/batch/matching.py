@@ -163,7 +163,7 @@ def _keep_candidate(robot: Robot, row: int, away: float) -> None:
 def scan_nearest(end: int, guess: int, values: Floats, situation: Floats) -> tuple[int, float]:
     """Return row and distance of the nearest condition among the rows up to `end`; -1 and infinity without rows.
 
-    For conditions that change too often for a table of their neighbours. Else as `nearest`; `values`: (rows, values).
+    For conditions that change too often for a table of neighbours. Else as `nearest_rla`; `values`: (rows, values).
     """
     bound = _SLACK * exact_square(guess, values, situation) if 0 <= guess < end else math.inf
     return _nearest_of_all(0, end, bound, values, situation)

@@ -6,10 +6,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.near_conditions import NearConditions, NearestCondition, bound_of_others
-
-_sum = np.add.reduce
-"""Pairwise sum, in an order that numpy fixes (loops_utils) for all processors."""
+from kurt2rt.core.rla.near_conditions import NearConditions, NearestCondition, bound_of_others, pairwise_sum
 
 _Number = TypeVar("_Number", np.float32, np.float64)
 
@@ -46,7 +43,7 @@ def exact_distances(conditions: NDArray[np.float64], situation: NDArray[np.float
     rows = max(1, _CHUNK // max(1, situation.size))
     for first in range(0, len(conditions), rows):
         difference = conditions[first : first + rows] - situation
-        _sum(np.square(difference, out=difference), axis=1, out=squares[first : first + rows])
+        pairwise_sum(np.square(difference, out=difference), axis=1, out=squares[first : first + rows])
     distances: NDArray[np.float64] = np.sqrt(squares, out=squares)
     return distances
 
@@ -56,7 +53,7 @@ def exact_square(difference: NDArray[np.float64]) -> float:
 
     A dot product is not equal: OpenBLAS adds in another order on each kind of processor.
     """
-    return float(_sum(difference * difference))
+    return float(pairwise_sum(difference * difference))
 
 
 def validated_row(condition: tuple[float, ...] | NDArray[np.float64], dimensions: int) -> NDArray[np.float64]:
@@ -205,7 +202,7 @@ class ConditionIndex:
         np.subtract(self._exact[best], situation, rows[0])
         np.subtract(self._exact[second], situation, rows[1])
         np.multiply(rows, rows, rows)
-        _sum(rows, 1, out=squares)
+        pairwise_sum(rows, 1, out=squares)
         return NearestCondition(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
 
     def _grow(self) -> None:

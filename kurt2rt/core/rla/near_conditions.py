@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-_sum = np.add.reduce
+pairwise_sum = np.add.reduce
 """Pairwise sum, in an order that numpy fixes (loops_utils) for all processors."""
 
 
@@ -60,7 +60,7 @@ class NearConditions:
         differences, distances = self._differences, self._distances
         np.subtract(self._rows, situation, differences)
         np.multiply(differences, differences, differences)
-        _sum(differences, 1, out=distances)
+        pairwise_sum(differences, 1, out=distances)
         *away, moved = np.sqrt(distances, distances).tolist()
         first, second = sorted(away)[:2]
         if not second < self._others_beyond - moved:  # true for NaN as well

@@ -108,7 +108,7 @@ class _KnownTasks:
     def __init__(self, robot: RobotSettings) -> None:
         self._robot = robot
         self._refused: dict[tuple[int, str], str] = {}
-        """What the batch does not know, empty if it knows all, by the id of the task and the kind of drive."""
+        """Reasons for the CAN bus, empty if the batch knows all, by the id of the task and the kind of drive."""
         self._kinds: dict[tuple[str, str], list[str]] = {}
         """Kinds of drives on the CAN bus by the name of the task and what the batch does not know."""
 
