@@ -91,15 +91,14 @@ def search(options: _Options) -> None:
     with open_executor(options.on, options.jobs) as executor, results.held(), one_bar(whole_s) as bar:
         require_no_difference(results, {plan.made_of.source})
         journal = TrialJournal(plan)
-        run_trials(plan, journal, trials, options.jobs, bar.update, executor)
+        run_trials(plan, journal, trials, executor, bar.update)
         record = begin_check(plan, journal, trials)
         check = run_check(
             plan,
             journal,
             record,
-            options.jobs,
-            lambda told: bar.update(told._replace(done_s=trials_s + told.done_s)),
             executor,
+            lambda told: bar.update(told._replace(done_s=trials_s + told.done_s)),
         )
         bar.say("figure and report")
         tables = all_tables(plan, journal, check)

@@ -50,5 +50,5 @@ def study_run(
             say_choice(choice)
         with one_bar(missing_s) as bar:
             record_study(results.folder, plan, command)
-            run_missing(own, results, jobs, bar.update, executor)
+            run_missing(own, results, executor, bar.update)
             yield bar

@@ -115,15 +115,14 @@ def run_check(
     plan: SearchPlan,
     journal: TrialJournal,
     record: CheckRecord,
-    processes: int,
+    executor: Executor,
     on_progress: Callable[[PoolProgress], None],
-    executor: Executor | None = None,
 ) -> CheckResult:
     """Teach and examine all robots of the check that have no result, and compare.
 
     Args:
+        executor: runs the jobs.
         on_progress: gets the robot time of the check.
-        executor: runs the jobs in place of processes of this machine.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -140,7 +139,7 @@ def run_check(
     def update(told: PoolProgress) -> None:
         on_progress(told._replace(done_s=min(whole_s, done_s + told.done_s)))
 
-    run_missing(wave, results, processes, update, executor)
+    run_missing(wave, results, executor, update)
 
     def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
         return tuple(job.score(results) for job in of_label)

@@ -21,17 +21,16 @@ def run_trials(
     plan: SearchPlan,
     journal: TrialJournal,
     trials: int,
-    processes: int,
+    executor: Executor,
     on_progress: Callable[[PoolProgress], None],
-    executor: Executor | None = None,
 ) -> None:
     """Run trials until there are `trials`; go on with those that an earlier run left.
 
     Which values a trial has does not depend on the number of processes.
 
     Args:
+        executor: runs the jobs.
         on_progress: gets the robot time of all trials; a pruned one counts as whole.
-        executor: runs the jobs in place of processes of this machine.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -54,7 +53,7 @@ def run_trials(
 
         def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
             whole = JobWave((*wave, *plan.jobs.witnesses_of_trials(wave)))
-            run_missing(whole, plan.jobs.parts["results"], processes, on_wave, executor)
+            run_missing(whole, plan.jobs.parts["results"], executor, on_wave)
 
         _run_together(plan, journal, running, to_beat, run, update)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from kurt2rt.experiments.study.pool import Job, JobKilledError, PoolProgress, run_jobs
+from kurt2rt.experiments.study.pool import Job, JobKilledError, PoolProgress
 from kurt2rt.experiments.study.results import Results, StoredResult, StudyError
 
 
@@ -24,7 +24,7 @@ class StoredJob(StoredResult, Job[None], Protocol):
 
 
 class Executor(Protocol):
-    """Runner of jobs on other machines; each job leaves its result in the folder of results here."""
+    """Runner of jobs, here or on other machines; each job leaves its result in the folder of results here."""
 
     def run(
         self,
@@ -79,16 +79,14 @@ def missing_time_s(plan: StudyPlan, results: Results) -> float:
 def run_missing(
     plan: StudyPlan,
     results: Results,
-    processes: int,
+    executor: Executor,
     on_progress: Callable[[PoolProgress], None],
-    executor: Executor | None = None,
 ) -> None:
     """Run the jobs without a result, wave by wave; each stores its result as soon as it is done.
 
     Args:
-        processes: of this machine.
+        executor: runs the jobs, here or on other machines.
         on_progress: called with the progress of all waves together.
-        executor: runs the jobs in place of processes of this machine; None: those processes do.
 
     Raises:
         StudyError: a process was killed, or results of other settings are in the folder.
@@ -103,10 +101,7 @@ def run_missing(
             on_progress(PoolProgress(before_s + progress.done_s, progress.running))
 
         try:
-            if executor is None:
-                run_jobs(jobs, processes, on_progress=update)
-            else:
-                executor.run(jobs, earlier, results, update)
+            executor.run(jobs, earlier, results, update)
         except JobKilledError as error:
             raise StudyError(
                 f"{error}", do="run again, it goes on where it was (with fewer --jobs it needs less)"

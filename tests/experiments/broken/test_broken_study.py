@@ -15,6 +15,7 @@ from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.core.test_tick import CorridorRobot
 from tests.experiments.helpers import ROBOT, STAGE, teach
+from tests.experiments.study.here import HERE
 
 NAMES = ROBOT.infrared.names
 PLACE = NAMES.index("s3")
@@ -89,7 +90,7 @@ def study(taught: tuple[Path, TaskSettings], tmp_path_factory: pytest.TempPathFa
     )
     plan = make_plan(task, drives, JobParts(factory=STAGE, robot=ROBOT, results=results))
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
         assert results.missing([*plan.sensor_jobs, *plan.healthy_jobs]) == []
     return read_study(plan, results)
 

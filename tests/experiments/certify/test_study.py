@@ -25,6 +25,7 @@ from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
+from tests.experiments.study.here import HERE
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
@@ -47,7 +48,7 @@ def made(taught: Taught, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path
     folder = tmp_path_factory.mktemp("certify")
     plan, results = plan_in(folder, taught), Results(folder)
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
         assert results.missing([*plan.witnesses, *plan.blocks]) == []
     return folder, read_certificate(plan, results)
 
@@ -157,7 +158,7 @@ def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate],
     plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=DriveLoop.BUS))
     results = Results(folder / "bus")
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     on_bus = read_certificate(plan, results)
     assert on_bus.outcomes == certificate.outcomes[:2]
     assert (on_bus.compared, on_bus.on_bus) == (0, frozenset({20_000, 20_001}))
@@ -168,7 +169,7 @@ def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_p
     extent = EXTENT._replace(runs=3, places=("a",), broken=BrokenShare(1.0, ("s3",)))
     plan, results = plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), Results(tmp_path)
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     certificate = read_certificate(plan, results)
     assert [summary.place for summary in summarise(certificate)] == ["a sensor breaks"]
     assert all(each.broken.startswith("s3=") for each in certificate.outcomes)

@@ -20,6 +20,7 @@ from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.here import HERE
 
 
 def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
@@ -50,7 +51,7 @@ def carried_out(folder: Path, streets_s: float, errands_s: float, exam_s: float)
     results = Results(folder)
     plan = a_programme(results, streets_s, errands_s, exam_s)
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     (outcome,) = read_outcomes(plan, results)
     return Done(results, plan, outcome)
 

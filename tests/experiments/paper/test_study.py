@@ -19,6 +19,7 @@ from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_plan
+from tests.experiments.study.here import HERE
 from tests.experiments.study.page import Page
 
 pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
@@ -49,7 +50,7 @@ def test_interrupted_run_completes_to_equal_bytes(tiny: Tiny, tmp_path: Path) ->
     (tmp_path / first).write_bytes((tiny.results.folder / first).read_bytes())
     stamp_ns = (tmp_path / first).stat().st_mtime_ns
 
-    run_missing(plan, results, 1, lambda _: None)
+    run_missing(plan, results, HERE, lambda _: None)
     assert (tmp_path / first).stat().st_mtime_ns == stamp_ns
     assert (tmp_path / second).read_bytes() == (tiny.results.folder / second).read_bytes()
     assert results.missing(plan.jobs) == []

@@ -14,6 +14,7 @@ from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.here import HERE
 
 EXTENT = Extent(most_teaching_s=4.0, most_exam_s=1.0, most_unseen=1, most_radii=1, most_robots=1, most_growth_s=4.0)
 COMMAND = "kurt2rt paper --seeds 100"
@@ -45,7 +46,7 @@ def do_tiny(folder: Path) -> Tiny:
     results = Results(folder)
     plan = tiny_plan(results, "wall_following", "eight")
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     study = read_study(plan, results)
     pictures = list(draw_figures(study, STAGE, folder))
     report = folder / "report.html"

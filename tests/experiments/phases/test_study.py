@@ -29,6 +29,7 @@ from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.phases.outcomes import ALL
 from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_plan, tiny_task
+from tests.experiments.study.here import HERE
 from tests.experiments.study.page import Page
 
 
@@ -95,7 +96,7 @@ def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) 
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_bytes(path.read_bytes())
     seen: list[PoolProgress] = []
-    run_missing(plan, results, 1, seen.append)
+    run_missing(plan, results, HERE, seen.append)
     titles = {f"{TITLES[step]}, seed 100" for step in (CORRUPTED, LONG_RUN)}
     assert {name for progress in seen for name in progress.running} == titles
     assert seen[-1].done_s == sum(job.robot_time_s for job in plan.jobs if job.file in left_out)

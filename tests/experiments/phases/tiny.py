@@ -13,6 +13,7 @@ from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.here import HERE
 
 COMMAND = "kurt2rt phases --task wall_following --seeds 100"
 
@@ -46,7 +47,7 @@ def do_tiny(folder: Path) -> Tiny:
     results = Results(folder)
     plan = tiny_plan(results)
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     study = read_study(plan, results)
     pictures = list(draw_figures(study, folder))
     report = folder / "report.html"

@@ -35,6 +35,7 @@ from kurt2rt.experiments.study.results import Results
 from tests.core.learner.helpers import SETTING, Parrot, label
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.rivals.outcomes import AFTER, plan_for
+from tests.experiments.study.here import HERE
 
 RIVALS = (Rival("rla-door"), Rival("weighted-vote"), Rival(f"{__name__}:Breaking"))
 
@@ -66,7 +67,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     results = Results(tmp_path_factory.mktemp("league"))
     plan = plan_for(results, (3902,), *RIVALS)
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     return Done(results, read_league(plan, results))
 
 

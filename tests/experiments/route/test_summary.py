@@ -23,6 +23,7 @@ from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.here import HERE
 from tests.experiments.study.page import Page
 
 COMMAND = "kurt2rt lesson route --seeds 1"
@@ -65,7 +66,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     plan = a_programme(results)
     progress: list[PoolProgress] = []
     with results.held():
-        run_missing(plan, results, 1, progress.append)
+        run_missing(plan, results, HERE, progress.append)
     study = read_study(plan, results)
     pictures = list(draw_figures(study, STAGE, results.folder))
     report = results.folder / "report.html"

@@ -13,10 +13,12 @@ from kurt2rt.experiments.search import trials as trials_module
 from kurt2rt.experiments.search.journal import FILE, TrialJournal
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.trials import run_trials
+from kurt2rt.experiments.study.local_executor import open_processes
 from kurt2rt.experiments.study.plan import StudyPlan, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
 from tests.experiments.search.tiny import tiny_plan
+from tests.experiments.study.here import HERE
 
 Trial = tuple[dict[str, Any], TrialState, float | None, dict[int, float]]
 
@@ -33,7 +35,7 @@ def trials_of(journal: TrialJournal) -> list[Trial]:
 
 def run(plan: SearchPlan, trials: int = 3, progress: list[PoolProgress] | None = None) -> list[Trial]:
     with opened(plan) as journal:
-        run_trials(plan, journal, trials, 1, (progress if progress is not None else []).append)
+        run_trials(plan, journal, trials, HERE, (progress if progress is not None else []).append)
         return trials_of(journal)
 
 
@@ -93,8 +95,8 @@ def test_finished_search_is_left_alone(whole: list[Trial], copied: SearchPlan) -
 @pytest.mark.deep
 def test_search_in_two_processes_has_the_same_trials(whole: list[Trial], tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
-    with opened(plan) as journal:
-        run_trials(plan, journal, 3, 2, lambda _: None)
+    with opened(plan) as journal, open_processes(2) as executor:
+        run_trials(plan, journal, 3, executor, lambda _: None)
         assert trials_of(journal) == whole
 
 
@@ -162,7 +164,7 @@ def test_trial_that_cannot_beat_the_median_is_pruned(tmp_path: Path, monkeypatch
     plan = tiny_plan(tmp_path)
     monkeypatch.setattr(TrialJournal, "median_score", lambda _self, first: 2.0 if first else -1.0)
     with opened(plan) as journal:
-        run_trials(plan, journal, 3, 1, lambda _: None)
+        run_trials(plan, journal, 3, HERE, lambda _: None)
         assert [each.state for each in journal.trials] == [TrialState.COMPLETE] * 2 + [TrialState.PRUNED]
         assert list(journal.trials[2].intermediate_values) == [0]
     assert len(list((plan.folder / "results/trials/0002").iterdir())) == 1

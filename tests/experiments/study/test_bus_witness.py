@@ -18,6 +18,7 @@ from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.seeds import SeedPlan, make_plan, read_results
 from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.study.here import HERE
 
 TASK = short_task(2.5, 1.0, 1.0)
 IN_BATCH = LoopRequest.BATCH
@@ -28,7 +29,7 @@ def run(folder: Path, asked: LoopRequest = IN_BATCH) -> SeedPlan:
     parts, loops = JobParts(factory=STAGE, robot=ROBOT, results=results), RequestedLoops(asked, asked)
     plan = make_plan({"": TASK}, [5], parts, wire="none", loops=loops, source_of=lambda _: "tested")
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     return plan
 
 

@@ -14,6 +14,7 @@ from kurt2rt.experiments.study.pool import PoolProgress, Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.paper.outcomes import MADE_OF, robot
+from tests.experiments.study.here import HERE
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +81,7 @@ def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
     plans = [plan_in(tmp_path / name, given) for name in ("here", "there")]
     here, there = Results(tmp_path / "here"), Results(tmp_path / "there")
     with here.held(), there.held():
-        run_missing(plans[0], here, 1, lambda _: None)
+        run_missing(plans[0], here, HERE, lambda _: None)
         done: list[Job] = []
         for wave in plans[1].waves:
             for job in wave:
@@ -125,10 +126,10 @@ def test_executor_gets_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Pat
     plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
     executor = _InTurn()
     with results.held():
-        run_missing(plan, results, 1, lambda _: None, executor)
+        run_missing(plan, results, executor, lambda _: None)
         assert executor.earlier == [{}, {3: ["first, seed 3"], 5: ["first, seed 5"]}]
         (tmp_path / "there" / plan.waves[1][1].file).unlink()
-        run_missing(plan, results, 1, lambda _: None, executor)
+        run_missing(plan, results, executor, lambda _: None)
     assert results.missing(plan.waves[1]) == []
 
 

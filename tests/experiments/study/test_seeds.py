@@ -5,6 +5,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.local_executor import open_processes
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.results import Results
@@ -22,8 +23,8 @@ def plan_in(folder: Path, *seeds: int, wire: str = "none") -> SeedPlan:
 
 def taught(folder: Path, *seeds: int, processes: int = 1) -> SeedPlan:
     plan, results = plan_in(folder, *seeds), Results(folder)
-    with results.held():
-        run_missing(plan, results, processes, lambda _: None)
+    with results.held(), open_processes(processes) as executor:
+        run_missing(plan, results, executor, lambda _: None)
     return plan
 
 

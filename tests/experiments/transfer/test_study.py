@@ -21,6 +21,7 @@ from kurt2rt.experiments.transfer.tables import all_tables
 from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON, taught_on_by
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.study.here import HERE
 from tests.experiments.transfer.outcomes import AFTER, plan_for
 
 
@@ -43,7 +44,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     results = Results(tmp_path_factory.mktemp("transfer"))
     plan = plan_for(results, (1,), (TAUGHT_ON, *CONTROLS))
     with results.held():
-        run_missing(plan, results, 1, lambda _: None)
+        run_missing(plan, results, HERE, lambda _: None)
     return Done(results, plan, read_study(plan, results))
 
 
