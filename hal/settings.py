@@ -223,7 +223,8 @@ def _json_in(path: Path) -> str:
 def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
     """Read `path`, change what `changes` says, and check it against `schema`.
 
-    `changes`: values in YAML by key, with dots between the levels (`learning.radius`), as --set on a command line says.
+    `changes`: values in YAML by key, with dots between the levels (`learning.radius`, `learning.weights.0.weight`), as
+    --set on a command line says.
     Raises SettingsError with one line that names file, key and what is allowed.
     """
     told = _json_in(path)
@@ -266,13 +267,32 @@ def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
 
 
 def _change(content: Any, key: str, value: Any, path: Path) -> None:
-    """Set the value of a key; create missing levels, which the schema refuses if they are unknown."""
+    """Set the value of a key; create missing levels, which the schema refuses if they are unknown.
+
+    A level of a list is a position from 0, which has to be there.
+    """
     *levels, last = key.split(".")
-    for level in levels:
-        content = content.setdefault(level, {}) if isinstance(content, dict) else None
-    if not isinstance(content, dict):
-        raise SettingsError(f"{key}: no such key", where=path, do=f"nothing stands within {'.'.join(levels)}")
-    content[last] = value
+    for depth, level in enumerate(levels):
+        if isinstance(content, dict):
+            content = content.setdefault(level, {})
+        else:
+            content = content[_position(content, level, key, levels[:depth], path)]
+    if isinstance(content, dict):
+        content[last] = value
+    else:
+        content[_position(content, last, key, levels, path)] = value
+
+
+def _position(content: Any, level: str, key: str, above: list[str], path: Path) -> int:
+    """Return the position in a list that a level of a key names. Raises SettingsError."""
+    if not isinstance(content, list) or not content:
+        raise SettingsError(f"{key}: no such key", where=path, do=f"nothing stands within {'.'.join(above)}")
+    if not level.isdecimal() or int(level) >= len(content):
+        where = ".".join(above)
+        raise SettingsError(
+            f"{key}: no such key", where=path, do=f"{where} is a list; name a position of 0 to {len(content) - 1}"
+        )
+    return int(level)
 
 
 def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:

@@ -433,6 +433,11 @@ def test_misspelt_kind_is_refused_though_another_fails_to_import(
         find_kind("some_policies", "brokn", PolicySettings)  # type: ignore[type-abstract]
 
 
+def test_set_key_leads_to_a_place_of_a_list() -> None:
+    task = load_task("fleeing", changes={"learning.weights.2.weight": "0.04"})
+    assert [group.weight for group in task.learning.weights] == [2.0, 0.0, 0.04]
+
+
 def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
     task = load_task("streets", changes={"learning.radius": "300", "exam.worlds": "[streets-3]"})
     assert task.learning.radius == 300.0
@@ -454,7 +459,7 @@ def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
         ("learning.radius", "-1", r"learning\.radius: .*-1\)"),
         ("names.first", "x", "names: .*: name"),
         ("name.first", "x", r"name\.first: .*name"),
-        ("exam.worlds.0", "a", r"exam\.worlds\.0: .*exam\.worlds"),
+        ("exam.worlds.1", "a", r"exam\.worlds\.1: .*exam\.worlds is a list"),
         ("learning.radius", "[", r"learning\.radius: .*'\['.*--set.*YAML"),
     ],
 )

@@ -57,11 +57,13 @@ def errors() -> Iterator[tuple[str, str]]:
         for label, content in _FILES.items():
             path.write_text(content, encoding="utf-8")
             yield label, _error(path)
-        path.write_text("name: a", encoding="utf-8")
+        path.write_text("name: a\nactions: [{kind: turn, angle_deg: 1}]", encoding="utf-8")
         for label, changes in {
             "set, unknown key": {"names": "x"},
             "set, nothing within": {"name.first": "x"},
             "set, wrong value": {"count": "near"},
+            "set, beyond the list": {"actions.1.angle_deg": "2"},
+            "set, no position": {"actions.first.angle_deg": "2"},
         }.items():
             yield label, _error(path, changes)
         path.write_bytes(bytes(1_000_001))
