@@ -44,7 +44,7 @@ class CheckedSettings:
     passed: RateDifference
     """Difference of the share of exams passed; positive is better."""
     effort: RateDifference
-    """Difference of presses or RLAs of a robot; negative is better."""
+    """Difference of a robot's effort (`effort`); negative is better."""
 
     @property
     def is_better(self) -> bool:

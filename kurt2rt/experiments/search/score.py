@@ -1,4 +1,4 @@
-"""Score of settings: exams passed first, then few presses or RLAs."""
+"""Score of settings: exams passed first, then few presses, collisions in lessons, or RLAs."""
 
 from collections.abc import Sequence
 from statistics import fmean
@@ -6,6 +6,12 @@ from typing import NamedTuple
 
 from kurt2rt.experiments.lockstep.seed_result import SeedResult
 from kurt2rt.experiments.search.settings import Objective
+
+PRESSES_OF_A_COLLISION = 10
+"""Presses that a collision in a lesson counts as: it may hurt someone, and a press takes a second.
+
+With presses alone a search found settings of fleeing that ask 40 times less, and touch something 8 times as often.
+"""
 
 
 class RobotScore(NamedTuple):
@@ -15,6 +21,8 @@ class RobotScore(NamedTuple):
     exams: int
     """All exams, also those without a verdict: a search must not win by exams that are not judged."""
     presses: int
+    collisions: int
+    """Collisions while it was taught."""
     rlas: int
 
     @property
@@ -26,12 +34,19 @@ class RobotScore(NamedTuple):
 def robot_score(result: SeedResult) -> RobotScore:
     """Return the score of one robot's lesson and exams."""
     passed = sum(exam.succeeded for exam in result.exams)
-    return RobotScore(passed, len(result.exams), result.lesson.presses, result.lesson.rlas)
+    lesson = result.lesson
+    return RobotScore(passed, len(result.exams), lesson.presses, lesson.collisions, lesson.rlas)
 
 
 def effort(robot: RobotScore, objective: Objective) -> int:
-    """Return the number that is to be small: presses or RLAs."""
-    return robot.presses if objective == "passed_then_presses" else robot.rlas
+    """Return the number that is to be small: presses, presses and collisions, or RLAs."""
+    match objective:
+        case "passed_then_presses":
+            return robot.presses
+        case "passed_then_presses_and_collisions":
+            return robot.presses + PRESSES_OF_A_COLLISION * robot.collisions
+        case "passed_then_rlas":
+            return robot.rlas
 
 
 def score_of(robots: Sequence[RobotScore], objective: Objective) -> float:

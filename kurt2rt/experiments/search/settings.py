@@ -11,7 +11,7 @@ from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 
 SEED = "SEED"
 """Part of a world's name that stands for the robot's seed."""
-Objective = Literal["passed_then_presses", "passed_then_rlas"]
+Objective = Literal["passed_then_presses", "passed_then_presses_and_collisions", "passed_then_rlas"]
 Count = Annotated[int, Field(ge=1, le=10_000)]
 
 
@@ -84,7 +84,7 @@ class SearchSettings(Settings):
     lessons: DriveLoop = DriveLoop.BATCH
     exams: DriveLoop = DriveLoop.BATCH
     objective: Objective = "passed_then_presses"
-    """First the share of exams passed; among equal shares, fewer presses or RLAs are better."""
+    """First the share of exams passed; among equal shares, less effort is better (`score.effort`)."""
     trials: Count
     at_once: Annotated[int, Field(ge=1, le=64)] = 4
     """Number of trials that are chosen together, on what the trials before them showed."""

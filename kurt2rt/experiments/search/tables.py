@@ -1,20 +1,24 @@
 """Tables of a search: the best trials, and the check."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from statistics import fmean
 
 from kurt2rt.experiments.search.check import CheckResult, best_trials
 from kurt2rt.experiments.search.jobs import SHIPPED, label_of
 from kurt2rt.experiments.search.journal import TrialJournal, finished
 from kurt2rt.experiments.search.plan import SearchPlan
-from kurt2rt.experiments.search.score import RobotScore, effort
+from kurt2rt.experiments.search.score import PRESSES_OF_A_COLLISION, RobotScore, effort
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.study.intervals import RateDifference
 from kurt2rt.experiments.study.table import Table
 
 _SHOWN = 5
-_EFFORT = {"passed_then_presses": "presses", "passed_then_rlas": "RLAs"}
+_EFFORT: Mapping[Objective, str] = {
+    "passed_then_presses": "presses",
+    "passed_then_presses_and_collisions": f"presses and {PRESSES_OF_A_COLLISION} times collisions",
+    "passed_then_rlas": "RLAs",
+}
 
 
 def all_tables(plan: SearchPlan, journal: TrialJournal, check: CheckResult) -> list[Table]:

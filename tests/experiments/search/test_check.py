@@ -35,7 +35,7 @@ def trial(number: int, score: float | None, r: float = 2.0) -> FrozenTrial:
 
 
 def robots(*passed: int, presses: int = 10) -> tuple[RobotScore, ...]:
-    return tuple(RobotScore(each, 4, presses, 50) for each in passed)
+    return tuple(RobotScore(each, 4, presses, 0, 50) for each in passed)
 
 
 def compared(*passed: int, presses: int = 10, comparisons: int = 1, shipped: tuple[int, ...]) -> CheckedSettings:

@@ -18,7 +18,7 @@ RECORD = CheckRecord(trials=9, candidates=(7,), date="2026-11-27T04:00:00+00:00"
 
 def written(folder: Path, passed: RateDifference) -> dict[str, object]:
     """Write what a check with this difference found; return the content of the file."""
-    robots = (RobotScore(4, 4, 9, 50), RobotScore(3, 4, 11, 60))
+    robots = (RobotScore(4, 4, 9, 0, 50), RobotScore(3, 4, 11, 0, 60))
     checked = CheckedSettings("0007", VALUES, robots, passed, RateDifference(-2.0, -3.0, -1.0))
     check = CheckResult(RECORD, robots, (checked,), "passed_then_presses")
     write_found(tiny_plan(folder), check, "kurt2rt search tiny", folder / "found.yaml")

@@ -12,24 +12,28 @@ from tests.examples import examples
 from tests.experiments.results import exam_result, robot_of_seed, world_result
 
 PRESSES: Objective = "passed_then_presses"
+COLLISIONS: Objective = "passed_then_presses_and_collisions"
 RLAS: Objective = "passed_then_rlas"
 
 
-def robot(passed: int, presses: int = 10, exams: int = 3, rlas: int = 50) -> RobotScore:
-    return RobotScore(passed, exams, presses, rlas)
+def robot(passed: int, presses: int = 10, exams: int = 3, rlas: int = 50, collisions: int = 0) -> RobotScore:
+    return RobotScore(passed, exams, presses, collisions, rlas)
 
 
 def test_exam_without_a_verdict_counts_as_not_passed() -> None:
     result = robot_of_seed(3, 80, exam_result("a"), exam_result("b", collisions=1), exam_result("c"))
     unjudged = world_result(exam_result("c"), teachers_laps=0.0)
     result = SeedResult(lesson=result.lesson, exams=(*result.exams[:2], replace(unjudged)))
-    assert robot_score(result) == RobotScore(passed=1, exams=3, presses=result.lesson.presses, rlas=80)
+    assert robot_score(result) == RobotScore(1, 3, result.lesson.presses, result.lesson.collisions, rlas=80)
     assert robot_score(result).passed_share == 1 / 3
 
 
 def test_score_prefers_exams_then_little_effort() -> None:
     assert score_of([robot(2, 0), robot(3, 0)], PRESSES) < score_of([robot(3, 500), robot(3, 500)], PRESSES)
     assert score_of([robot(3, 9)], PRESSES) > score_of([robot(3, 10)], PRESSES)
+    bumps = robot(3, 9, collisions=1)
+    assert score_of([bumps], PRESSES) > score_of([robot(3, 10)], PRESSES)
+    assert score_of([bumps], COLLISIONS) < score_of([robot(3, 18)], COLLISIONS)
     assert score_of([robot(3, 9, rlas=60)], RLAS) < score_of([robot(3, 99, rlas=50)], RLAS)
 
 
