@@ -29,7 +29,8 @@ from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.learner.conformance import broken_promises
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
-from kurt2rt.experiments.rivals.rival import PRESSES_LEAGUE, Rival
+from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
+from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.platform.text_table import print_whole
 
 _AFTER = (10, 20, 40)
@@ -40,6 +41,9 @@ _SEED_OF_THE_CHECK = 1
 class _Options:
     """Options of `kurt2rt rivals`."""
 
+    league: Annotated[LeagueName, typer.Option(help="League whose rivals take part where no --learner is given.")] = (
+        LeagueName.PRESSES
+    )
     learner: Annotated[
         list[str] | None,
         typer.Option(
@@ -99,7 +103,7 @@ def rivals(options: _Options) -> None:
     robot = load_robot(options.robot_settings)
     names = dict.fromkeys(options.task or ("wall_following",))
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
-    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or PRESSES_LEAGUE)]
+    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or ROWS[options.league])]
     if options.check:
         _check(chosen, tasks[0], options)
         return

@@ -27,8 +27,6 @@ _TITLES = {
     "hoeffding": "Hoeffding tree, vote gate",
     "arf": "adaptive random forest, vote gate",
 }
-PRESSES_LEAGUE = tuple(name for name in _TITLES if name != "rla-door")
-"""Rivals of `kurt2rt rivals` without --learner."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,31 @@
+"""Leagues of `kurt2rt rivals`: names of their rivals, by what a teacher gives."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED
+
+
+class LeagueName(StrEnum):
+    """League, by what its rivals get from a teacher."""
+
+    PRESSES = "presses"
+    """One label for each answer and each correction."""
+
+
+ROWS: Mapping[LeagueName, tuple[str, ...]] = {
+    LeagueName.PRESSES: (
+        SHIPPED,
+        PLAIN,
+        "1-nn",
+        "k-nn",
+        "weighted-vote",
+        "gp",
+        "svm",
+        "tree",
+        "forest",
+        "hoeffding",
+        "arf",
+    ),
+}
+"""Names of the rivals of each league, in the order of the tables."""
