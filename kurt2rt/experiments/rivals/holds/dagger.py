@@ -4,14 +4,15 @@ from kurt2rt.experiments.rivals.holds.cloning import Cloning
 from kurt2rt.teacher.scripted.teacher_in_charge import Charge
 
 DECAY = 0.7
-"""p of beta_i = p^i; Ross et al. recommend this form. 0.7 was the value of the comparison that is planned."""
+"""p of beta_i = p^i, a form that Ross et al. name; 0.7 is tuned for none of these tasks."""
 
 
 class Dagger(Cloning):
-    """DAgger (Ross, Gordon and Bagnell, AISTATS 2011, algorithm 3.1).
+    """DAgger (Ross, Gordon and Bagnell, AISTATS 2011, arXiv 1011.0686, algorithm 3.1).
 
-    In iteration i, from 0, each action is the teacher's with the probability beta_i = 0.7^i, otherwise the learner's.
-    Each situation gets the teacher's label, and each fit is to all labels so far.
+    pi_i = beta_i pi* + (1 - beta_i) pi^_i: in iteration i, from 0, each action is the teacher's with the probability
+    beta_i = 0.7^i, otherwise the learner's. Each situation gets the teacher's label, and each fit is to all labels so
+    far.
     """
 
     charge = Charge.NAMES

@@ -16,10 +16,10 @@ _STEP = 1e-3
 
 
 class Eil(HoldLearner):
-    """Expert Intervention Learning (Spencer et al., RSS 2020, section IV).
+    """Expert Intervention Learning (Spencer et al., RSS 2020).
 
     Costs Q(s, a): at most B where the robot drove and its teacher let it, at least B for what was overruled (hinge
-    losses of equations 5 and 6), and lowest for the teacher's action while it drives (the explicit loss, here the log
+    losses [Q - B]+ and [B - Q]+), and lowest for the teacher's action while it drives (the explicit loss, here the log
     loss of -Q). It does the action of the lowest cost.
     """
 

@@ -11,7 +11,7 @@ _DISCREPANCY = 0.5
 
 
 class EnsembleDagger(Ensemble):
-    """EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer, IROS 2019, algorithm 2).
+    """EnsembleDAgger (Menda, Driggs-Campbell and Kochenderfer, IROS 2019, arXiv 1807.08364).
 
     The novice drives if its doubt and its discrepancy from the expert are both small. The discrepancy is known only
     while the teacher names an action, so the doubt alone decides when it asks, and both decide when it goes on.

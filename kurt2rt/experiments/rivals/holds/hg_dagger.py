@@ -12,9 +12,9 @@ _LAST_SHARE = 0.25
 
 
 class HgDagger(Ensemble):
-    """HG-DAgger (Kelly et al., ICRA 2019): labels of the interventions are aggregated; a doubt is learned besides.
+    """HG-DAgger (Kelly et al., ICRA 2019, arXiv 1810.02890): labels of the interventions are aggregated.
 
-    Doubt and threshold are a measure of risk for later drives (section III-C), and decide nothing in the lesson.
+    Doubt and threshold are learned besides, as a measure of risk for later drives. They decide nothing in the lesson.
     """
 
     charge = Charge.BY_TEACHER
@@ -29,11 +29,11 @@ class HgDagger(Ensemble):
             self._doubts.append(self.doubt(self.point(situation)))
 
     def doubt(self, point: Points) -> float:
-        """Return the norm of the covariance's diagonal at a point (d,), dimensionless (equation 5)."""
+        """Return the norm of the covariance's diagonal at a point (d,), dimensionless."""
         return float(np.linalg.norm(self.variances(point)))
 
     @property
     def doubt_threshold(self) -> float:
-        """Mean doubt at the begin of the last quarter of all interventions, dimensionless (equation 6)."""
+        """Mean doubt at the begin of the last quarter of all interventions, dimensionless."""
         doubts = self._doubts
         return float(np.mean(doubts[-max(1, round(_LAST_SHARE * len(doubts))) :]))

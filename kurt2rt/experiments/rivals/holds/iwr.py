@@ -11,7 +11,7 @@ from kurt2rt.teacher.scripted.teacher_in_charge import Charge
 
 
 class Iwr(Cloning):
-    """Intervention Weighted Regression (Mandlekar et al. 2020, arXiv 2012.06733, section IV-B).
+    """Intervention Weighted Regression (Mandlekar et al. 2020, arXiv 2012.06733).
 
     It imitates the interventions and its own actions that its teacher let pass, each half of every batch. Here the
     halves are weights in the loss, of the same expectation. What was overruled is in neither. The demonstration before

@@ -147,8 +147,8 @@ class _HoldRun(MarkedRun):
             plan=plan,
             answering=self._in_charge,
         )
-        self._first, self._every, self._takes, self._overruled = (
-            round(each / period_s) for each in (times.first_s, times.every_s, times.takes_s, times.overruled_s)
+        self._every, self._takes, self._overruled = (
+            round(each / period_s) for each in (times.every_s, times.takes_s, times.overruled_s)
         )
         self._chance = random.Random(f"mixing of {session_of(plan, seed)}")
         self._named: deque[tuple[int, Label]] = deque(maxlen=200)
@@ -171,7 +171,7 @@ class _HoldRun(MarkedRun):
         self._in_charge_ticks += driven
         if self._lessons is None:
             return
-        self._lessons.driven_ticks += driven
+        self._lessons.driven_ticks[record.behaviour] += driven
         if names:
             self._mix(record)
         self._sample_own(record, driven=driven)
@@ -247,8 +247,8 @@ class _HoldRun(MarkedRun):
         assert self._team is not None
         assert self._lessons is not None
         fitted = any(learner.iteration for learner in self._learners.values())
-        since = tick - self._fitted_at if fitted else self._lessons.driven_ticks
-        if driven or since < (self._every if fitted else self._first) or len(self._team.labels) == self._labels_fitted:
+        due = (fitted and tick - self._fitted_at >= self._every) or self._lessons.awaits_first_fit
+        if driven or tick <= self._stands_until or not due or len(self._team.labels) == self._labels_fitted:
             return
         began_ns = time.thread_time_ns()
         for learner in self._learners.values():

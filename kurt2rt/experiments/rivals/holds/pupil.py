@@ -1,5 +1,6 @@
 """Pupil of a teacher in charge: what the robot would do by itself, and whether it can go on alone."""
 
+from collections import Counter
 from typing import Protocol
 
 from kurt2rt.core.tick_record import TickRecord
@@ -33,18 +34,29 @@ class LearnerPupil:
     """Learners of all behaviours of a task."""
 
     def __init__(self, learners: dict[str, HoldLearner], demonstrated_ticks: int) -> None:
-        """Begin without knowledge; the first demonstration ends after so many ticks."""
+        """Begin without knowledge; the first demonstrations of all behaviours end after so many ticks together."""
         self._learners = learners
-        self._demonstrated_ticks = demonstrated_ticks
+        self._demonstrated_ticks = demonstrated_ticks / len(learners)
         self.charge = next(iter(learners.values())).charge
-        self.driven_ticks = 0
-        """Ticks in which the teacher drove, which the run counts."""
+        self.driven_ticks = Counter[str]()
+        """Ticks in which the teacher drove, by behaviour, which the run counts."""
+
+    @property
+    def awaits_first_fit(self) -> bool:
+        """Return whether a behaviour was demonstrated, and its learner was never fitted."""
+        return any(
+            not learner.iteration and self._is_demonstrated(behaviour) and learner.labelled
+            for behaviour, learner in self._learners.items()
+        )
 
     def offer(self, record: TickRecord, held: str | None) -> Offer:
         """Return the learner's own action, and whether it can go on where its teacher holds an action."""
         learner = self._learners[record.behaviour]
         situation = record.situation.vector
         if not learner.iteration:
-            return Offer(None, self.driven_ticks >= self._demonstrated_ticks, learner.stands)
+            return Offer(None, self._is_demonstrated(record.behaviour), learner.stands)
         ready = held is not None and learner.can_go_on(situation, held)
         return Offer(learner.proposal(situation), ready, learner.stands)
+
+    def _is_demonstrated(self, behaviour: str) -> bool:
+        return self.driven_ticks[behaviour] >= self._demonstrated_ticks

@@ -16,10 +16,10 @@ _READY_FRACTION = 0.1
 
 
 class SafeDagger(Cloning):
-    """SafeDAgger (Zhang and Cho, AAAI 2017, algorithm 1).
+    """SafeDAgger (Zhang and Cho, AAAI 2017, arXiv 1605.06450, algorithm 1).
 
     The safety policy is a classifier of situations: unsafe if the policy differs from the teacher by more than a
-    threshold (equations 1 and 2). The teacher drives where it says unsafe, and only those situations are labelled.
+    threshold. The teacher drives where it says unsafe, and only those situations are labelled.
     The policy is fitted to four fifths of the labels, the safety policy to all of them.
     """
 
@@ -49,10 +49,10 @@ class SafeDagger(Cloning):
 
 
 class LazyDagger(SafeDagger):
-    """LazyDAgger (Hoque et al., CASE 2021, algorithm 1): SafeDAgger with hysteresis.
+    """LazyDAgger (Hoque et al., CASE 2021, arXiv 2104.00053): SafeDAgger with hysteresis.
 
     The robot asks as in SafeDAgger. It gets control back only where its action is within a second, smaller threshold
-    of the action that the teacher really does. Noise on the teacher's actions (section IV-C) is left out: a person's
+    of the action that the teacher really does. Noise on the teacher's actions is left out: a person's
     hand brings some.
     """
 

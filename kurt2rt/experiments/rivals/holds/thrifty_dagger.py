@@ -15,13 +15,13 @@ _DISCOUNT = 0.98
 
 
 class ThriftyDagger(Ensemble):
-    """ThriftyDAgger (Hoque et al., CoRL 2021, algorithm 1).
+    """ThriftyDAgger (Hoque et al., CoRL 2021, arXiv 2109.08273).
 
     Novelty is the variance of the ensemble, risk is 1 - Q with a network Q that is fitted by one step of temporal
-    differences (equation 3). Both thresholds of asking are the (1 - budget) quantile of what it met by itself since
+    differences. Both thresholds of asking are the (1 - budget) quantile of what it met by itself since
     the last fit. It goes on where its discrepancy is below its mean on the labels, and its risk below the median.
-    These tasks have no end in which they succeed: in place of a goal, Q is the discounted share of the time to come
-    without trouble.
+    Before its first drive it has no thresholds; the authors take them from held-out labels then. These tasks have no
+    end in which they succeed: in place of a goal, Q is the discounted share of the time to come without trouble.
     """
 
     charge = Charge.BY_ROBOT

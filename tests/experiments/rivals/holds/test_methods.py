@@ -10,6 +10,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.neural_network import MLPClassifier
 
 from kurt2rt.core.learner.learner import LearnerSetting, Why
+from kurt2rt.experiments.rivals.holds import cloning
 from kurt2rt.experiments.rivals.holds.cloning import BehaviouralCloning, Ensemble
 from kurt2rt.experiments.rivals.holds.dagger import Dagger
 from kurt2rt.experiments.rivals.holds.eil import BORDER, Eil, cost_slopes
@@ -129,7 +130,8 @@ def test_ensemble_dagger_needs_both_rules_to_go_on() -> None:
     assert not ensemble_of(EnsembleDagger, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), gate=0.6).asks(LEFT)
 
 
-def test_thrifty_dagger_asks_as_often_as_its_budget() -> None:
+def test_thrifty_dagger_asks_as_often_as_its_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cloning, "MEMBERS", 2)
     learner = taught(ThriftyDagger(SETTING._replace(gate=0.25)), mixed=True)
     rng = np.random.default_rng(2)
     met = [np.array([x, y]) for x, y in rng.uniform((-10.0, -10.0), (50.0, 70.0), (40, 2))]
@@ -143,7 +145,8 @@ def test_thrifty_dagger_asks_as_often_as_its_budget() -> None:
     assert sum(learner.novelty(each) > learner.novel_beyond for each in met) == 10
 
 
-def test_thrifty_dagger_finds_risk_before_trouble() -> None:
+def test_thrifty_dagger_finds_risk_before_trouble(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cloning, "MEMBERS", 2)
     learner = taught(ThriftyDagger(SETTING))
     learner.fits_at_intervals = True
     for _ in range(20):
