@@ -102,6 +102,7 @@ def rivals(options: _Options) -> None:
     For example, all of the league; one with another gate; and your own:
 
         kurt2rt rivals
+        kurt2rt rivals --league holds
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
         kurt2rt rivals --learner mine:Mine --check
 
@@ -143,12 +144,13 @@ def rivals(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    report, not_judged = options.out / "report.html", list(reasons_against_judging(plan.seeds))
+    name = "" if options.league is LeagueName.PRESSES else f"{options.league}-"
+    report, not_judged = options.out / f"{name}report.html", list(reasons_against_judging(plan.seeds))
     with study_run(plan, results, command, options.jobs, options.on) as bar:
         bar.say("figure and report")
         league = read_league(plan, results)
         tables = list(all_tables(league))
-        picture = draw_curves(league, options.out / "rivals.png")
+        picture = draw_curves(league, options.out / f"{name}rivals.png")
         write_report(league, tables, picture, not_judged, command, report)
     if options.as_json:
         print_json({"tables": tables_of(tables), "not_judged": not_judged, "report": report})

@@ -21,6 +21,14 @@ class Why(StrEnum):
     """The teacher held an action; its situation is one of those on the way, ten a second."""
     SHOWN = "shown"
     """The teacher drove by hand, and confirmed that the robot is to drive so."""
+    DROVE = "drove"
+    """The learner itself chose the action, and its teacher let it drive on. Only learners that ask for it get it."""
+    OVERRULED = "overruled"
+    """The learner itself chose the action, and its teacher took over: it is wrong. Only learners that ask get it."""
+
+
+OWN = frozenset({Why.DROVE, Why.OVERRULED})
+"""Occasions on which no teacher named the action."""
 
 
 class Learner(Protocol):

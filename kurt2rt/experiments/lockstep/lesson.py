@@ -36,6 +36,7 @@ from kurt2rt.teacher.scripted.appraiser import (
     ScriptedAppraiser,
     UnknownPenalty,
 )
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 
@@ -157,10 +158,14 @@ class TrainingRun(Episode):
         seed: int,
         session: str,
         on_progress: Callable[[float], None],
+        answering: BasicTeacher | None = None,
     ) -> None:
+        """Begin the run; `answering`: teacher of phases 1 and 2, None: the task's own."""
         task, settings, period_s = runtime.task, runtime.robot, runtime.robot.can.cycle_s
         teaching = task.teaching
-        self._teacher = _teacher_of(plan, task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+        if answering is None:
+            answering = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+        self._teacher = _teacher_of(plan, task, settings, answering, seed=seed, session=session)
         self._dispatcher = None
         if task.mid is not None:
             self._dispatcher = ScriptedDispatcher(
@@ -355,7 +360,7 @@ def _phase_starts(plan: LessonPlan, period_s: float) -> dict[int, Phase]:
 
 
 def _teacher_of(
-    plan: LessonPlan, task: TaskSettings, settings: RobotSettings, actions: tuple[str, ...], *, seed: int, session: str
+    plan: LessonPlan, task: TaskSettings, settings: RobotSettings, answering: BasicTeacher, *, seed: int, session: str
 ) -> ScriptedAppraiser:
     period_s, times = settings.can.cycle_s, plan.times
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
@@ -368,7 +373,6 @@ def _teacher_of(
     rewards = _reward_source(plan, task, period_s, seed)
     # The first opinion of each value is used.
     named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if rewards else {}
-    answering = build_teacher(task, settings, actions, seed=seed, session=session)
     primitives = tuple(primitive_speeds(task.repertoire))
     return ScriptedAppraiser(answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives)
 

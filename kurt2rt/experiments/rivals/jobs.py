@@ -1,6 +1,6 @@
 """Jobs of a league: drives of the policy, and lesson and exams of one robot with one rival."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,13 +8,16 @@ from typing import ClassVar
 
 import numpy as np
 
+from hal.simulation import Simulation
 from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.learner.learner import OWN, Label
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.rivals.holds.lesson import teach_by_holds
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
 from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
@@ -96,14 +99,8 @@ class RivalJob(StudyJob):
         seconds = self.task.teaching.duration_s
         world = self.task.teaching.world
         with closing(self.factory.open(world, self.seed, "lesson")) as simulation:
-            lesson, runtime = await teach_rival(
-                simulation,
-                self.robot,
-                self.task,
-                team,
-                self.after,
-                seed=self.seed,
-                on_progress=lambda done_s: report(f"teaching in world {world}", done_s, seconds),
+            lesson, runtime = await self._teach(
+                simulation, team, clock, lambda done_s: report(f"teaching in world {world}", done_s, seconds)
             )
         report(f"teaching in world {world}", seconds, seconds)
         failures = [team.failure if team is not None else ""]
@@ -114,7 +111,7 @@ class RivalJob(StudyJob):
             made_of=self.made_of,
             seed=self.seed,
             presses=result.presses,
-            labels=len(lesson.marks[-1].events if team is None else lesson.marks[-1].labels),
+            labels=len(lesson.marks[-1].events) if team is None else _labels_by_teacher(lesson.marks[-1].labels),
             driven_s=lesson.driven_s,
             waited_s=lesson.waited_s,
             asks=result.asks,
@@ -131,6 +128,22 @@ class RivalJob(StudyJob):
             tick_p99_us=result.ledger.tick().p99_us,
             undo_s=undo.seconds,
             undo_restores=undo.restores,
+        )
+
+    async def _teach(
+        self,
+        simulation: Simulation,
+        team: LearnerTeam | None,
+        clock: LearnerClock,
+        on_progress: Callable[[float], None],
+    ) -> tuple[RivalLesson, Runtime]:
+        """Give the lesson, by the task's teacher or by one in charge."""
+        if not self.rival.is_held:
+            return await teach_rival(
+                simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
+            )
+        return await teach_by_holds(
+            simulation, self.robot, self.task, team, clock, self.after, seed=self.seed, on_progress=on_progress
         )
 
     def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
@@ -179,6 +192,10 @@ class RivalJob(StudyJob):
         mid = None if self.task.mid is None else load_mid_level(self.task.mid)
         other_system = empty_system(runtime.task, runtime.definition, load_critic(self.task.critic), mid)
         return undo_of_rlas(runtime.level.system, other_system, lesson.marks[-1].events)
+
+
+def _labels_by_teacher(labels: Sequence[Label]) -> int:
+    return sum(label.why not in OWN for label in labels)
 
 
 def _rla_bytes(lesson: RivalLesson) -> int:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from enum import StrEnum
 
+from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
 from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED, TUNED
 
 
@@ -11,6 +12,8 @@ class LeagueName(StrEnum):
 
     PRESSES = "presses"
     """One label for each answer and each correction."""
+    HOLDS = "holds"
+    """The teacher takes charge of the robot, drives it by held actions, and gives it back."""
 
 
 ROWS: Mapping[LeagueName, tuple[str, ...]] = {
@@ -28,5 +31,6 @@ ROWS: Mapping[LeagueName, tuple[str, ...]] = {
         "hoeffding",
         "arf",
     ),
+    LeagueName.HOLDS: (SHIPPED, *HOLDS),
 }
 """Names of the rivals of each league, in the order of the tables."""

@@ -32,17 +32,22 @@ class LearnerClock:
         return lambda setting: _TimedLearner(make, setting, self)
 
 
+def untimed(learner: Learner) -> Learner:
+    """Return the learner itself, without the clock that may be around it."""
+    return learner.learner if isinstance(learner, _TimedLearner) else learner
+
+
 class _TimedLearner:
     """Learner whose time is taken (`Learner`)."""
 
     def __init__(self, make: LearnerFactory, setting: LearnerSetting, clock: LearnerClock) -> None:
-        self._learner: Learner = make(setting)
+        self.learner: Learner = make(setting)
         self._clock = clock
         self._is_taught_since = False
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
         began_ns = time.thread_time_ns()
-        action = self._learner.decide(situation, taught=taught)
+        action = self.learner.decide(situation, taught=taught)
         took_ns = time.thread_time_ns() - began_ns
         self._clock.longest_ns = max(self._clock.longest_ns, took_ns)
         if self._is_taught_since:
@@ -52,12 +57,12 @@ class _TimedLearner:
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
         began_ns = time.thread_time_ns()
-        self._learner.lesson(situation, action, why)
+        self.learner.lesson(situation, action, why)
         self._clock.retraining_ns += time.thread_time_ns() - began_ns
         self._is_taught_since = True
 
     def snapshot(self) -> bytes:
-        return self._learner.snapshot()
+        return self.learner.snapshot()
 
     def restore(self, data: bytes) -> None:
-        self._learner.restore(data)
+        self.learner.restore(data)

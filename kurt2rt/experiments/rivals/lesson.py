@@ -13,9 +13,10 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, TrainingRun
-from kurt2rt.experiments.lockstep.lesson_plan import plan_of
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.runtime import Runtime
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +72,17 @@ async def teach_rival(
     """
     store = InMemoryEventStore()
     runtime = build_training_runtime(simulation, settings, task, TrainingStore(store, learners=team))
-    run = _MarkedRun(simulation, runtime, store, team, after, seed=seed, on_progress=on_progress)
+    run = MarkedRun(simulation, runtime, store, team, after, seed=seed, on_progress=on_progress)
     await run.drive()
     return run.lesson(), runtime
 
 
-class _MarkedRun(TrainingRun):
+def session_of(plan: LessonPlan, seed: int) -> str:
+    """Return the prefix of the command ids of a robot's lesson."""
+    return f"{plan.purpose}-{seed}-after-0"
+
+
+class MarkedRun(TrainingRun):
     """Training run that marks the knowledge before the press that follows each of `after`."""
 
     def __init__(
@@ -89,10 +95,19 @@ class _MarkedRun(TrainingRun):
         *,
         seed: int,
         on_progress: Callable[[float], None],
+        plan: LessonPlan | None = None,
+        answering: BasicTeacher | None = None,
     ) -> None:
-        plan = plan_of(runtime.task)
+        """Begin the run; `plan` and `answering`: None: the task's own."""
+        plan = plan or plan_of(runtime.task)
         super().__init__(
-            simulation, runtime, plan, seed=seed, session=f"{plan.purpose}-{seed}-after-0", on_progress=on_progress
+            simulation,
+            runtime,
+            plan,
+            seed=seed,
+            session=session_of(plan, seed),
+            on_progress=on_progress,
+            answering=answering,
         )
         self._store, self._team, self._after = store, team, after
         self._marks: list[Mark] = []

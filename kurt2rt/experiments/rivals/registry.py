@@ -11,6 +11,7 @@ from pathlib import Path
 
 from hal.errors import UserError
 from kurt2rt.core.learner.learner import LearnerFactory
+from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLD_TARGETS
 from kurt2rt.experiments.study.import_graph import PACKAGES
 
 ENTRY_POINTS = "kurt2rt.learners"
@@ -27,6 +28,7 @@ _BUILTIN = {
     "forest": f"{_ROOM}.random_forest:RandomForest",
     "hoeffding": f"{_ROOM}.online_trees:HoeffdingTree",
     "arf": f"{_ROOM}.online_trees:AdaptiveForest",
+    **HOLD_TARGETS,
 }
 """Modules of the learners by their names; a module is imported with its learner only, because it may need an extra."""
 

@@ -34,6 +34,7 @@ def write_report(
         not_tuned=tuning_text(league),
         teachers=sorted({task.teaching.profile.name for task in plan.tasks}),
         seeds=spans(plan.seeds),
+        by_holds=any(entry.rival.is_held for entry in plan.entries),
         command=command,
         source=plan.policy_jobs[0].made_of.source,
     )

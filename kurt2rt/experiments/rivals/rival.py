@@ -8,6 +8,8 @@ from kurt2rt.core.learner.learner import LearnerFactory
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.rivals.holds.rows import HELD
+from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLD_TITLES
 from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
 from kurt2rt.experiments.rivals.tuned import GATE, TunedRival
 
@@ -71,12 +73,17 @@ class Rival:
     @property
     def is_learner(self) -> bool:
         """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
-        return self.name not in (SHIPPED, PLAIN, TUNED)
+        return self.name not in (SHIPPED, PLAIN, TUNED, HELD)
+
+    @property
+    def is_held(self) -> bool:
+        """Return whether a teacher in charge teaches the rival. Raises NoLearnerError."""
+        return self.name == HELD or (self.is_learner and hasattr(self.factory(), "charge"))
 
     @property
     def title(self) -> str:
         """Name in tables, with a gate that is not the default."""
-        title = _TITLES.get(self.name, self.name)
+        title = (_TITLES | HOLD_TITLES).get(self.name, self.name)
         return title if self.gate is None or self.tuned else f"{title} ({self.gate:g})"
 
     @property

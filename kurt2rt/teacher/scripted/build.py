@@ -19,6 +19,7 @@ from kurt2rt.core.teacher_settings import (
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
+from kurt2rt.teacher.scripted.teacher_in_charge import Charge, TeacherInCharge
 
 
 def build_teacher(
@@ -37,16 +38,14 @@ def build_teacher(
         hal.settings.SettingsError: the repertoire of the task is missing or invalid.
     """
     profile, period_s = task.teaching.profile, robot.can.cycle_s
-    policy = task.policy.build(robot.infrared)
     person = profile.person
     if person is None and (profile.shows.times or {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}):
         person = _without_limits(task.teaching.teacher, period_s)
     if person is not None:
-        groups, speeds = action_groups(task.repertoire), primitive_speeds(task.repertoire)
-        sense = TaskSense(policy, tuple(actions), groups, speeds)
+        sense = _task_sense(task, robot, actions)
         return ScriptedPerson(profile, person, sense, period_s=period_s, seed=seed, session=session)
     return ScriptedTeacher(
-        policy,
+        task.policy.build(robot.infrared),
         actions,
         task.teaching.teacher,
         replace_radius_fraction=task.learning.insert_beyond_share,
@@ -55,6 +54,24 @@ def build_teacher(
         session=session,
         corrects=profile.corrects_by != "nothing",
     )
+
+
+def build_teacher_in_charge(
+    task: TaskSettings, robot: RobotSettings, actions: Sequence[str], charge: Charge, *, seed: int, session: str
+) -> TeacherInCharge:
+    """Build a teacher with the times and limits of a task's own, who takes charge of the robot.
+
+    `charge`: rule by which control passes. The other arguments and the errors are those of `build_teacher`.
+    """
+    period_s = robot.can.cycle_s
+    person = task.teaching.profile.person or _without_limits(task.teaching.teacher, period_s)
+    sense = _task_sense(task, robot, actions)
+    return TeacherInCharge(person, sense, charge, period_s=period_s, seed=seed, session=session)
+
+
+def _task_sense(task: TaskSettings, robot: RobotSettings, actions: Sequence[str]) -> TaskSense:
+    policy = task.policy.build(robot.infrared)
+    return TaskSense(policy, tuple(actions), action_groups(task.repertoire), primitive_speeds(task.repertoire))
 
 
 def _without_limits(teacher: TeacherSettings, period_s: float) -> PersonSettings:
