@@ -42,6 +42,7 @@ _PANELS = {
         "phases": "Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.",
         "surprise": "Measure how surprised taught robots are: on known ground, and after something changed.",
         "transfer": "Measure how many presses a robot that was taught at home needs to be right in a new world.",
+        "tune": "Search settings of rivals: the same number of trials on the same robots for each.",
         "rivals": "Compare learners of other kinds with the RLA system, taught by the same teacher.",
         "doubt": "Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.",
         "certify": "Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.",

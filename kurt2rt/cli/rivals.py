@@ -31,10 +31,12 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
 from kurt2rt.experiments.rivals.rival import Rival
+from kurt2rt.experiments.rivals.tuned import load_tuned
 from kurt2rt.platform.text_table import print_whole
 
 _AFTER = (10, 20, 40)
 _SEED_OF_THE_CHECK = 1
+_NOT_TUNED = "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,13 @@ class _Options:
             show_default=False,
         ),
     ] = None
+    tuned: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME|PATH",
+            help="Settings that `kurt2rt tune` found for the rivals: a name in config/rivals/tuned, a file, or none.",
+        ),
+    ] = _NOT_TUNED
     check: Annotated[
         bool,
         typer.Option(
@@ -122,7 +131,15 @@ def rivals(options: _Options) -> None:
     results = Results(options.out)
     parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
     after = sorted(set(options.after or _AFTER))
-    plan = make_plan(tasks, chosen, parse_seeds(options.seeds), after, parts)
+    tuned = None if options.tuned == _NOT_TUNED else load_tuned(options.tuned)
+    plan = make_plan(
+        tasks,
+        chosen,
+        parse_seeds(options.seeds),
+        after,
+        parts,
+        tuned=tuned,
+    )
     command = typed_command("rivals", options, {"seeds": options.seeds})
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)

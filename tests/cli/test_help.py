@@ -66,6 +66,7 @@ def test_every_command_is_found() -> None:
             "surprise",
             "transfer",
             "rivals",
+            "tune",
             "doubt",
             "certify",
             "broken",

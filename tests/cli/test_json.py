@@ -40,7 +40,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
 REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
-    *(("broken",), ("certify",), ("results", "show"), ("rivals",), ("results", "merge"), ("search",)),
+    *(("broken",), ("certify",), ("results", "show"), ("rivals",), ("results", "merge"), ("search",), ("tune",)),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
 }
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
-from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED
+from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED, TUNED
 
 
 class LeagueName(StrEnum):
@@ -19,6 +19,7 @@ class LeagueName(StrEnum):
 ROWS: Mapping[LeagueName, tuple[str, ...]] = {
     LeagueName.PRESSES: (
         SHIPPED,
+        TUNED,
         PLAIN,
         "1-nn",
         "k-nn",

@@ -8,7 +8,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
-from kurt2rt.experiments.rivals.rival import SHIPPED, Rival
+from kurt2rt.experiments.rivals.rival import SHIPPED, TUNED, Rival
+from kurt2rt.experiments.rivals.tuned import TunedRivals
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
@@ -49,6 +50,7 @@ def make_plan(
     after: Sequence[int],
     parts: JobParts,
     *,
+    tuned: TunedRivals | None = None,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> LeaguePlan:
     """Check tasks and worlds, and return the jobs.
@@ -59,6 +61,7 @@ def make_plan(
         seeds: one robot each.
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
+        tuned: settings that were found for rivals; those that are not among them keep their own.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -77,7 +80,9 @@ def make_plan(
         made = fingerprints.of(task, worlds)
         for seed in seeds:
             policies[task.name, seed] = PolicyJob(task=task, seed=seed, made_of=made, **parts)
-        for rival in rows:
+        for rival in (row.tuned_by(None if tuned is None else tuned.of(task.name, row.name)) for row in rows):
+            if rival.name == TUNED and not rival.tuned:
+                continue
             own = rival.task(task)
             made = fingerprints.of(own, worlds, rival.source, repr(tuple(after)))
             jobs = tuple(

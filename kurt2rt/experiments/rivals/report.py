@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kurt2rt.experiments.rivals.plan import League
-from kurt2rt.experiments.rivals.tables import NOT_TUNED
+from kurt2rt.experiments.rivals.tables import tuning_text
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
 from kurt2rt.experiments.study.table import Table
@@ -31,7 +31,7 @@ def write_report(
         [picture],
         tables=tables,
         not_judged=not_judged,
-        not_tuned=NOT_TUNED,
+        not_tuned=tuning_text(league),
         teachers=sorted({task.teaching.profile.name for task in plan.tasks}),
         seeds=spans(plan.seeds),
         by_holds=any(entry.rival.is_held for entry in plan.entries),

@@ -1,6 +1,6 @@
 """Rivals of a league: the RLA system as it is shipped, the paper's plain reading of it, and learners."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 
 from hal.robot_settings import RobotSettings
@@ -11,13 +11,18 @@ from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.holds.rows import HELD
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLD_TITLES
 from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
+from kurt2rt.experiments.rivals.tuned import GATE, TunedRival
 
 SHIPPED = "rla"
 """Name of the RLA system with the task's own settings, with which all others are compared."""
 PLAIN = "rla-plain"
+TUNED = "rla-tuned"
+"""Name of the RLA system with as much tuning as the learners, and the weights of the task, as they have."""
+_LEARNING = "learning."
 _TITLES = {
     SHIPPED: "RLA, as shipped",
     PLAIN: "RLA, plain reading of the paper",
+    TUNED: "RLA, tuned as the others",
     "rla-door": "RLA through the door",
     "1-nn": "1-NN without R",
     "k-nn": "5-NN with R",
@@ -39,6 +44,8 @@ class Rival:
     """Name of the RLA system, or of a learner."""
     gate: float | None = None
     """Number by which a learner asks, of its own unit; None: its default."""
+    tuned: tuple[tuple[str, float], ...] = ()
+    """Learning settings of the task that were tuned for this rival, by their names; empty: the task's own."""
 
     @classmethod
     def parse(cls, text: str) -> "Rival":
@@ -56,10 +63,17 @@ class Rival:
             find_learner(name)
         return rival
 
+    @classmethod
+    def of_learner(cls, name: str, gate: float) -> "Rival":
+        """Return a learner with a gate, dimensionless or in counts as it says. Raises NoLearnerError without one."""
+        rival = cls(name, gate)
+        rival.factory()
+        return rival
+
     @property
     def is_learner(self) -> bool:
         """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
-        return self.name not in (SHIPPED, PLAIN, HELD)
+        return self.name not in (SHIPPED, PLAIN, TUNED, HELD)
 
     @property
     def is_held(self) -> bool:
@@ -70,12 +84,12 @@ class Rival:
     def title(self) -> str:
         """Name in tables, with a gate that is not the default."""
         title = (_TITLES | HOLD_TITLES).get(self.name, self.name)
-        return title if self.gate is None else f"{title} ({self.gate:g})"
+        return title if self.gate is None or self.tuned else f"{title} ({self.gate:g})"
 
     @property
     def label(self) -> str:
         """Name in file names."""
-        name = self.name.replace(":", ".")
+        name = self.name.replace(":", ".") + ("-tuned" if self.tuned else "")
         return name if self.gate is None else f"{name}-gate-{self.gate:g}"
 
     @property
@@ -87,10 +101,21 @@ class Rival:
         return f"{self.label} {source_of_learner(self.name)} {packages if self.name in learner_names() else ''}"
 
     def task(self, task: TaskSettings) -> TaskSettings:
-        """Return the task with the learning settings of this rival."""
+        """Return the task with the learning settings of this rival, tuned or its own."""
+        if self.tuned:
+            learning = task.learning.model_copy(update=dict(self.tuned))
+            return task.model_copy(update={"learning": learning})
         if self.name != PLAIN:
             return task
         return taught_by(task.model_copy(update={"learning": task.plain}), task.teaching.profile)
+
+    def tuned_by(self, found: TunedRival | None) -> "Rival":
+        """Return the rival with tuned settings; a gate that was asked for stays. None: as it is."""
+        if found is None:
+            return self
+        values = {key.removeprefix(_LEARNING): value for key, value in found.values.items() if key != GATE}
+        gate = found.values.get(GATE) if self.gate is None else self.gate
+        return replace(self, gate=gate, tuned=tuple(sorted(values.items())))
 
     def factory(self) -> LearnerFactory:
         """Return the maker of the learner. Raises NoLearnerError."""

@@ -7,9 +7,18 @@ from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
 from kurt2rt.experiments.rivals.plan import League, Row
+from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
-NOT_TUNED = "Learners are not tuned, they have the defaults of their classes; the RLA system as shipped was tuned."
+
+def tuning_text(league: League) -> str:
+    """Return which rivals have settings that were searched, in a sentence or two."""
+    others = [row.entry.rival for row in league.rows if row.entry.rival.name != SHIPPED]
+    tuned = list(dict.fromkeys(each.title for each in others if each.tuned))
+    own = list(dict.fromkeys(each.title for each in others if not each.tuned))
+    said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
+    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
+    return f"{said}{defaults}The settings of the RLA system as shipped were searched for longer."
 
 
 def all_tables(league: League) -> Iterator[Table]:
@@ -41,7 +50,7 @@ def success_table(league: League) -> Table:
         note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}), judged by "
         "the drive of the teacher's policy from the same start; a world in which the policy does not pass is left out. "
         "With 95 % intervals. A robot that gave cause for fewer presses has all that it was taught. Mean: of the "
-        f"shares in this row. {NOT_TUNED} All see the situation with the weights of the RLAs.",
+        f"shares in this row. {tuning_text(league)} All see the situation with the weights of the RLAs.",
     )
 
 

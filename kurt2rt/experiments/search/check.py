@@ -73,7 +73,7 @@ def begin_check(plan: SearchPlan, journal: TrialJournal, trials: int) -> CheckRe
     path = plan.folder / _FILE
     if path.exists():
         return read_record(path)
-    best = best_trials(journal.trials[:trials], plan.search.check.best, plan.space.shipped)
+    best = best_trials(journal.trials[:trials], plan.check.best, plan.space.shipped)
     record = CheckRecord(trials=trials, candidates=tuple(trial.number for trial in best), date=utc_now())
     write_durably(path, record.model_dump_json() + "\n")
     return record
@@ -106,9 +106,8 @@ def best_trials(trials: Sequence[FrozenTrial], count: int, shipped: Values) -> l
 
 def check_time_s(plan: SearchPlan) -> float:
     """Return the robot time of the whole check, in s."""
-    task = plan.space.task(plan.space.shipped)
-    sets = plan.search.check.best + 1
-    return sets * sum(job.robot_time_s for job in plan.jobs.check(task, SHIPPED))
+    sets = plan.check.best + 1
+    return sets * sum(job.robot_time_s for job in plan.jobs.check(plan.space.shipped, SHIPPED, plan.check))
 
 
 def run_check(
@@ -130,7 +129,7 @@ def run_check(
     """
     results = plan.jobs.parts["results"]
     sets = {SHIPPED: plan.space.shipped, **{label_of(each): journal.values(each) for each in record.candidates}}
-    jobs = {label: plan.jobs.check(plan.space.task(values), label) for label, values in sets.items()}
+    jobs = {label: plan.jobs.check(values, label, plan.check) for label, values in sets.items()}
     checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
     whole_s = sum(job.robot_time_s for job in checked_jobs)
     done_s = whole_s - missing_time_s(JobWave(checked_jobs), results)

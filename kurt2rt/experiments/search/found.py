@@ -30,7 +30,7 @@ def write_found(plan: SearchPlan, check: CheckResult, command: str, path: Path) 
         "objective": search.objective,
         "trials": check.record.trials,
         "search": _robots(search.search),
-        "check": _robots(search.check),
+        "check": _robots(plan.check),
         "shipped": {"values": dict(plan.space.shipped), **_counts(check.shipped, search.objective)},
         "checked": [_checked(each, check) for each in check.checked],
         "verdict": verdict_text(plan, check),

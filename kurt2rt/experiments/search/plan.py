@@ -4,19 +4,22 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
-from kurt2rt.experiments.search.jobs import JobMaker, SearchJob
-from kurt2rt.experiments.search.settings import SearchSettings
+from kurt2rt.experiments.search.job_maker import JobMaker
+from kurt2rt.experiments.search.jobs import SearchJob
+from kurt2rt.experiments.search.learner_job import LearnerSearchJob
+from kurt2rt.experiments.search.settings import CheckSettings, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
 
-DECIDING = (SearchJob,)
+DECIDING = (SearchJob, LearnerSearchJob)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -29,6 +32,13 @@ class SearchPlan:
     jobs: JobMaker
     made_of: Provenance
     """Provenance of the trials: the shipped settings, the search, its worlds, and the program."""
+
+    @property
+    def check(self) -> CheckSettings:
+        """Robots and worlds of the check. Raises hal.settings.SettingsError if the search has none."""
+        if self.search.check is None:
+            raise SettingsError("names no check", where=f"search {self.search.name}", do="add the key check")
+        return self.search.check
 
     @property
     def folder(self) -> Path:
@@ -58,7 +68,7 @@ def make_plan(
     factory = parts["factory"]
     space = TaskSpace(search, changes, load_teacher(search.teacher))
     task = space.task(space.shipped)
-    robots = [(each, seed) for each in (search.search, search.check) for seed in each.seeds.seeds]
+    robots = [(each, seed) for each in (search.search, search.check) if each for seed in each.seeds.seeds]
     exams = [(world, seed) for each, seed in robots for world in each.worlds_of(seed)]
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
     factory.require_worlds(*worlds)
@@ -70,4 +80,6 @@ def make_plan(
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     # More trials, and another number of them checked, leave each trial as it is.
     decides = search.model_dump_json(exclude={"trials": True, "check": {"best"}})
-    return SearchPlan(search, space, JobMaker(search, parts, fingerprints), fingerprints.of(task, worlds, decides))
+    return SearchPlan(
+        search, space, JobMaker(search, space, parts, fingerprints), fingerprints.of(task, worlds, decides)
+    )

@@ -50,7 +50,7 @@ def write_report(
         verdict=verdict_text(plan, check),
         tables=[*tables, space],
         search_seeds=spans(search.search.seeds.seeds),
-        check_seeds=spans(search.check.seeds.seeds),
+        check_seeds=spans(plan.check.seeds.seeds),
         date=check.record.date,
         command=command,
         source=plan.made_of.source,

@@ -44,7 +44,7 @@ def _trials_table(plan: SearchPlan, journal: TrialJournal, count: int) -> Table:
     shown = [*best_trials(trials, _SHOWN, plan.space.shipped), trials[0]]
     rows = []
     for trial in shown:
-        jobs = plan.jobs.trial(plan.space.task(trial.params), trial.number)
+        jobs = plan.jobs.trial(trial.params, trial.number)
         robots = [job.score(plan.jobs.parts["results"]) for job in jobs]
         name = SHIPPED if trial.params == plan.space.shipped else label_of(trial.number)
         rows.append((name, *_cells(robots, search.objective), *_values(trial.params, keys)))
@@ -65,12 +65,12 @@ def _check_table(plan: SearchPlan, check: CheckResult) -> Table:
     for each in check.checked:
         cells = _cells(each.robots, search.objective)
         rows.append((each.label, *cells, _difference(each.passed, 100), _difference(each.effort)))
-    seeds = search.check.seeds
+    seeds = plan.check.seeds
     return Table(
         f"Check on {seeds.count} other robots from seed {seeds.first}",
         ("trial", "exams passed", f"{unit}, mean", "passed, difference in points", f"{unit}, difference"),
         tuple(rows),
-        note=f"In {', '.join(search.check.worlds)}. Differences are paired by robot; all intervals hold together with "
+        note=f"In {', '.join(plan.check.worlds)}. Differences are paired by robot; all intervals hold together with "
         f"95 %. {verdict_text(plan, check)}",
     )
 

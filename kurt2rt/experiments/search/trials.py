@@ -14,7 +14,7 @@ from kurt2rt.experiments.study.pool import PoolProgress
 
 def trials_time_s(plan: SearchPlan, trials: int) -> float:
     """Return the robot time of all trials if none is pruned, in s."""
-    return trials * sum(job.robot_time_s for job in plan.jobs.trial(plan.space.task(plan.space.shipped), 0))
+    return trials * sum(job.robot_time_s for job in plan.jobs.trial(plan.space.shipped, 0))
 
 
 def run_trials(
@@ -67,7 +67,7 @@ def _run_together(
     on_progress: Callable[[PoolProgress], None],
 ) -> None:
     """Run some trials, robot by robot, and prune those that cannot have a higher score than `to_beat`."""
-    jobs = {number: plan.jobs.trial(plan.space.task(journal.values(number)), number) for number in numbers}
+    jobs = {number: plan.jobs.trial(journal.values(number), number) for number in numbers}
     results, robots, before_s = plan.jobs.parts["results"], plan.search.search.seeds.count, 0.0
     exams = robots * len(plan.search.search.worlds)
 

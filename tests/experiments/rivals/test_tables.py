@@ -5,12 +5,12 @@ from matplotlib.image import imread
 from kurt2rt.experiments.rivals.figures import draw_curves
 from kurt2rt.experiments.rivals.report import write_report
 from kurt2rt.experiments.rivals.tables import (
-    NOT_TUNED,
     all_tables,
     comparison_table,
     effort_table,
     machine_table,
     success_table,
+    tuning_text,
 )
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.rivals.outcomes import league_of, robot
@@ -31,7 +31,7 @@ def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
     assert [cell.partition(" (")[0] for cell in ours[2:5]] == ["0 of 2", "1 of 2", "2 of 2"]
     assert ours[5] == "50%"
     assert [cell.partition(" (")[0] for cell in theirs[2:5]] == ["2 of 3", "2 of 3", "1 of 3"]
-    assert NOT_TUNED in table.note
+    assert "with the defaults of their classes: 1-NN without R" in table.note
 
 
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
@@ -64,6 +64,6 @@ def test_report_says_that_nothing_was_tuned(tmp_path: Path) -> None:
     page = tmp_path / "report.html"
     write_report(league, list(all_tables(league)), picture, ["3 robots only"], "kurt2rt rivals", page)
     text = page.read_text(encoding="utf-8")
-    assert NOT_TUNED in text
+    assert tuning_text(league).removesuffix(".") in text
     assert "3 robots only" in text
     assert "1-NN without R" in text
