@@ -30,6 +30,7 @@ ROWS: Mapping[LeagueName, tuple[str, ...]] = {
         "forest",
         "hoeffding",
         "arf",
+        "mlp-ensemble",
     ),
     LeagueName.HOLDS: (SHIPPED, *HOLDS),
 }

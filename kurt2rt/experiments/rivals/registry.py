@@ -28,6 +28,7 @@ _BUILTIN = {
     "forest": f"{_ROOM}.random_forest:RandomForest",
     "hoeffding": f"{_ROOM}.online_trees:HoeffdingTree",
     "arf": f"{_ROOM}.online_trees:AdaptiveForest",
+    "mlp-ensemble": f"{_ROOM}.network_ensemble:NetworkEnsemble",
     **HOLD_TARGETS,
 }
 """Modules of the learners by their names; a module is imported with its learner only, because it may need an extra."""

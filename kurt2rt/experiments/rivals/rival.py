@@ -33,6 +33,7 @@ _TITLES = {
     "forest": "random forest, vote gate",
     "hoeffding": "Hoeffding tree, vote gate",
     "arf": "adaptive random forest, vote gate",
+    "mlp-ensemble": "five networks, gate on their doubt",
 }
 
 
