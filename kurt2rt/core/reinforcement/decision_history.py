@@ -26,7 +26,7 @@ class DecisionHistory:
         self._teachable = [False] * capacity
         self._slow = [False] * capacity
         self._rlas: list[int | None] = [None] * capacity
-        self._by_learner = [False] * capacity
+        self._learner_actions = [""] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
         self._circumstances: list[AppraisalFeatures | None] = [None] * capacity
@@ -70,7 +70,7 @@ class DecisionHistory:
         self._teachable[row] = teachable and has_situation
         self._slow[row] = slow
         rla_id = self._rlas[row] = decision.rla_id
-        self._by_learner[row] = decision.cause is _LEARNER and decision.action is not None
+        self._learner_actions[row] = decision.action or "" if decision.cause is _LEARNER else ""
         self._behaviours[row] = behaviour
         self._answering[row] = rla_id if rla_id is not None and decision.answers and not slow else 0
         self._circumstances[row] = circumstances
@@ -90,7 +90,7 @@ class DecisionHistory:
         self._teachable[:] = other._teachable
         self._slow[:] = other._slow
         self._rlas[:] = other._rlas
-        self._by_learner[:] = other._by_learner
+        self._learner_actions[:] = other._learner_actions
         self._behaviours[:] = other._behaviours
         self._circumstances[:] = other._circumstances
         self._opinions[:] = other._opinions
@@ -127,7 +127,11 @@ class DecisionHistory:
 
     def drove(self, tick: int) -> bool:
         """Return whether an RLA or another learner drove in a stored tick."""
-        return self.driving_rla(tick) is not None or self._by_learner[tick % self._capacity]
+        return self.driving_rla(tick) is not None or bool(self.learner_action(tick))
+
+    def learner_action(self, tick: int) -> str:
+        """Return the action by which a learner that is no RLA system drove in a stored tick; empty if none did."""
+        return self._learner_actions[tick % self._capacity]
 
     def behaviour(self, tick: int) -> str:
         """Return the active taught behaviour of a stored tick."""

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.learner.learner import Why
+from kurt2rt.core.learner.learner import Driven, Why
 from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
@@ -25,6 +25,8 @@ from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 
+_SIGNAL_TICKS = 100
+"""Ticks up to the one that a reward means, of which a learner is told what it did: one second."""
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Command that changes the knowledge."""
 
@@ -277,6 +279,8 @@ class LessonBuilder:
 
     def _reward(self, command: Reward, origin: Origin) -> LessonResult:
         meant = self._known_tick(command.decision_tick)
+        if self._learner is not None:
+            return self._signal(self._learner, command, meant, origin)
         rla_id = self._recent.driving_rla(meant)
         if rla_id is None:
             raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
@@ -289,6 +293,24 @@ class LessonBuilder:
         said = None if opinion is None else opinion.said
         code = ResultCode.RLA_REWARDED if command.value > 0 else ResultCode.RLA_PUNISHED
         return LessonResult(rla_outcome(code, rla), RlaRewarded(rla_id, command.value, meant, origin, credits_, said))
+
+    def _signal(self, learner: LearnerLevel, command: Reward, meant: int, origin: Origin) -> LessonResult:
+        """Give a reward to a learner; the journal has no row of it, because it changes no RLA."""
+        if not learner.team.learns_from_signals:
+            raise CommandRefusedError(RefusalCode.NO_SIGNALS)
+        recent = self._recent
+        if not recent.learner_action(meant):
+            raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
+        self._require_full_speed(meant)
+        behaviour = recent.behaviour(meant)
+        driven = [
+            Driven(recent.situation(tick), recent.learner_action(tick), meant - tick)
+            for tick in range(meant, meant - _SIGNAL_TICKS, -1)
+            if recent.contains(tick) and recent.learner_action(tick) and recent.behaviour(tick) == behaviour
+        ]
+        learner.signal(driven, behaviour, command.value, origin.command_id)
+        code = ResultCode.LEARNER_REWARDED if command.value > 0 else ResultCode.LEARNER_PUNISHED
+        return LessonResult(Outcome.of(code), None)
 
     def _appraise(self, command: Appraise, origin: Origin) -> LessonResult:
         if self._appraisal_lessons is None:

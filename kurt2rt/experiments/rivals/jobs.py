@@ -10,7 +10,7 @@ import numpy as np
 
 from hal.simulation import Simulation
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.learner.learner import OWN, Label
+from kurt2rt.core.learner.learner import OWN, Label, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
@@ -22,6 +22,7 @@ from kurt2rt.experiments.rivals.learner_clock import LearnerClock
 from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
 from kurt2rt.experiments.rivals.rival import Rival
+from kurt2rt.experiments.rivals.signals.lesson import teach_by_signals
 from kurt2rt.experiments.rivals.undo import Undo, undo_of_learner, undo_of_rlas
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.transfer.jobs import verdict_by
@@ -111,7 +112,7 @@ class RivalJob(StudyJob):
             made_of=self.made_of,
             seed=self.seed,
             presses=result.presses,
-            labels=len(lesson.marks[-1].events) if team is None else _labels_by_teacher(lesson.marks[-1].labels),
+            labels=len(lesson.marks[-1].events) if team is None else _labels_by_teacher(lesson.marks[-1].lessons),
             driven_s=lesson.driven_s,
             waited_s=lesson.waited_s,
             asks=result.asks,
@@ -137,7 +138,11 @@ class RivalJob(StudyJob):
         clock: LearnerClock,
         on_progress: Callable[[float], None],
     ) -> tuple[RivalLesson, Runtime]:
-        """Give the lesson, by the task's teacher or by one in charge."""
+        """Give the lesson: by the task's teacher, by rewards, or by a teacher in charge."""
+        if self.rival.is_rewarded:
+            return await teach_by_signals(
+                simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
+            )
         if not self.rival.is_held:
             return await teach_rival(
                 simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
@@ -159,7 +164,7 @@ class RivalJob(StudyJob):
         checkpoints: list[RivalCheckpoint] = []
         for place, mark in enumerate(marks):
             before = marks[place - 1] if place else None
-            if before is not None and (before.events, before.labels) == (mark.events, mark.labels):
+            if before is not None and (before.events, before.lessons) == (mark.events, mark.lessons):
                 drives = checkpoints[-1].drives
             else:
                 drives = await self._examine(mark, policies, clock, failures, report)
@@ -172,7 +177,7 @@ class RivalJob(StudyJob):
         """Return the drives in each world, up to the first that failed: one failure decides the success."""
         team = self._new_team(clock)
         if team is not None:
-            team.teach_all(mark.labels)
+            team.teach_all(mark.lessons)
         drives: list[Drive] = []
         for world, policy in zip(self.task.exam.worlds, policies, strict=True):
             setup = ExamSetup(world, self.seed, learners=team)
@@ -194,8 +199,8 @@ class RivalJob(StudyJob):
         return undo_of_rlas(runtime.level.system, other_system, lesson.marks[-1].events)
 
 
-def _labels_by_teacher(labels: Sequence[Label]) -> int:
-    return sum(label.why not in OWN for label in labels)
+def _labels_by_teacher(lessons: Sequence[Label | Signal]) -> int:
+    return sum(isinstance(each, Signal) or each.why not in OWN for each in lessons)
 
 
 def _rla_bytes(lesson: RivalLesson) -> int:

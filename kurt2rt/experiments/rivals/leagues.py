@@ -5,6 +5,7 @@ from enum import StrEnum
 
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
 from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED, TUNED
+from kurt2rt.experiments.rivals.signals.rows import TITLES as SIGNALS
 
 
 class LeagueName(StrEnum):
@@ -14,6 +15,8 @@ class LeagueName(StrEnum):
     """One label for each answer and each correction."""
     HOLDS = "holds"
     """The teacher takes charge of the robot, drives it by held actions, and gives it back."""
+    SIGNALS = "signals"
+    """Rewards of +1 and -1 by the judge of the task, and nothing else."""
 
 
 ROWS: Mapping[LeagueName, tuple[str, ...]] = {
@@ -33,5 +36,6 @@ ROWS: Mapping[LeagueName, tuple[str, ...]] = {
         "mlp-ensemble",
     ),
     LeagueName.HOLDS: (SHIPPED, *HOLDS),
+    LeagueName.SIGNALS: (SHIPPED, *SIGNALS),
 }
 """Names of the rivals of each league, in the order of the tables."""

@@ -1,11 +1,12 @@
 """Clock of a learner: the processor time of its lessons and decisions, which other work does not lengthen."""
 
 import time
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
+from kurt2rt.core.learner.learner import Driven, Learner, LearnerFactory, LearnerSetting, SignalLearner, Why
 
 
 class LearnerClock:
@@ -29,7 +30,14 @@ class LearnerClock:
 
     def timed(self, make: LearnerFactory) -> LearnerFactory:
         """Return a maker of the same learners whose time is taken."""
-        return lambda setting: _TimedLearner(make, setting, self)
+
+        def make_timed(setting: LearnerSetting) -> Learner:
+            learner = make(setting)
+            if isinstance(learner, SignalLearner):
+                return _TimedSignalLearner(learner, learner, self)
+            return _TimedLearner(learner, self)
+
+        return make_timed
 
 
 def untimed(learner: Learner) -> Learner:
@@ -40,8 +48,8 @@ def untimed(learner: Learner) -> Learner:
 class _TimedLearner:
     """Learner whose time is taken (`Learner`)."""
 
-    def __init__(self, make: LearnerFactory, setting: LearnerSetting, clock: LearnerClock) -> None:
-        self.learner: Learner = make(setting)
+    def __init__(self, learner: Learner, clock: LearnerClock) -> None:
+        self.learner = learner
         self._clock = clock
         self._is_taught_since = False
 
@@ -56,8 +64,11 @@ class _TimedLearner:
         return action
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
+        self._learn(lambda: self.learner.lesson(situation, action, why))
+
+    def _learn(self, lesson: Callable[[], None]) -> None:
         began_ns = time.thread_time_ns()
-        self.learner.lesson(situation, action, why)
+        lesson()
         self._clock.retraining_ns += time.thread_time_ns() - began_ns
         self._is_taught_since = True
 
@@ -66,3 +77,14 @@ class _TimedLearner:
 
     def restore(self, data: bytes) -> None:
         self.learner.restore(data)
+
+
+class _TimedSignalLearner(_TimedLearner):
+    """Learner of rewards whose time is taken (`SignalLearner`)."""
+
+    def __init__(self, learner: Learner, rewarded: SignalLearner, clock: LearnerClock) -> None:
+        super().__init__(learner, clock)
+        self._rewarded = rewarded
+
+    def signal(self, driven: Sequence[Driven], value: int) -> None:
+        self._learn(lambda: self._rewarded.signal(driven, value))

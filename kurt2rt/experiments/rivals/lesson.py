@@ -7,7 +7,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.learner.learner import Label
+from kurt2rt.core.learner.learner import Label, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
@@ -27,8 +27,8 @@ class Mark:
     """Number asked for; a robot that gave cause for fewer has all that it was taught."""
     events: tuple[TeachingEvent, ...]
     """Lessons so far, which are the knowledge of RLAs."""
-    labels: tuple[Label, ...]
-    """Standing labels so far, which are the knowledge of a learner; empty for RLAs."""
+    lessons: tuple[Label | Signal, ...]
+    """Standing labels and rewards so far, which are the knowledge of a learner; empty for RLAs."""
     teaching_s: float
 
 
@@ -135,5 +135,5 @@ class MarkedRun(TrainingRun):
         )
 
     def _mark(self, presses: int) -> Mark:
-        labels = () if self._team is None else self._team.labels
-        return Mark(presses, tuple(self._store.events), labels, self.ticks * self.period_s)
+        lessons = () if self._team is None else self._team.lessons
+        return Mark(presses, tuple(self._store.events), lessons, self.ticks * self.period_s)

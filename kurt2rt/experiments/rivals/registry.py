@@ -12,6 +12,7 @@ from pathlib import Path
 from hal.errors import UserError
 from kurt2rt.core.learner.learner import LearnerFactory
 from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLD_TARGETS
+from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNAL_TARGETS
 from kurt2rt.experiments.study.import_graph import PACKAGES
 
 ENTRY_POINTS = "kurt2rt.learners"
@@ -30,6 +31,7 @@ _BUILTIN = {
     "arf": f"{_ROOM}.online_trees:AdaptiveForest",
     "mlp-ensemble": f"{_ROOM}.network_ensemble:NetworkEnsemble",
     **HOLD_TARGETS,
+    **SIGNAL_TARGETS,
 }
 """Modules of the learners by their names; a module is imported with its learner only, because it may need an extra."""
 

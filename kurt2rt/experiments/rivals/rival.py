@@ -11,6 +11,8 @@ from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.holds.rows import HELD
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLD_TITLES
 from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
+from kurt2rt.experiments.rivals.signals.rows import REWARDED
+from kurt2rt.experiments.rivals.signals.rows import TITLES as SIGNAL_TITLES
 from kurt2rt.experiments.rivals.tuned import GATE, TunedRival
 
 SHIPPED = "rla"
@@ -74,7 +76,7 @@ class Rival:
     @property
     def is_learner(self) -> bool:
         """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
-        return self.name not in (SHIPPED, PLAIN, TUNED, HELD)
+        return self.name not in (SHIPPED, PLAIN, TUNED, HELD, REWARDED)
 
     @property
     def is_held(self) -> bool:
@@ -82,9 +84,14 @@ class Rival:
         return self.name == HELD or (self.is_learner and hasattr(self.factory(), "charge"))
 
     @property
+    def is_rewarded(self) -> bool:
+        """Return whether the rival is taught by rewards. Raises NoLearnerError."""
+        return self.name == REWARDED or (self.is_learner and hasattr(self.factory(), "signal"))
+
+    @property
     def title(self) -> str:
         """Name in tables, with a gate that is not the default."""
-        title = (_TITLES | HOLD_TITLES).get(self.name, self.name)
+        title = (_TITLES | HOLD_TITLES | SIGNAL_TITLES).get(self.name, self.name)
         return title if self.gate is None or self.tuned else f"{title} ({self.gate:g})"
 
     @property

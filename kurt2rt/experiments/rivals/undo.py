@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.core.learner.learner import Label, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
@@ -30,16 +31,16 @@ def undo_of_learner(taught: LearnerTeam, other: LearnerTeam) -> Undo:
 
     `other`: learners of the same kind that know nothing yet.
     """
-    labels = taught.labels
-    if not labels:
+    lessons = taught.lessons
+    if not lessons:
         return Undo(0.0, True)
-    last = labels[-1]
-    other.teach_all(label for label in labels if label.command_id != last.command_id)
+    last = lessons[-1]
+    places = [(lesson.behaviour, _situation(lesson)) for lesson in lessons]
+    other.teach_all(lesson for lesson in lessons if lesson.command_id != last.command_id)
     began_s = time.thread_time()
     taught.undo(last.command_id)
-    taught.decide(last.behaviour, last.situation, taught=False)
+    taught.decide(last.behaviour, _situation(last), taught=False)
     seconds = time.thread_time() - began_s
-    places = [(label.behaviour, label.situation) for label in labels]
     return Undo(seconds, _decisions(taught, places) == _decisions(other, places))
 
 
@@ -63,6 +64,11 @@ def undo_of_rlas(system: RlaSystem, other: RlaSystem, events: Sequence[TeachingE
     _choice(system, places[-1])
     seconds = time.thread_time() - began_s
     return Undo(seconds, all(_choice(system, place) == _choice(other, place) for place in places))
+
+
+def _situation(lesson: Label | Signal) -> NDArray[np.float64]:
+    """Return the situation (d,) of a label, or that of the newest tick of a reward."""
+    return lesson.situation if isinstance(lesson, Label) else lesson.driven[0].situation
 
 
 def _decisions(team: LearnerTeam, places: Sequence[_Place]) -> list[str | None]:

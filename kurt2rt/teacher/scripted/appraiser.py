@@ -251,8 +251,9 @@ class ScriptedAppraiser:
         return times.reward_ticks() if isinstance(times, HumanTimes) else self._timing.reaction
 
     def _reward(self, value: int, tick: int, record: TickRecord) -> Command | None:
-        by_rla = record.decision.rla_id is not None or tick < record.tick
-        if value == 0 or not by_rla:
+        decision = record.decision
+        learned = decision.rla_id is not None or decision.cause is DecisionCause.LEARNER or tick < record.tick
+        if value == 0 or not learned:
             return None
         if value < 0:
             if self._timing.max_punishments and self._punishments >= self._timing.max_punishments:

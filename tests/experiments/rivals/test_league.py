@@ -147,7 +147,7 @@ def test_mark_holds_what_a_lesson_of_so_many_presses_teaches() -> None:
     assert [mark.presses for mark in lesson.marks[:-1]] == list(AFTER)
     for mark in lesson.marks[:-1]:
         assert list(mark.events) == events_until_press(task, mark.presses)
-        assert mark.labels == ()
+        assert mark.lessons == ()
     assert len(lesson.marks[-1].events) > len(lesson.marks[-2].events)
 
 
@@ -156,7 +156,7 @@ def test_marks_that_are_not_reached_are_of_the_end() -> None:
     team = Rival("1-nn").new_team(task, ROBOT, 3903)
     lesson = lesson_of(task, team)
     assert lesson.result.presses < AFTER[-1]
-    assert lesson.marks[1].labels == lesson.marks[-1].labels == team.labels
+    assert lesson.marks[1].lessons == lesson.marks[-1].lessons == team.lessons
     assert lesson.marks[1].presses == AFTER[-1]
 
 

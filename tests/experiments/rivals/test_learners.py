@@ -10,16 +10,17 @@ from kurt2rt.core.learner.conformance import broken_promises
 from kurt2rt.core.learner.learner import Learner, LearnerSetting, Why
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
-from kurt2rt.experiments.rivals.holds.rows import TARGETS
+from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLDS
 from kurt2rt.experiments.rivals.learners.flat_trees import FlatTrees
 from kurt2rt.experiments.rivals.registry import find_learner, learner_names
+from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNALS
 from tests.experiments.helpers import ROBOT
 
 SETTING = learner_setting(load_task("wall_following"), ROBOT, seed=7)
 FLAT = LearnerSetting(2, np.ones(2), 10.0, 0.5, 0.1, ("a", "b", "c"), 1)
 NEVER_ASK = ("1-nn", "tree")
-PRESSED = [name for name in learner_names() if name not in TARGETS]
-"""Learners that learn by presses; those with a teacher in charge act where no teacher is."""
+PRESSED = [name for name in learner_names() if name not in (*HOLDS, *SIGNALS)]
+"""Learners that learn by presses; those of holds and of rewards act where no teacher is."""
 
 
 def taught(name: str, *labels: tuple[float, float, str], setting: LearnerSetting = FLAT) -> Learner:
@@ -33,7 +34,7 @@ def says(learner: Learner, x: float, y: float, *, teacher: bool = False) -> str 
     return learner.decide(np.array([x, y]), taught=teacher)
 
 
-@pytest.mark.parametrize("name", [*PRESSED, *(pytest.param(name, marks=pytest.mark.deep) for name in TARGETS)])
+@pytest.mark.parametrize("name", [*PRESSED, *(pytest.param(name, marks=pytest.mark.deep) for name in HOLDS), *SIGNALS])
 def test_each_learner_keeps_all_promises(name: str) -> None:
     assert broken_promises(find_learner(name), SETTING) == []
 
@@ -46,7 +47,7 @@ GROUPS: Sequence[tuple[float, float, str]] = [
 """Five labels each around two places, farther apart than R."""
 
 
-@pytest.mark.parametrize("name", learner_names())
+@pytest.mark.parametrize("name", [name for name in learner_names() if name not in SIGNALS])
 def test_each_learner_tells_two_groups_apart(name: str) -> None:
     learner = taught(name, *GROUPS)
     assert (says(learner, 0.2, 0.2), says(learner, 40.2, 0.2)) == ("a", "b")

@@ -1,0 +1,1 @@
+"""Learners of rewards alone, and their lesson."""
