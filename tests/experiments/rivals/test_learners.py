@@ -19,6 +19,8 @@ from tests.experiments.helpers import ROBOT
 SETTING = learner_setting(load_task("wall_following"), ROBOT, seed=7)
 FLAT = LearnerSetting(2, np.ones(2), 10.0, 0.5, 0.1, ("a", "b", "c"), 1)
 NEVER_ASK = ("1-nn", "tree")
+SLOWLY_FITTED = (*HOLDS, "mlp-ensemble", "forest", "arf", "svm", "hoeffding")
+"""Learners whose check takes seconds, because it fits them forty times and more."""
 PRESSED = [name for name in learner_names() if name not in (*HOLDS, *SIGNALS)]
 """Learners that learn by presses; those of holds and of rewards act where no teacher is."""
 
@@ -34,7 +36,10 @@ def says(learner: Learner, x: float, y: float, *, teacher: bool = False) -> str 
     return learner.decide(np.array([x, y]), taught=teacher)
 
 
-@pytest.mark.parametrize("name", [*PRESSED, *(pytest.param(name, marks=pytest.mark.deep) for name in HOLDS), *SIGNALS])
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.deep] if name in SLOWLY_FITTED else []) for name in learner_names()],
+)
 def test_each_learner_keeps_all_promises(name: str) -> None:
     assert broken_promises(find_learner(name), SETTING) == []
 
