@@ -61,7 +61,7 @@ def search(options: _Options) -> None:
         kurt2rt search circle --trials 20 --jobs 2
     """
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+    from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
     from kurt2rt.experiments.search.figures import draw_trials
     from kurt2rt.experiments.search.found import write_found

@@ -12,7 +12,7 @@ from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.gym.agent_task import load_agent_task
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
 from kurt2rt.gym.episode_setup import EpisodeSetup

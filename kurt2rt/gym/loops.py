@@ -2,7 +2,7 @@
 
 from hal.batch import BatchFactory
 from hal.settings import SettingsError
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.gym.batch_drive import BatchDrive
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup

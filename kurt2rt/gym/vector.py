@@ -5,7 +5,7 @@ from typing import Any
 
 from gymnasium.vector import SyncVectorEnv
 
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.gym.environment import TaskEnvironment
 from simbridge.batch.compiled import IS_COMPILED
 

@@ -9,7 +9,7 @@ import typer
 from kurt2rt.cli.lesson_options import LessonOptions
 from kurt2rt.cli.options import Jobs
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 
 
 @dataclass(frozen=True)

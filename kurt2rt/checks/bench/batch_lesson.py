@@ -12,7 +12,7 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson, require_equal_lessons
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore

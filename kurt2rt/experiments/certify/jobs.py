@@ -12,8 +12,8 @@ from hal.batch_refusal import BatchRefusedError
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
 from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.jobs import SimulationJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum

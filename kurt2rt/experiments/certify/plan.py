@@ -15,7 +15,7 @@ from kurt2rt.experiments.certify.jobs import BlockJob, WitnessJob, require_equal
 from kurt2rt.experiments.certify.outcome import BlockOutcome, RunOutcome, WitnessOutcome
 from kurt2rt.experiments.certify.run import ALL_WORK, SEED, BrokenShare, Run, draw_runs
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop, choose_witnesses
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, choose_witnesses
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash, source_hash
 from kurt2rt.experiments.study.results import Results

@@ -15,8 +15,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
 from kurt2rt.experiments.lockstep.batch_mind import refused
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson

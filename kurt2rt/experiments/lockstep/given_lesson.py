@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 
 

@@ -13,8 +13,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 

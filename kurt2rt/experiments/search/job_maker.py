@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoops, choose_witnesses
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoops, choose_witnesses
 from kurt2rt.experiments.search.jobs import SearchJob, label_of
 from kurt2rt.experiments.search.learner_job import LearnerSearchJob
 from kurt2rt.experiments.search.settings import Robots, SearchSettings

@@ -8,8 +8,8 @@ from hal.batch_refusal import BatchRefusedError
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, WorldResult, run_drives
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.seed_result import seed_result
 from kurt2rt.experiments.rivals.lesson import teach_rival
 from kurt2rt.experiments.rivals.rival import Rival

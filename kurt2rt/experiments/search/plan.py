@@ -10,7 +10,7 @@ from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.search.job_maker import JobMaker
 from kurt2rt.experiments.search.jobs import SearchJob
 from kurt2rt.experiments.search.learner_job import LearnerSearchJob

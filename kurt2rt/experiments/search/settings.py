@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from hal.settings import Settings, find_config, load_settings
 from kurt2rt.core.task_settings import Name
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.rivals.tuned import GATE
 
 SEED = "SEED"

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 
 from hal.settings import Settings
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, BatchDiffersError
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, BatchDiffersError
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Provenance

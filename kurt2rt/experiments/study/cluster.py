@@ -10,7 +10,7 @@ from distributed import CancelledError, Client, Future, LocalCluster, as_complet
 from distributed.scheduler import KilledWorker
 
 from hal.errors import UserError
-from kurt2rt.experiments.lockstep.exam_driver import choose_witnesses
+from kurt2rt.experiments.lockstep.drive_loop import choose_witnesses
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress

@@ -12,7 +12,7 @@ from hal.settings import Settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoops
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoops
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.progress_sum import ProgressSum
 from kurt2rt.experiments.study.provenance import Provenance

@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, DriveLoops, choose_witnesses
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops, choose_witnesses
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import StudyJob
 

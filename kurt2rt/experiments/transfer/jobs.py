@@ -11,8 +11,8 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives, run_lesson
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.route.lesson import copy_knowledge

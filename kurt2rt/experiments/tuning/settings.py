@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.settings import Settings, SettingsError, find_config, load_settings
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.rivals.rival import TUNED
 from kurt2rt.experiments.rivals.tuned import GATE
 from kurt2rt.experiments.search.settings import (

@@ -17,7 +17,7 @@ from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, m
 from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs
 from kurt2rt.experiments.certify.summary import summarise, worst_runs
 from kurt2rt.experiments.certify.tables import all_tables
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.parcel import pack, run_parcel
 from kurt2rt.experiments.study.plan import run_missing

@@ -12,7 +12,7 @@ from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError, DriveLoop
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson, require_equal_lessons
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.journal.loading import read_knowledge

@@ -8,8 +8,8 @@ import pytest
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
+from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError
 from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.exam_driver import BatchDiffersError
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
 from kurt2rt.experiments.study.jobs import JobParts

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.lockstep.exam_driver import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
 from kurt2rt.experiments.paper.jobs import GrowthJob
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopRequest, RequestedLoops, choose_loops

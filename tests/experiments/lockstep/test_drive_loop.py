@@ -7,8 +7,8 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_drives, run_exams
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
-from kurt2rt.experiments.lockstep.exam_driver import DriveLoop, choose_witnesses
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 
