@@ -17,12 +17,13 @@ from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
+from kurt2rt.experiments.phases.steps import reward_plan
 from kurt2rt.experiments.rivals.holds.lesson import teach_by_holds
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
 from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
 from kurt2rt.experiments.rivals.rival import Rival
-from kurt2rt.experiments.rivals.signals.lesson import teach_by_signals
 from kurt2rt.experiments.rivals.undo import Undo, undo_of_learner, undo_of_rlas
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.transfer.jobs import verdict_by
@@ -139,17 +140,28 @@ class RivalJob(StudyJob):
         on_progress: Callable[[float], None],
     ) -> tuple[RivalLesson, Runtime]:
         """Give the lesson: by the task's teacher, by rewards, or by a teacher in charge."""
-        if self.rival.is_rewarded:
-            return await teach_by_signals(
-                simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
-            )
         if not self.rival.is_held:
+            # The teacher of phase 3 answers questions, too, which of these only RLAs ask.
+            rewards = (
+                reward_plan(self.task, self.task.teaching.duration_s, "lesson") if self.rival.is_rewarded else None
+            )
             return await teach_rival(
-                simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
+                simulation,
+                self.robot,
+                self.task,
+                team,
+                self.after,
+                seed=self.seed,
+                on_progress=on_progress,
+                plan=rewards,
             )
         return await teach_by_holds(
             simulation, self.robot, self.task, team, clock, self.after, seed=self.seed, on_progress=on_progress
         )
+
+    def _reward_plan(self) -> LessonPlan:
+        """Return the plan of phase 3, whose teacher answers questions, too; of these rivals only RLAs ask."""
+        return reward_plan(self.task, self.task.teaching.duration_s, "lesson")
 
     def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
         if not self.rival.is_learner:

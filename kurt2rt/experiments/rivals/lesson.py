@@ -54,8 +54,9 @@ async def teach_rival(
     *,
     seed: int,
     on_progress: Callable[[float], None],
+    plan: LessonPlan | None = None,
 ) -> tuple[RivalLesson, Runtime]:
-    """Give the task's lesson; return it with the runtime that was taught.
+    """Give the task's lesson, or that of another plan; return it with the runtime that was taught.
 
     Args:
         simulation: that the robot drives in.
@@ -65,14 +66,16 @@ async def teach_rival(
         after: numbers of presses after which the knowledge is marked, ascending.
         seed: random choices of the teacher.
         on_progress: called once a second with the simulated seconds.
+        plan: None: the task's own, phases 1 and 2.
 
     Raises:
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
     """
-    store = InMemoryEventStore()
-    runtime = build_training_runtime(simulation, settings, task, TrainingStore(store, learners=team))
-    run = MarkedRun(simulation, runtime, store, team, after, seed=seed, on_progress=on_progress)
+    store, plan = InMemoryEventStore(), plan or plan_of(task)
+    training = TrainingStore(store, learners=team)
+    runtime = build_training_runtime(simulation, settings, task, training, appraises=plan.appraises)
+    run = MarkedRun(simulation, runtime, store, team, after, seed=seed, on_progress=on_progress, plan=plan)
     await run.drive()
     return run.lesson(), runtime
 

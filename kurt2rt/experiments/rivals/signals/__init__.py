@@ -1,1 +1,1 @@
-"""Learners of rewards alone, and their lesson."""
+"""Learners of rewards."""

@@ -9,11 +9,11 @@ import pytest
 from hal.settings import SettingsError
 from kurt2rt.core.learner.learner import Driven, LearnerSetting
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.rivals.lesson import RivalLesson
+from kurt2rt.experiments.phases.steps import reward_plan
+from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.signals.coach import Coach
 from kurt2rt.experiments.rivals.signals.deep_tamer import DeepTamer
-from kurt2rt.experiments.rivals.signals.lesson import teach_by_signals
 from kurt2rt.experiments.rivals.signals.reward_learner import RewardLearner
 from kurt2rt.experiments.rivals.signals.rows import REWARDED, TARGETS
 from kurt2rt.experiments.rivals.signals.tamer import CREDIT_TICKS, Tamer
@@ -27,11 +27,12 @@ LEARNERS = (Tamer, DeepTamer, Coach)
 def lesson_by(name: str, task: TaskSettings) -> RivalLesson:
     rival = Rival(name)
     team = rival.new_team(task, ROBOT, 3920) if rival.is_learner else None
+    plan = reward_plan(task, task.teaching.duration_s, "lesson")
 
     async def teach() -> RivalLesson:
         with closing(STAGE.open(task.teaching.world, 3920, "lesson")) as simulation:
-            lesson, _ = await teach_by_signals(
-                simulation, ROBOT, task, team, (1,), seed=3920, on_progress=lambda _: None
+            lesson, _ = await teach_rival(
+                simulation, ROBOT, task, team, (1,), seed=3920, on_progress=lambda _: None, plan=plan
             )
             return lesson
 
