@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -160,8 +160,12 @@ class RivalJob(StudyJob):
         )
 
     def _reward_plan(self) -> LessonPlan:
-        """Return the plan of phase 3, whose teacher answers questions, too; of these rivals only RLAs ask."""
-        return reward_plan(self.task, self.task.teaching.duration_s, "lesson")
+        """Return the plan of phase 3, whose teacher answers questions, too; of these rivals only RLAs ask.
+
+        The limit on rewards of -1 is for RLAs that know most already. Learners of rewards have nothing else.
+        """
+        plan = reward_plan(self.task, self.task.teaching.duration_s, "lesson")
+        return replace(plan, times=replace(plan.times, most_blame=0)) if self.rival.is_learner else plan
 
     def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
         if not self.rival.is_learner:
