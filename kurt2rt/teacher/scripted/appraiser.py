@@ -242,6 +242,8 @@ class ScriptedAppraiser:
         )
         if command is not None and self._answering.times.allows_press():
             self._next_tick[value] = record.tick + self._timing.every[value]
+            # Here, because a person's limit on presses holds back rewards that were due.
+            self._punishments += isinstance(command, Reward) and value < 0
             self._next_any = record.tick + self._timing.gap
             self._delayed.append(_DelayedCommand(record.tick + self._reaction_ticks(), command))
 
@@ -255,10 +257,9 @@ class ScriptedAppraiser:
         learned = decision.rla_id is not None or decision.cause is DecisionCause.LEARNER or tick < record.tick
         if value == 0 or not learned:
             return None
-        if value < 0:
-            if self._timing.max_punishments and self._punishments >= self._timing.max_punishments:
-                return None
-            self._punishments += 1
+        limit = self._timing.max_punishments
+        if value < 0 and limit and self._punishments >= limit:
+            return None
         return Reward(self._next_id(), _NAME, value, tick)
 
     def _appraise(self, value: int, tick: int) -> Command | None:

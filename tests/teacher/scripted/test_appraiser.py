@@ -9,10 +9,13 @@ import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult
+from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (
@@ -23,9 +26,13 @@ from kurt2rt.teacher.scripted.appraiser import (
     ScriptedAppraiser,
     UnknownPenalty,
 )
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
+from kurt2rt.teacher.scripted.build import build_teacher
 from tests.core.helpers import sensed
 from tests.teacher.scripted.test_teacher import teacher
 
+ROBOT = load_robot()
+TASK = taught_by(load_task("wall_following"), load_teacher("ordinary"))
 TIMING = FeedbackTiming(reaction=10, every={-1: 20, 0: 40, 1: 40})
 GOOD, NEUTRAL, BAD = 1, 0, -1
 
@@ -48,9 +55,14 @@ def record(tick: int, verdict: int, cause: DecisionCause = DecisionCause.RLA) ->
     return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), appraisal_features=circumstances)
 
 
-def appraiser(phase: Phase, rewards: RewardSource | None = None, timing: FeedbackTiming = TIMING) -> ScriptedAppraiser:
+def appraiser(
+    phase: Phase,
+    rewards: RewardSource | None = None,
+    timing: FeedbackTiming = TIMING,
+    answering: BasicTeacher | None = None,
+) -> ScriptedAppraiser:
     person = ScriptedAppraiser(
-        teacher(Phase.SUPERVISED),
+        answering or teacher(Phase.SUPERVISED),
         timing,
         rewards or JudgeReward(LeftIsTheVerdict()),
         {-1: "bad", 0: "neutral", 1: "good"},
@@ -98,6 +110,15 @@ def test_punishments_at_the_limit_end_and_rewards_go_on() -> None:
     bad = [record(tick, BAD) for tick in range(1, 101)]
     good = [record(tick, GOOD) for tick in range(101, 120)]
     assert [value for _, value, _ in signals(given(person, [*bad, *good]))] == [-1, -1, 1]
+
+
+def test_press_that_a_person_has_not_left_is_no_punishment() -> None:
+    answering = build_teacher(TASK, ROBOT, ("forward",), seed=1, session="s")
+    person = appraiser(Phase.REINFORCEMENT, timing=replace(TIMING, max_punishments=20), answering=answering)
+    given_ticks = [tick for tick, _, _ in signals(given(person, [record(tick, BAD) for tick in range(1, 8001)]))]
+    # Twelve presses a minute: the next ones come as soon as the first are a minute old, and then the limit ends them.
+    assert len([tick for tick in given_ticks if tick <= 6000]) == 12
+    assert len(given_ticks) == 20
 
 
 @pytest.mark.parametrize("cause", [DecisionCause.UNKNOWN, DecisionCause.STOPPED, DecisionCause.TEACHER])
