@@ -1,1 +1,69 @@
-"""The runtime: clock, scheduler, perception, rule-like associations, teaching and knowledge."""
+"""Library of the robot KURT2, taught by rule-like associations (RLAs).
+
+These names are promised; all other modules may change without notice:
+
+    SimulatedRobot  a robot in a simulated world: step it, read its senses, teach it, ask it why
+    Teacher         connection to a robot that runs, real or simulated (`kurt2rt run`)
+    teach           let a scripted teacher teach a task, and get the knowledge
+    Knowledge       taught RLAs, in a file
+    examine         let taught robots drive without a teacher
+    Examination     result of `examine`, with a table and a plot
+    Error           base of the errors that you can mend
+
+A first plot:
+
+    import kurt2rt
+
+    with kurt2rt.SimulatedRobot(task="wall_following", world="a", seed=1) as robot:
+        robot.teach("forward")
+        robot.run(seconds=5)
+        print(robot.senses["front"].metres, robot.why())
+        robot.plot().savefig("drive.png")
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hal.errors import UserError as Error
+    from kurt2rt.library.examination import Examination, examine
+    from kurt2rt.library.knowledge import Knowledge, teach
+    from kurt2rt.library.simulated_robot import SimulatedRobot
+    from kurt2rt.teacher.client.teacher import Teacher
+
+    __version__: str
+
+__all__ = ["Error", "Examination", "Knowledge", "SimulatedRobot", "Teacher", "__version__", "examine", "teach"]
+
+_PLACES = {
+    "Error": ("hal.errors", "UserError"),
+    "Examination": ("kurt2rt.library.examination", "Examination"),
+    "Knowledge": ("kurt2rt.library.knowledge", "Knowledge"),
+    "SimulatedRobot": ("kurt2rt.library.simulated_robot", "SimulatedRobot"),
+    "Teacher": ("kurt2rt.teacher.client.teacher", "Teacher"),
+    "examine": ("kurt2rt.library.examination", "examine"),
+    "teach": ("kurt2rt.library.knowledge", "teach"),
+}
+"""Module and name there of each promised name, imported on first use (PEP 562)."""
+
+
+if not TYPE_CHECKING:  # a type checker would take any name for promised
+
+    def __getattr__(name: str) -> object:
+        """Import a promised name on its first use. Raises AttributeError for any other name."""
+        if name == "__version__":
+            # Not at the top: this module takes longer to import than all others here.
+            from importlib.metadata import version
+
+            return version("kurt2rt")
+        if name not in _PLACES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}; allowed are {', '.join(__all__)}")
+        module, there = _PLACES[name]
+        found: object = getattr(import_module(module), there)
+        globals()[name] = found
+        return found
+
+
+def __dir__() -> list[str]:
+    """Return the promised names."""
+    return sorted(__all__)

@@ -19,7 +19,7 @@ ROOMS: dict[str, frozenset[str]] = {
         "behaviors": "hal",
         "simbridge": "config hal",
         "simbridge.batch": "* behaviors simbridge",
-        "kurt2rt": "",
+        "kurt2rt": "hal.errors",
         "kurt2rt.platform": "",
         "kurt2rt.core": "hal behaviors kurt2rt.platform",
         "kurt2rt.knowledge": "hal behaviors kurt2rt.platform kurt2rt.core",
@@ -35,6 +35,8 @@ ROOMS: dict[str, frozenset[str]] = {
         "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.teacher.scripted",
         "kurt2rt.gym": "hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.experiments.lockstep",
+        "kurt2rt.library": "hal simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
         " kurt2rt.experiments.lockstep",
         "kurt2rt.checks": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
         " kurt2rt.channel kurt2rt.teacher kurt2rt.service kurt2rt.experiments",

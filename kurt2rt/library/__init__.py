@@ -1,0 +1,1 @@
+"""Synchronous names of the package `kurt2rt`, for scripts and notebooks."""

@@ -1,0 +1,240 @@
+"""Simulated robot for scripts and notebooks, taught by the caller."""
+
+import tempfile
+from contextlib import ExitStack
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from hal.errors import UserError
+from hal.robot_settings import load_robot
+from hal.simulation import Pose
+from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.knowledge.files.atomic_write import write_new
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.library.drive import Drive
+from kurt2rt.library.knowledge import Knowledge
+from kurt2rt.library.senses import Senses
+from kurt2rt.library.simulation import open_factory
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.facts import MOST_OTHERS
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_PURPOSE = "library"
+_TEACHER = "caller"
+_LONGEST_S = 24 * 3600.0
+
+
+class SimulatedRobot:
+    """A robot in a simulated world, which moves only in `step` and `run`, as fast as this machine can.
+
+    Close it, or use it as a context manager. Lessons that were not saved by `save` are gone then.
+    """
+
+    def __init__(
+        self,
+        *,
+        task: str | None = None,
+        world: str | None = None,
+        seed: int = 0,
+        knowledge: Knowledge | None = None,
+        robot: str = "kurt2",
+    ) -> None:
+        """Put the robot into its world and take its first step, so that it has readings.
+
+        Args:
+            task: name or path; None: that of `knowledge`, else wall_following.
+            world: name or path; None: the world that the task is taught in.
+            seed: of the sensors, the noise and the start pose.
+            knowledge: to begin with; its file stays as it is.
+            robot: name or path of the robot's settings.
+
+        Raises:
+            UserError: as kurt2rt.Error, a name is unknown, or settings do not fit each other.
+        """
+        settings = load_robot(robot)
+        self._robot = robot
+        self._task = task or ("wall_following" if knowledge is None else knowledge.task)
+        loaded = load_task(self._task)
+        _require_one_behaviour(loaded)
+        self._world = world or loaded.teaching.world
+        self._factory = open_factory(settings)
+        self._factory.require_worlds(self._world)
+        require_course(self._factory, loaded, [self._world])
+        self._sent = 0
+        with ExitStack() as opened:
+            folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
+            self._file = Path(folder).resolve() / "taught.knowledge"
+            if knowledge is not None:
+                with Journal.read_only(knowledge.path) as journal:
+                    write_new(journal.image(), self._file)
+            self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded))
+            simulation = self._factory.open(self._world, seed, _PURPOSE)
+            opened.callback(simulation.close)
+            self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
+            self._drive.step()
+            self._opened = opened.pop_all()
+        self._closed = False
+
+    def step(self, ticks: int = 1) -> None:
+        """Let the robot sense, decide and drive for a number of ticks of 10 ms.
+
+        Raises UserError (kurt2rt.Error) for a number below 1 or with a fraction, and for a lost lesson.
+        """
+        if ticks < 1 or ticks % 1:  # a fraction, or not a number
+            raise UserError(f"not a number of steps (got {ticks!r}, allowed whole numbers from 1 on)", where="ticks")
+        self._require_open()
+        for _ in range(int(ticks)):
+            self._drive.step()
+        self._keeping.check()
+
+    def run(self, seconds: float) -> None:
+        """Drive for `seconds` of robot time. Raises UserError (kurt2rt.Error) as `step` does."""
+        if not 0.0 < seconds <= _LONGEST_S:
+            raise UserError(
+                f"not a duration (got {seconds!r}, allowed above 0, at most {_LONGEST_S:g})", where="seconds"
+            )
+        self.step(max(1, round(seconds / self._drive.period_s)))
+
+    def teach(self, action: str) -> None:
+        """Answer the robot's question with an action, or correct what it does; takes one step.
+
+        Raises UserError (kurt2rt.Error) if the robot refuses the lesson, or has no such action.
+        """
+        if action not in self.actions:
+            raise UserError(f"unknown (got {action!r}, allowed {', '.join(self.actions)})", where="action")
+        lesson = Teach if self._drive.record.decision.asking else Correct
+        self._command(lesson(self._next_id(), _TEACHER, action))
+
+    def resume(self) -> None:
+        """Drive again after the guard stopped the robot; takes one step.
+
+        Raises UserError (kurt2rt.Error) if it must stand.
+        """
+        self._command(Resume(self._next_id(), _TEACHER))
+
+    def why(self) -> str:
+        """Return the decision of the newest step and its reasons, a line each."""
+        drive = self._drive
+        facts = collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS)
+        return "\n".join([headline(facts), *format_reasons(facts)])
+
+    def save(self, path: str | PathLike[str]) -> Knowledge:
+        """Save all lessons in a new file, durable on return.
+
+        Raises UserError (kurt2rt.Error) if a file is there already, or the disk does not take it.
+        """
+        self._require_open()
+        self._keeping.end(self._drive.runtime.snapshot())
+        with Journal.in_writer_process(self._file) as journal:
+            write_new(journal.image(), Path(path))
+        return Knowledge.load(path, task=self._task, robot=self._robot)
+
+    def plot(self) -> "Figure":
+        """Return a figure of the world from above, the drive so far, and the places of its questions."""
+        # Late import: matplotlib is an extra that a robot does not need.
+        from kurt2rt.library.figures import drive_figure
+
+        return drive_figure(self._factory, self._world, self._drive.trail, self._drive.ask_positions)
+
+    @property
+    def senses(self) -> Senses:
+        """Infra-red readings of the newest step: `senses["front"].metres`."""
+        return Senses(self._drive.runtime.robot, self._drive.record.readings)
+
+    @property
+    def question(self) -> str | None:
+        """Reasons for which the robot stands and asks; None if it does not ask."""
+        return self.why() if self._drive.record.decision.asking else None
+
+    @property
+    def action(self) -> str | None:
+        """Action that drives; None while the robot stands."""
+        return self._drive.record.decision.action
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Actions that can be taught."""
+        return tuple(self._drive.runtime.level.repertoire)
+
+    @property
+    def rlas(self) -> tuple[Rla, ...]:
+        """Active RLAs of the basic level."""
+        return self._drive.runtime.level.system.rlas
+
+    @property
+    def seconds(self) -> float:
+        """Robot time since the beginning."""
+        return self._drive.ticks * self._drive.period_s
+
+    @property
+    def pose(self) -> Pose:
+        """True pose in the world, in m and rad, which the robot itself does not know."""
+        return self._drive.simulation.pose
+
+    @property
+    def collisions(self) -> int:
+        """Contacts with walls and obstacles so far."""
+        return self._drive.simulation.collisions
+
+    def close(self) -> None:
+        """Stop the robot and drop what was not saved; again: nothing."""
+        self._closed = True
+        self._opened.close()
+
+    def __enter__(self) -> Self:
+        """Return the robot."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the robot."""
+        self.close()
+
+    def __repr__(self) -> str:
+        """Return task, world, time and knowledge."""
+        return (
+            f"SimulatedRobot in world {self._world}, task {self._task}: {self.seconds:.2f} s, "
+            f"{len(self.rlas)} RLAs, {self.action or 'stands'}"
+        )
+
+    def _command(self, command: Teach | Correct | Resume) -> None:
+        """Send a command, take one step, and raise kurt2rt.Error if the robot refuses it."""
+        self._require_open()
+        self._send(command)
+        self.step()
+        for result in self._drive.record.results:
+            if result.command_id == command.command_id and not result.accepted:
+                raise UserError(f"the robot refused it: {text_of(result.outcome)}", where=type(command).__name__)
+
+    def _send(self, command: Command) -> None:
+        self._drive.send(command)
+
+    def _next_id(self) -> str:
+        # Lessons of an earlier robot may be in the file; a command id counts once in it.
+        self._sent += 1
+        return f"{_PURPOSE}-after-{len(self._keeping.opened.entries)}-{self._sent}"
+
+    def _require_open(self) -> None:
+        if self._closed:
+            raise UserError("is closed", where="SimulatedRobot", do="make a new one")
+
+
+def _require_one_behaviour(task: TaskSettings) -> None:
+    """Raise UserError for a task in which lessons would need a behaviour or a level, which `teach` does not take."""
+    if task.mid is not None or len(task.behaviours) > 1:
+        raise UserError(
+            "has a mid level or several behaviours, which a robot of the library cannot be taught",
+            where=f"task {task.name}",
+            do="give a task with one behaviour, or use kurt2rt.Teacher",
+        )

@@ -1,0 +1,103 @@
+"""`import kurt2rt`: a simulated robot is stepped, taught, asked and saved without async."""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import kurt2rt
+
+
+@pytest.fixture
+def robot() -> Iterator[kurt2rt.SimulatedRobot]:
+    with kurt2rt.SimulatedRobot(task="wall_following", world="a", seed=1) as robot:
+        yield robot
+
+
+def test_library_import_loads_nothing_heavy() -> None:
+    heavy = ("numpy", "anyio", "pydantic", "yaml", "can", "matplotlib", "pymunk", "networkx")
+    program = f"import sys, kurt2rt; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_library_each_promised_name_is_there() -> None:
+    assert dir(kurt2rt) == sorted(kurt2rt.__all__)
+    assert all(getattr(kurt2rt, name) for name in kurt2rt.__all__)
+
+
+def test_library_unknown_name_is_refused_with_the_allowed() -> None:
+    with pytest.raises(AttributeError, match=r"'Robot'.*SimulatedRobot"):
+        _ = kurt2rt.Robot  # type: ignore[attr-defined]
+
+
+def test_simulated_robot_asks_and_drives_as_taught(robot: kurt2rt.SimulatedRobot) -> None:
+    assert robot.question == "stands and asks\nNothing was taught yet, so the robot asks."
+    before = robot.pose
+    robot.teach("back")
+    robot.step(20)
+    assert robot.action == "back"
+    assert robot.question is None
+    assert robot.pose != before
+    assert robot.seconds == pytest.approx(0.22)
+
+
+def test_simulated_robot_teach_while_driving_corrects(robot: kurt2rt.SimulatedRobot) -> None:
+    robot.teach("forward")
+    robot.teach("stand")
+    assert [rla.action for rla in robot.rlas] == ["stand"]
+
+
+def test_senses_side_is_its_nearest_sensor_in_metres(robot: kurt2rt.SimulatedRobot) -> None:
+    senses = robot.senses
+    places = [name for name in senses if name.startswith("front ")]
+    assert len(places) == 5
+    assert senses["front"].metres == min(senses[name].metres for name in places) == pytest.approx(0.33, abs=0.02)
+    assert not senses["right"].detects
+    assert senses["right"].metres == 0.6
+
+
+def test_save_keeps_lessons_and_refuses_another_file(robot: kurt2rt.SimulatedRobot, tmp_path: Path) -> None:
+    robot.teach("forward")
+    saved = robot.save(tmp_path / "mine.knowledge")
+    robot.teach("stand")
+    with pytest.raises(kurt2rt.Error, match=r"mine\.knowledge"):
+        robot.save(tmp_path / "mine.knowledge")
+    assert [rla.action for rla in kurt2rt.Knowledge.load(saved.path).rlas] == ["forward"]
+
+
+def test_simulated_robot_goes_on_from_saved_knowledge(robot: kurt2rt.SimulatedRobot, tmp_path: Path) -> None:
+    robot.teach("forward")
+    first = robot.save(tmp_path / "first.knowledge")
+    before = first.path.read_bytes()
+    with kurt2rt.SimulatedRobot(knowledge=first, world="a", seed=1) as again:
+        again.teach("stand")
+        second = again.save(tmp_path / "second.knowledge")
+    assert len(second.events) == len(first.events) + 1
+    assert first.path.read_bytes() == before
+
+
+def test_simulated_robot_bad_input_is_one_clear_error(robot: kurt2rt.SimulatedRobot) -> None:
+    with pytest.raises(kurt2rt.Error, match=r"action: unknown \(got 'fly', allowed forward, "):
+        robot.teach("fly")
+    with pytest.raises(kurt2rt.Error, match=r"senses: unknown \(got 'top', allowed front, "):
+        robot.senses["top"]
+    with pytest.raises(kurt2rt.Error, match="seconds: not a duration"):
+        robot.run(float("nan"))
+    with pytest.raises(kurt2rt.Error, match="ticks: not a number of steps"):
+        robot.step(0)
+    with pytest.raises(kurt2rt.Error, match="task streets: has a mid level or several behaviours"):
+        kurt2rt.SimulatedRobot(task="streets")
+    robot.close()
+    with pytest.raises(kurt2rt.Error, match="SimulatedRobot: is closed"):
+        robot.step()
+
+
+async def test_examine_works_where_an_event_loop_runs(robot: kurt2rt.SimulatedRobot, tmp_path: Path) -> None:
+    robot.teach("forward")
+    result = kurt2rt.examine(robot.save(tmp_path / "one.knowledge"), worlds=["a"], seeds=[1, 2], seconds=2)
+    assert [drive.learned.seed for drive in result.drives] == [1, 2]
+    assert repr(result).endswith(f"{result.passed} of {result.judged} judged drives passed")
+    assert result._repr_html_().count("<tr>") == 3
