@@ -100,7 +100,7 @@ def effort_table(league: League) -> Table:
         words=2,
         note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
         "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
-        "teaches it nothing where it says so already.",
+        "teaches it nothing where it says so already. A reward is a label as well, and no press.",
     )
 
 
