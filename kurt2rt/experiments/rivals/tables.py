@@ -11,13 +11,16 @@ from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
 
+_GATES = "Default gates are first choices; that of the forest is 0.2 since it asked everywhere with 0.4 on robots 4100 to 4102. "
+
+
 def tuning_text(league: League) -> str:
     """Return which rivals have settings that were searched, in a sentence or two."""
     others = [row.entry.rival for row in league.rows if row.entry.rival.name != SHIPPED]
     tuned = list(dict.fromkeys(each.title for each in others if each.tuned))
     own = list(dict.fromkeys(each.title for each in others if not each.tuned))
     said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
-    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
+    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. {_GATES}" if own else ""
     return f"{said}{defaults}The settings of the RLA system as shipped were searched for longer."
 
 

@@ -57,7 +57,7 @@ def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
     assert len(list(all_tables(league_of(Results(tmp_path), OURS, OURS)))) == 4
 
 
-def test_report_says_that_nothing_was_tuned(tmp_path: Path) -> None:
+def test_report_says_which_rivals_were_tuned(tmp_path: Path) -> None:
     league = league_of(Results(tmp_path), OURS, THEIRS)
     picture = draw_curves(league, tmp_path / "rivals.png")
     assert imread(picture.path).shape[1] > 500
