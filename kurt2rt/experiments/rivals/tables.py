@@ -10,8 +10,9 @@ from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
-_FOREST = "The forest's gate is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102."
-_GATES = f"Default gates are first choices. {_FOREST}"
+_GATES = (
+    "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
+)
 
 
 def tuning_text(league: League) -> str:
@@ -20,8 +21,9 @@ def tuning_text(league: League) -> str:
     tuned = list(dict.fromkeys(each.title for each in others if each.tuned))
     own = list(dict.fromkeys(each.title for each in others if not each.tuned))
     said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
-    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. {_GATES} " if own else ""
-    return f"{said}{defaults}The settings of the RLA system as shipped were searched for longer."
+    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
+    gates = _GATES if any(each.name == "forest" and not each.tuned for each in others) else ""
+    return f"{said}{defaults}{gates}The settings of the RLA system as shipped were searched for longer."
 
 
 def all_tables(league: League) -> Iterator[Table]:
