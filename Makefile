@@ -79,6 +79,7 @@ types: $(INSTALLED)
 # What cannot be collected is told by the tests themselves.
 $(COMPILED): $(INSTALLED) $(shell find tests -name '*.py')
 	-@$(PYTEST) --collect-only -qqq > /dev/null 2>&1
+	@$(BIN)/python -m tests.compile_batch
 	@touch $@
 
 # One environment for both commands: what is tested is what runs.

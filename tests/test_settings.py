@@ -434,8 +434,8 @@ def test_misspelt_kind_is_refused_though_another_fails_to_import(
 
 
 def test_set_key_leads_to_a_place_of_a_list() -> None:
-    task = load_task("fleeing", changes={"learning.weights.2.weight": "0.04"})
-    assert [group.weight for group in task.learning.weights] == [2.0, 0.0, 0.04]
+    task = load_task("fleeing", changes={"learning.weights.2.weight": "0.5"})
+    assert [group.weight for group in task.learning.weights] == [0.97, 0.0, 0.5]
 
 
 def test_a_key_can_be_given_another_value_than_the_file_s() -> None:

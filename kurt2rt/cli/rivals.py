@@ -57,7 +57,7 @@ class _Options:
     ] = None
     task: Annotated[list[str] | None, task_option("Repeat for several. Default: wall_following.")] = None
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
-    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4100-4119.")] = "4100-4119"
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4106-4125.")] = "4106-4125"
     after: Annotated[
         list[int] | None,
         typer.Option(

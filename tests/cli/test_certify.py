@@ -38,6 +38,7 @@ def test_certificate_is_read_again_and_printed(kurt2rt: CommandLine, lessons: Pa
     assert "report  made/report.html" in said.out
 
 
+@pytest.mark.deep  # `results merge` of a lesson is quick, in test_results
 def test_shards_of_a_certificate_merge_to_what_one_machine_does(kurt2rt: CommandLine, lessons: Path) -> None:
     words = ("certify", lessons, "--seconds", "1", "--runs", "4", "--jobs", "1", "--pictures", "0", "--world", "a")
     alone = kurt2rt(*words, "--out", "alone")

@@ -10,7 +10,7 @@ from tests.cli.helpers import CommandLine
 SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
 
 
-@pytest.mark.parametrize("driven", ["--exams", "--lessons"])
+@pytest.mark.parametrize("driven", [pytest.param("--exams", marks=pytest.mark.deep), "--lessons"])
 def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: str) -> None:
     told = [
         json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", driven, each).out)
@@ -49,6 +49,7 @@ def test_lesson_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: Command
         assert "differ in lesson.asks; all results" in kurt2rt.refused(*words[:-1], loop)
 
 
+@pytest.mark.deep
 def test_lesson_on_the_bus_keeps_the_record_of_its_witnesses(kurt2rt: CommandLine) -> None:
     words = ("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--lessons")
     for loop in ("batch", "bus"):

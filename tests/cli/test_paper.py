@@ -103,6 +103,7 @@ def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp
     assert len(list(Path("batch/results/witnesses/shipped").glob("short_circle-*.json"))) == 2
 
 
+@pytest.mark.deep
 def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
     words = ("paper", "--task", short_task(tmp_path), "--jobs", "1", "--no-plain", "--out", "made")
     kurt2rt(*words, "--seeds", "100", "--lessons", "bus", "--exams", "bus")

@@ -3,6 +3,8 @@
 import json
 from pathlib import Path
 
+import pytest
+
 from tests.cli.helpers import CommandLine, results_in
 
 SHORT = (
@@ -32,6 +34,7 @@ def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
     assert not Path("made").exists()
 
 
+@pytest.mark.deep
 def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
     words = ("transfer", "--seeds", "1100", "--after", "1", "--after", "0", "--teacher", "superhuman", *SHORT[:-1])
     for loop in ("batch", "bus"):

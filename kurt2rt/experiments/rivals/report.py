@@ -35,6 +35,7 @@ def write_report(
         teachers=sorted({task.teaching.profile.name for task in plan.tasks}),
         seeds=spans(plan.seeds),
         by_holds=any(entry.rival.is_held for entry in plan.entries),
+        by_rewards=any(entry.rival.is_rewarded for entry in plan.entries),
         command=command,
         source=plan.policy_jobs[0].made_of.source,
     )

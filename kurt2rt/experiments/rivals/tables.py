@@ -10,6 +10,10 @@ from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
+_GATES = (
+    "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
+)
+
 
 def tuning_text(league: League) -> str:
     """Return which rivals have settings that were searched, in a sentence or two."""
@@ -18,7 +22,8 @@ def tuning_text(league: League) -> str:
     own = list(dict.fromkeys(each.title for each in others if not each.tuned))
     said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
     defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
-    return f"{said}{defaults}The settings of the RLA system as shipped were searched for longer."
+    gates = _GATES if any(each.name == "forest" and not each.tuned for each in others) else ""
+    return f"{said}{defaults}{gates}The settings of the RLA system as shipped were searched for longer."
 
 
 def all_tables(league: League) -> Iterator[Table]:
@@ -100,7 +105,7 @@ def effort_table(league: League) -> Table:
         words=2,
         note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
         "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
-        "teaches it nothing where it says so already.",
+        "teaches it nothing where it says so already. A reward is a label as well, and no press.",
     )
 
 

@@ -1,4 +1,4 @@
-"""Tuned settings of rivals, as `kurt2rt rivals --tune` leaves them in a YAML file."""
+"""Tuned settings of rivals, as `kurt2rt tune` leaves them in a YAML file."""
 
 from typing import Annotated
 

@@ -89,15 +89,26 @@ class TaskSpace:
         for each in search.space:
             self._require_free(each)
         self._require_fit()
+        self.rival(self.shipped)
 
     def changes(self, values: Values) -> dict[str, Any]:
         """Return what a trial changes in the task's file, by dotted key."""
         return changes_of_values(self._content, {key: value for key, value in values.items() if key != GATE})
 
     def rival(self, values: Values) -> Rival | None:
-        """Return the learner of a trial; None: the RLAs are taught. Raises NoLearnerError if there is none."""
+        """Return the learner of a trial; None: the RLAs are taught.
+
+        Raises NoLearnerError, and SettingsError for a learner of holds or rewards.
+        """
         learner = self._search.learner
-        return None if learner is None else Rival.of_learner(learner.name, values.get(GATE, learner.gate))
+        if learner is None:
+            return None
+        rival = Rival.of_learner(learner.name, values.get(GATE, learner.gate))
+        if rival.is_held or rival.is_rewarded:
+            raise SettingsError(
+                f"{learner.name} is not taught by presses", where="learner", do="name one of the presses league"
+            )
+        return rival
 
     def _shipped_value(self, key: str) -> float:
         if key == GATE:

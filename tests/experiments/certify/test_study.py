@@ -62,7 +62,7 @@ def test_outcome_in_the_batch_is_that_of_the_bus(taught: Taught, run: Run) -> No
     assert in_batch.differing(on_bus) == []
 
 
-@pytest.mark.parametrize("name", ["streets", "straight_on"])
+@pytest.mark.parametrize("name", ["streets", pytest.param("straight_on", marks=pytest.mark.deep)])
 def test_outcomes_in_streets_are_those_of_the_bus(name: str) -> None:
     times = {"supervised_s": SECONDS, "corrections_s": 2 * SECONDS}
     changes = {f"teaching.{key}": str(seconds) for key, seconds in times.items()}

@@ -64,8 +64,8 @@ def drive(task: TaskSettings, seed: int, team: LearnerTeam | None) -> Robot:
     ("name", "teacher", "seconds", "seed"),
     [
         ("wall_following", "superhuman", 60.0, 3501),
-        ("wall_following", "ordinary", 120.0, 3502),
-        ("streets", "ordinary", 60.0, 3503),  # three behaviours
+        pytest.param("wall_following", "ordinary", 120.0, 3502, marks=pytest.mark.deep),
+        pytest.param("streets", "ordinary", 60.0, 3503, marks=pytest.mark.deep),  # three behaviours
     ],
 )
 def test_rla_learner_drives_as_the_rla_level(name: str, teacher: str, seconds: float, seed: int) -> None:

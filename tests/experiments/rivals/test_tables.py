@@ -10,7 +10,6 @@ from kurt2rt.experiments.rivals.tables import (
     effort_table,
     machine_table,
     success_table,
-    tuning_text,
 )
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.rivals.outcomes import league_of, robot
@@ -57,13 +56,13 @@ def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
     assert len(list(all_tables(league_of(Results(tmp_path), OURS, OURS)))) == 4
 
 
-def test_report_says_that_nothing_was_tuned(tmp_path: Path) -> None:
+def test_report_says_which_rivals_were_tuned(tmp_path: Path) -> None:
     league = league_of(Results(tmp_path), OURS, THEIRS)
     picture = draw_curves(league, tmp_path / "rivals.png")
     assert imread(picture.path).shape[1] > 500
     page = tmp_path / "report.html"
     write_report(league, list(all_tables(league)), picture, ["3 robots only"], "kurt2rt rivals", page)
     text = page.read_text(encoding="utf-8")
-    assert tuning_text(league).removesuffix(".") in text
+    assert "with the defaults of their classes: 1-NN without R" in text
     assert "3 robots only" in text
     assert "1-NN without R" in text

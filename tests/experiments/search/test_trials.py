@@ -104,7 +104,7 @@ class _Stop:
     left = 0
 
 
-@pytest.mark.parametrize("waves", [1, 3])
+@pytest.mark.parametrize("waves", [pytest.param(1, marks=pytest.mark.deep), 3])
 def test_search_interrupted_between_robots_goes_on(
     waves: int, whole: list[Trial], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -91,6 +91,13 @@ def test_task_or_rival_that_is_not_tuned_is_named() -> None:
         SHIPPED_TUNING.search(TASK, "tree", 1)
 
 
+@pytest.mark.parametrize("name", ["bc", "tamer"])
+def test_learner_of_another_league_is_refused(name: str, tmp_path: Path) -> None:
+    tuning = tiny_tuning().model_copy(update={"gates": {name: SHIPPED_TUNING.gates["k-nn"]}})
+    with pytest.raises(SettingsError, match=f"{name} is not taught by presses"):
+        plan_tuning(tuning, TASK, name, parts(tmp_path), 1, SHORT)
+
+
 def test_report_seeds_are_refused_for_tuning() -> None:
     content = SHIPPED_TUNING.model_dump(mode="json")
     content["seeds"]["first"] = 4106
