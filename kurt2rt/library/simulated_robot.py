@@ -37,7 +37,7 @@ _LONGEST_S = 24 * 3600.0
 class SimulatedRobot:
     """A robot in a simulated world, which moves only in `step` and `run`, as fast as this machine can.
 
-    Close it, or use it as a context manager. Lessons that were not saved by `save` are gone then.
+    Close it, or use it as a context manager. Lessons are gone then, unless it has a `path` or `save` was called.
     """
 
     def __init__(
@@ -47,6 +47,7 @@ class SimulatedRobot:
         world: str | None = None,
         seed: int = 0,
         knowledge: Knowledge | None = None,
+        path: str | PathLike[str] | None = None,
         robot: str = "kurt2",
     ) -> None:
         """Put the robot into its world and take its first step, so that it has readings.
@@ -56,10 +57,11 @@ class SimulatedRobot:
             world: name or path; None: the world that the task is taught in.
             seed: of the sensors, the noise and the start pose.
             knowledge: to begin with; its file stays as it is.
+            path: of a new file that gets each lesson at once; None: lessons are kept by `save` alone.
             robot: name or path of the robot's settings.
 
         Raises:
-            UserError: as kurt2rt.Error, a name is unknown, or settings do not fit each other.
+            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, or there is a file at `path`.
         """
         settings = load_robot(robot)
         self._robot = robot
@@ -73,7 +75,9 @@ class SimulatedRobot:
         self._sent = 0
         with ExitStack() as opened:
             folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
-            self._file = Path(folder).resolve() / "taught.knowledge"
+            self._file = Path(folder).resolve() / "taught.knowledge" if path is None else Path(path)
+            if self._file.exists():
+                raise UserError("there is a file already", where=path, do="give the path of a new file")
             if knowledge is not None:
                 with Journal.read_only(knowledge.path) as journal:
                     write_new(journal.image(), self._file)

@@ -68,6 +68,15 @@ def test_save_keeps_lessons_and_refuses_another_file(robot: kurt2rt.SimulatedRob
     assert [rla.action for rla in kurt2rt.Knowledge.load(saved.path).rlas] == ["forward"]
 
 
+def test_simulated_robot_with_a_path_keeps_each_lesson(tmp_path: Path) -> None:
+    file = tmp_path / "kept.knowledge"
+    with kurt2rt.SimulatedRobot(world="a", seed=1, path=file) as robot:
+        robot.teach("forward")
+    assert [rla.action for rla in kurt2rt.Knowledge.load(file).rlas] == ["forward"]
+    with pytest.raises(kurt2rt.Error, match=r"kept\.knowledge: there is a file already"):
+        kurt2rt.SimulatedRobot(path=file)
+
+
 def test_simulated_robot_goes_on_from_saved_knowledge(robot: kurt2rt.SimulatedRobot, tmp_path: Path) -> None:
     robot.teach("forward")
     first = robot.save(tmp_path / "first.knowledge")
