@@ -114,7 +114,8 @@ def test_submit_failing_job_ends_the_thread(rig: Rig) -> None:
 def test_hold_leaves_steps_and_jobs_to_the_caller(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> None:
     steps = StepCounter(rig, monkeypatch, 4)
     jobs: list[int] = []
-    with RealtimeSimulation(rig.robot, cycle_s=1e-6) as simulation:
+    # No shorter cycle: nothing reads the frames, and a main thread that waits for a processor would let them pile up.
+    with RealtimeSimulation(rig.robot, cycle_s=1e-3) as simulation:
         simulation.hold()
         steps.threads.clear()
         steps.enough.clear()
