@@ -82,16 +82,24 @@ async def _receive_text(websocket: WebSocket) -> str:
 
 
 async def _send(websocket: WebSocket, connection: PageConnection, scope: anyio.CancelScope) -> None:
-    try:
-        while True:
-            await connection.wait()
-            while (text := connection.pop(time.monotonic())) is not None:
-                await websocket.send_text(text)
-            if connection.lost:
-                await _close(websocket, _TRY_AGAIN_LATER, "too far behind")
+    while True:
+        await connection.wait()
+        while (text := connection.pop(time.monotonic())) is not None:
+            if not await _deliver(websocket, text):
                 scope.cancel()
-    except WebSocketDisconnect:
-        scope.cancel()
+                return
+        if connection.lost:
+            await _close(websocket, _TRY_AGAIN_LATER, "too far behind")
+            scope.cancel()
+
+
+async def _deliver(websocket: WebSocket, text: str) -> bool:
+    """Send a text; return False if the connection is closed."""
+    try:
+        await websocket.send_text(text)
+    except (WebSocketDisconnect, RuntimeError):
+        return False  # the browser closed it, or this end did at the same time because of a wrong message
+    return True
 
 
 async def _close(websocket: WebSocket, code: int, reason: str) -> None:
