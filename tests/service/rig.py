@@ -10,7 +10,6 @@ from pathlib import Path
 
 from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
-from hal.kurt2 import Kurt2
 from hal.robot_settings import load_robot
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -26,6 +25,7 @@ from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
+from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 
 SETTINGS = load_robot()
@@ -49,7 +49,7 @@ def eager_task(radius: float = 100.0) -> TaskSettings:
 class Rig:
     """A simulated robot that lives by itself, the driver at the other end of its bus, and what was seen."""
 
-    robot: Kurt2
+    robot: StallTolerantKurt2
     robot_bus: CanBus
     far_end: CanBus
     ear: CanBus
@@ -99,7 +99,7 @@ def rig(seed: int = 1) -> Iterator[Rig]:
     spec = f"virtual:{uuid.uuid4()}"
     far_end, robot_bus, ear = open_bus(spec), open_bus(spec), open_bus(spec)
     simulated = SimulatedRobot(SETTINGS, load_world("a"), far_end, seed)
-    robot = Kurt2(SETTINGS, robot_bus)
+    robot = StallTolerantKurt2(SETTINGS, robot_bus)
     simulation = RealtimeSimulation(simulated)
     simulation.start()
     try:

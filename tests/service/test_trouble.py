@@ -147,10 +147,10 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
         assert story.over
         assert isinstance(here.simulation.error, OSError)
     assert all(record.guard_result.wheel_speeds == STANDSTILL for record in silent)
-    assert {reason for record in silent for reason in record.guard_result.reasons} <= {
-        "infra-red stale",
-        "encoder stale",
-    }
+    reasons = {reason for record in silent for reason in record.guard_result.reasons}
+    assert "infra-red stale" in reasons
+    # A busy machine may stall the loop as well, and one tick then stands for that.
+    assert reasons <= {"infra-red stale", "encoder stale", "ticks ceased"}
 
 
 async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
