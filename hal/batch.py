@@ -1,10 +1,13 @@
 """Contract of a batch: many simulated robots that drive at once, by policies or by taught RLAs, without a teacher."""
 
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hal.areas import Borders
 from hal.guard_reason import GuardReason
@@ -81,7 +84,21 @@ class CommandedMind:
     """Robot that drives by the newest command, and stands before the first one."""
 
 
-Mind = PolicyMind | TaughtMind | CommandedMind
+Choose = Callable[[str, NDArray[np.float64]], str | None]
+"""Choice of an action for the name of the wanted behaviour and a situation (d,), a copy; None: stand and ask."""
+
+
+@dataclass(frozen=True, slots=True)
+class AskedMind:
+    """Robot whose action Python chooses in each tick; the robot stands where there is no answer."""
+
+    choose: Choose
+    """An error that it raises ends `Batch.drive`, which raises it."""
+    features: FeatureTable
+    """Features of the situation, with averages; each number counts by its weight."""
+
+
+Mind = PolicyMind | TaughtMind | CommandedMind | AskedMind
 
 
 class FixedSpeeds(NamedTuple):

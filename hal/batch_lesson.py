@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.areas import Borders
-from hal.batch import Action, FeatureTable, TabledPolicy
+from hal.batch import Action, Choose, FeatureTable, TabledPolicy
 from hal.simulation import Pose, Simulation, SimulationFactory
 
 
@@ -28,6 +28,8 @@ class LessonCause(IntEnum):
     """A teacher stopped the robot."""
     TEACHER = 4
     """An action that the teacher holds drives."""
+    LEARNER = 5
+    """An action drives that Python chose (`LessonDriveSettings.choose`)."""
 
 
 class LessonLog(NamedTuple):
@@ -95,6 +97,11 @@ class LessonDriveSettings:
     features: FeatureTable
     ticks: int
     """Length of the lesson."""
+    choose: Choose | None = None
+    """Choice of the action in each tick, in place of the RLAs, for the situation by `features`; None: RLAs decide.
+
+    An error that it raises ends `LessonRobot.drive`, which raises it.
+    """
 
 
 class LessonRobot(Simulation, Protocol):
@@ -156,6 +163,10 @@ class LessonRobot(Simulation, Protocol):
 
     def keep(self) -> list[Pose]:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
+        ...
+
+    def allow_switch(self) -> None:
+        """Let the next decision take another action at once, even if one is held, because something was learned."""
         ...
 
     def restart_held(self) -> None:

@@ -70,6 +70,10 @@ class LessonSimulation(Kurt2Simulation):
         """Return whether the next tick has begun, and waits for the physics engine in `sense`."""
         return self._lesson.waits
 
+    def allow_switch(self) -> None:
+        """Let the next decision take another action at once."""
+        self._lesson.allow_switch()
+
     def restart_held(self) -> None:
         """Begin the held action from its start."""
         self._lesson.restart_held()

@@ -10,6 +10,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     DEFAULT_OF_THE_TASK,
@@ -32,6 +33,7 @@ from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.tuned import load_tuned
+from kurt2rt.experiments.study.loop_choice import LoopRequest
 from kurt2rt.platform.text_table import print_whole
 
 _AFTER = (10, 20, 40)
@@ -84,6 +86,8 @@ class _Options:
     jobs: Jobs = ALL_PROCESSORS
     shard: ShardOption = None
     on: OnOption = None
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/rivals")] = Path("results/rivals")
     robot_settings: RobotName = "kurt2"
     as_json: AsJson = False
@@ -139,6 +143,7 @@ def rivals(options: _Options) -> None:
         after,
         parts,
         tuned=tuned,
+        loops=requested_loops(options.lessons, options.exams),
     )
     command = typed_command("rivals", options, {"seeds": options.seeds})
     if options.shard is not None:
@@ -146,7 +151,7 @@ def rivals(options: _Options) -> None:
         return
     name = "" if options.league is LeagueName.PRESSES else f"{options.league}-"
     report, not_judged = options.out / f"{name}report.html", list(reasons_against_judging(plan.seeds))
-    with study_run(plan, results, command, options.jobs, options.on) as bar:
+    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figure and report")
         league = read_league(plan, results)
         tables = list(all_tables(league))

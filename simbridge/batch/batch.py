@@ -7,15 +7,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.areas import Borders
-from hal.batch import STANDS, TRACED_TICKS, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
+from hal.batch import STANDS, TRACED_TICKS, AskedMind, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
 from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
+from simbridge.batch.asking import PythonMind
 from simbridge.batch.borders import area_of
 from simbridge.batch.contacts import ContactBody, SetPoints
-from simbridge.batch.drive import BROKEN, CROWDED, FROZEN, STAYS, drive, finish_waiting, put_down
-from simbridge.batch.record import MOST_AREAS, NOISE_AHEAD, SLIP_AHEAD, STRETCH
+from simbridge.batch.drive import drive, finish_waiting, put_down
+from simbridge.batch.record import (
+    BROKEN,
+    CROWDED,
+    FROZEN,
+    MOST_AREAS,
+    NOISE_AHEAD,
+    SLIP_AHEAD,
+    STAYS,
+    STRETCH,
+    UNDECIDED,
+)
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
@@ -28,6 +39,7 @@ _REASONS = {
     FROZEN: "a board of sensors repeats itself",
     BROKEN: "a sensor looks broken",
     CROWDED: "too many walls are near",
+    UNDECIDED: "what decides in Python raised an error",
 }
 
 _LIMIT_BITS = {
@@ -71,10 +83,14 @@ class RobotBatch:
         require_known(robot, simulated, minds, settings)
         self.actions, self._behaviours = tuple(settings.actions), settings.behaviours
         self._laws = build_laws(robot, simulated[0], minds, settings)
-        self._knowledge, tables = build_knowledge(minds, self.actions)
+        self._minds = minds
+        self._python_mind = PythonMind(self._decide)
+        self._knowledge, tables = build_knowledge(minds, self.actions, self._python_mind.address)
         self._averages = empty_averages(len(simulated), self._knowledge.features)
         self._robots, self._world = build_robots(robot, simulated, minds, tables)
         self._first_rows = self._knowledge.first[tables]
+        # Views, because an item of a record takes Python ten times as long.
+        self._situations, self._wanted = self._robots["situation"], self._robots["behaviour"]
         # The bodies in the engine draw their slip themselves, when they catch up.
         self._streams = [(copy.deepcopy(each.slip_noise), each.infrared_noise) for each in simulated]
         self._bodies = [ContactBody(each) for each in simulated]
@@ -108,6 +124,7 @@ class RobotBatch:
         active = chosen
         while len(active):
             drive(active, ticks, self._robots, self._world, self._laws, self._knowledge, self._averages)
+            self._python_mind.raise_error()
             active = active[self._robots["waits"][active] != 0]
             for r in active.tolist():
                 self._move_in_engine(r)
@@ -136,6 +153,15 @@ class RobotBatch:
     def _finish(self, r: int) -> None:
         """Finish the tick of a robot whose body the engine has moved."""
         finish_waiting(r, self._robots, self._world, self._laws, self._knowledge, self._averages)
+        self._python_mind.raise_error()
+
+    def _decide(self, r: int) -> int:
+        """Return the index of the action that the mind of a robot chooses, or STANDS."""
+        mind = self._minds[r]
+        assert isinstance(mind, AskedMind)
+        width = len(mind.features.kinds) + len(mind.features.average_weights)
+        action = mind.choose(self._behaviours[self._wanted.item(r)], self._situations[r, :width].copy())
+        return STANDS if action is None else self.actions.index(action)
 
     def _keep_set_points(self, chosen: NDArray[np.int64]) -> None:
         """Keep the set points of the present stretch for the bodies in the engine that lag behind."""

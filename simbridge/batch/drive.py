@@ -6,14 +6,11 @@ from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Averages, Integers, Knowledge, Laws, World
 from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.motion import move, turn_wheels
-from simbridge.batch.record import Robot, Robots
+from simbridge.batch.record import BROKEN, CROWDED, FROZEN, STAYS, Robot, Robots
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure, measure_all
 from simbridge.batch.sight import gather, has_moved, may_touch
 from simbridge.batch.tally import count_tick
-
-STAYS, FROZEN, BROKEN, CROWDED = range(4)
-"""Reasons that a robot leaves the batch; 0: it stays."""
 
 
 @compiled

@@ -168,6 +168,8 @@ class Knowledge(NamedTuple):
     """Row of the RLA that answers for the RLAs of one condition."""
     action: Integers
     features: Features
+    mind: int
+    """Address of the PythonMind that decides for robots with an AskedMind; 0: there are none."""
 
 
 class StuckLaw(NamedTuple):

@@ -5,7 +5,7 @@ from itertools import starmap
 import numpy as np
 
 from hal.areas import Borders
-from hal.batch import DriveSettings, PolicyMind
+from hal.batch import STANDS, DriveSettings, PolicyMind
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
@@ -64,7 +64,13 @@ class CompiledLesson(RobotBatch):
             action=np.zeros(_MOST_RLAS, dtype=np.int64),
             features=build_features(settings.features),
             added=np.zeros(rows, dtype=np.int64),
+            mind=0 if settings.choose is None else self._python_mind.address,
         )
+        self._choose, self._ticks = settings.choose, self._robots["tick"]
+        self._choices = np.full(rows, STANDS, dtype=np.int8)
+        """Index of the action that Python chose in each tick."""
+        self._chosen_to = 0
+        """Tick up to which choices are valid, while ticks are driven a second time."""
         self._learner = Learner(np.zeros(width, dtype=np.int64), np.zeros(3, dtype=np.int64), np.zeros(1))
         self._orders = Orders(False, -1, 1.0)
         self.tick = 0
@@ -101,6 +107,10 @@ class CompiledLesson(RobotBatch):
             table.conditions[:count, : self._values] = rlas.conditions
             table.radius[:count] = rlas.radii
             table.action[:count] = [place[name] for name in rlas.actions]
+        self.allow_switch()
+
+    def allow_switch(self) -> None:
+        """Let the next decision take another action at once."""
         self._robots[0]["action_ticks"] = self._minimum_ticks
         self._keep_state()
 
@@ -151,6 +161,7 @@ class CompiledLesson(RobotBatch):
             self._orders,
             self.log,
         )
+        self._python_mind.raise_error()
         record = self._robots[0]
         self.tick = int(record["tick"]) - bool(record["waits"] or record["left"])
         return self.tick
@@ -162,7 +173,9 @@ class CompiledLesson(RobotBatch):
         self._robots[0] = self._saved[0]
         for array, saved in zip(self._learner, self._saved_learner, strict=True):
             array[:] = saved
+        self._chosen_to = tick
         self.run(tick)
+        self._chosen_to = 0
 
     def keep(self) -> list[Pose]:
         """Keep all ticks so far, and return their poses; the simulation is where the robot is."""
@@ -184,6 +197,16 @@ class CompiledLesson(RobotBatch):
         self.put(0, pose)
         self._simulated.carry(pose)
         self._keep_state()
+
+    def _decide(self, r: int) -> int:
+        """Return the index of the action that Python chooses in the present tick, or STANDS."""
+        tick = self._ticks.item(r)
+        if tick > self._chosen_to:
+            assert self._choose is not None
+            situation = self._situations[r, : self._values].copy()
+            action = self._choose(self._behaviours[self._wanted.item(r)], situation)
+            self._choices[tick] = STANDS if action is None else self.actions.index(action)
+        return self._choices.item(tick)
 
     def _finish(self, r: int) -> None:  # noqa: ARG002 - there is one robot
         perceive(self._robots, self._world, self._laws, self._learner, self._table, self.log)

@@ -6,12 +6,13 @@ from behaviors.keep_distance import KeepDistanceNumbers, steer
 from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
+from simbridge.batch.asking import FAILED, ask
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
 from simbridge.batch.matching import nearest_rla
-from simbridge.batch.record import Robot
+from simbridge.batch.record import UNDECIDED, Robot
 
-KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED = range(7)
+KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED, ASKED = range(8)
 """Kinds of minds."""
 READING, MAXIMUM, MINIMUM, ORIENTATION, NOTHING = (int(kind) for kind in FeatureKind)
 _steer = compiled(steer)
@@ -154,6 +155,9 @@ def decide(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge, averages: A
     if robot.kind == KNOWLEDGE:
         perceive(robot, knowledge.features, averages)
         _match(robot, k, law, knowledge)
+    elif robot.kind == ASKED:
+        perceive(robot, knowledge.features, averages)
+        ask_python(robot, law, knowledge.mind)
     elif robot.kind == COMMANDED:
         if robot.command >= 0:
             hold_or_change(robot, robot.command, law)
@@ -184,3 +188,16 @@ def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     answer = knowledge.answer[row]
     if hold_or_change(robot, knowledge.action[answer], law):
         robot.rla = answer
+
+
+@compiled
+def ask_python(robot: Robot, law: MindLaw, mind: int) -> None:
+    """Let the PythonMind at an address choose the action for the robot's situation; the robot leaves if it failed."""
+    robot.rla = -1
+    action = ask(mind, robot.number)
+    if action == FAILED:
+        robot.left = UNDECIDED
+    if action < 0:
+        robot.action = -1
+    else:
+        hold_or_change(robot, action, law)

@@ -11,6 +11,8 @@ from hal.batch import TRACED_TICKS
 from simbridge.batch.laws import Floats, Integers
 from simbridge.robot.body import BodyState
 
+STAYS, FROZEN, BROKEN, CROWDED, UNDECIDED = range(5)
+"""Reasons that a robot leaves the batch; 0: it stays."""
 STRETCH = 500
 """Most ticks in one call of the loop."""
 NEAR_FACES, NEAR_POSTS = 64, 16
@@ -44,7 +46,7 @@ class Robot:
     waits: int
     """1 while the physics engine has to move the body in this tick."""
     left: int
-    """Reason that the robot must drive on the bus (simbridge.batch.drive); 0: none."""
+    """Reason that the robot must drive on the bus ; 0: none."""
     world: int
     knowledge: int
     """Its first table of RLAs, that of the first behaviour; -1 for a policy."""

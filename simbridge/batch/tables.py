@@ -10,13 +10,13 @@ from behaviors.policies.eight import Eight
 from behaviors.policies.fleeing import Fleeing
 from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
-from hal.batch import CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
+from hal.batch import AskedMind, CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import RobotSettings, SpeedMode
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.matching import LANES
-from simbridge.batch.minds import CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
+from simbridge.batch.minds import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
 from simbridge.batch.record import MOST_KEPT, MOST_VALUES
 from simbridge.simulated_robot import SimulatedRobot
 
@@ -35,6 +35,8 @@ def kind_of(mind: Mind) -> int:
             return KNOWLEDGE
         case CommandedMind():
             return COMMANDED
+        case AskedMind():
+            return ASKED
     return _POLICIES[type(mind.policy)]
 
 
@@ -59,7 +61,7 @@ def require_known(
             raise BatchRefusedError(f"policy {type(policy).__name__}: the batch does not know it", do=ON_THE_BUS)
     if len({(type(policy), getattr(policy, "thresholds", None)) for policy in policies}) > 1:
         raise BatchRefusedError("two policies in one batch", do="give each task a batch of its own")
-    tables = {mind.features for mind in minds if isinstance(mind, TaughtMind)}
+    tables = {mind.features for mind in minds if isinstance(mind, TaughtMind | AskedMind)}
     if len(tables) > 1:
         raise BatchRefusedError("two situations in one batch", do="give each task a batch of its own")
     for table in tables:
@@ -99,10 +101,10 @@ def _actions_of(mind: Mind) -> Sequence[str]:
     return ()
 
 
-def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Knowledge, list[int]]:
-    """Return the RLAs of all taught minds, and the first table of each robot; -1 for a policy.
+def build_knowledge(minds: Sequence[Mind], actions: Sequence[str], python_mind: int) -> tuple[Knowledge, list[int]]:
+    """Return the RLAs of all taught minds, and the first table of each robot; -1 for a robot without RLAs.
 
-    Each behaviour has a table. Robots that share a mind share its tables.
+    Each behaviour has a table. Robots that share a mind share its tables. `python_mind`: address of the PythonMind.
     """
     taught: dict[int, tuple[int, TaughtMind]] = {}
     of, tables = [], 0
@@ -114,7 +116,8 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
         else:
             of.append(-1)
     known = [mind for _, mind in taught.values()]
-    features = known[0].features if known else _NO_FEATURES
+    perceiving = [mind.features for mind in minds if isinstance(mind, TaughtMind | AskedMind)]
+    features = perceiving[0] if perceiving else _NO_FEATURES
     values = len(features.kinds) + len(features.average_weights)
     sizes = [size for mind in known for size in mind.sizes]
     first = np.concatenate(([0], np.cumsum(sizes))).astype(np.int64)
@@ -135,6 +138,7 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str]) -> tuple[Know
         answer=answer,
         action=np.array([place[name] for mind in known for name in mind.actions], dtype=np.int64),
         features=build_features(features),
+        mind=python_mind,
     )
     return knowledge, of
 

@@ -7,14 +7,14 @@ from hal.slow_way import advance_way
 from simbridge.batch.borders import crosses
 from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
-from simbridge.batch.drive import STAYS, begin_tick, sense_tick
+from simbridge.batch.drive import begin_tick, sense_tick
 from simbridge.batch.laws import Features, Floats, Integers, Laws, World
 from simbridge.batch.matching import scan_nearest
-from simbridge.batch.minds import feature_of, hold_or_change, right_action, step_action
-from simbridge.batch.record import Robot, Robots
+from simbridge.batch.minds import ask_python, feature_of, hold_or_change, right_action, step_action
+from simbridge.batch.record import STAYS, Robot, Robots
 from simbridge.batch.safety import drive_guarded
 
-BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER = (int(cause) for cause in LessonCause)
+BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER, LEARNER = (int(cause) for cause in LessonCause)
 _advance_way = compiled(advance_way)
 
 
@@ -52,6 +52,8 @@ class Table(NamedTuple):
     features: Features
     added: Integers
     """Ticks whose features were added to the averages, (ticks + 1,)."""
+    mind: int
+    """Address of the PythonMind that decides in place of the RLAs; 0: they decide."""
 
 
 STEPS, SENSED, DROVE = range(3)
@@ -148,7 +150,7 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
 
 @compiled
 def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonLog) -> int:
-    """Let the nearest RLA or the teacher choose the action; return the cause, a number of LessonCause."""
+    """Let the nearest RLA, Python or the teacher choose the action; return the cause, a number of LessonCause."""
     if orders.held >= 0:
         robot.action = orders.held
         return TEACHER
@@ -161,6 +163,9 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonL
         robot.situation[i] = log.features[tick, i] * features.weights[i]
     for i in range(features.average_weights.shape[0]):
         robot.situation[width + i] = log.sums[tick, i] / features.average_steps * features.average_weights[i]
+    if table.mind:
+        ask_python(robot, laws.mind, table.mind)
+        return UNKNOWN if robot.action < 0 else LEARNER
     row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
     robot.nearest = row
     if row < 0 or not distance <= table.radius[row]:

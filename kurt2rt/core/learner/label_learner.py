@@ -71,7 +71,8 @@ class LabelLearner(ABC):
 
     def distances(self, point: Points) -> Points:
         """Return the distances (n,) in counts of all labels from a point (d,)."""
-        distances: Points = np.sqrt(np.square(self._points - point).sum(axis=1))
+        away = self._points - point
+        distances: Points = np.sqrt(np.einsum("ij,ij->i", away, away))
         return distances
 
     def is_near(self, point: Points, *, taught: bool) -> bool:

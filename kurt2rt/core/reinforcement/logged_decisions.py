@@ -11,6 +11,8 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 _TEACHABLE = frozenset(map(int, LessonCause)) - {int(LessonCause.STOPPED)}
 """Causes of ticks that a held action may become a lesson about: in a batch a teacher drives by holding an action."""
 
+_LEARNER = int(LessonCause.LEARNER)
+
 
 class LoggedDecisions(DecisionHistory):
     """Decisions of the ticks up to `newest`, read from a log; no tick is missed, and no tick has an opinion.
@@ -19,24 +21,31 @@ class LoggedDecisions(DecisionHistory):
     """
 
     def __init__(
-        self, log: LessonLog, average_steps: int, behaviours: Sequence[str] = ("",), capacity: int = 1000
+        self,
+        log: LessonLog,
+        average_steps: int,
+        actions: Sequence[str],
+        behaviours: Sequence[str] = ("",),
+        capacity: int = 1000,
     ) -> None:
         """Read `log`, which its owner writes.
 
         Args:
             log: course of the lesson.
             average_steps: steps of the averages in a situation.
+            actions: names of the actions, by their indexes in the log.
             behaviours: names of the taught behaviours, by their indexes in the log.
             capacity: ticks that are remembered.
         """
         super().__init__(0, capacity)
         self._log = log
-        self._behaviour_names = tuple(behaviours)
+        self._action_names, self._behaviour_names = tuple(actions), tuple(behaviours)
         self._average_steps = average_steps
 
     def empty_copy(self) -> "LoggedDecisions":
         """Return an empty history over the same log."""
-        return LoggedDecisions(self._log, self._average_steps, self._behaviour_names, self._capacity)
+        names = self._action_names, self._behaviour_names
+        return LoggedDecisions(self._log, self._average_steps, *names, self._capacity)
 
     def copy_from(self, other: DecisionHistory) -> None:
         """Store the ticks that another history of this log stores now."""
@@ -66,6 +75,11 @@ class LoggedDecisions(DecisionHistory):
     def driving_rla(self, tick: int) -> int | None:
         """Return the id of the RLA that drove in a stored tick; None if none did."""
         return int(self._log.rlas[tick]) or None
+
+    def learner_action(self, tick: int) -> str:
+        """Return the action by which a learner that is no RLA system drove in a stored tick; empty if none did."""
+        drove = self._log.causes.item(tick) == _LEARNER
+        return self._action_names[self._log.actions.item(tick)] if drove else ""
 
     def behaviour(self, tick: int) -> str:
         """Return the active taught behaviour of a logged tick."""

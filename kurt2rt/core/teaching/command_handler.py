@@ -211,7 +211,7 @@ class CommandHandler:
             self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
-        taught = self._is_taught
+        taught = self.is_taught
         self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
         # A teacher is to see what the robot would do by its lessons alone.
         self._level.avoids = not taught
@@ -226,7 +226,8 @@ class CommandHandler:
         self._level.forget_obstacles()
 
     @property
-    def _is_taught(self) -> bool:
+    def is_taught(self) -> bool:
+        """Return whether a teacher is there who answers, in a phase in which the robot asks sooner."""
         return self.teacher_available and self.phase in _TAUGHT_PHASES
 
     @property
@@ -237,7 +238,7 @@ class CommandHandler:
         """
         return (
             self.lesson_speed.share < 1.0
-            and self._is_taught
+            and self.is_taught
             and self.authority.teacher is not None
             and self.authority.driving_press is None
         )

@@ -17,10 +17,13 @@ from hal.batch_lesson import LessonCause, LessonFactory, LessonRobot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position
 from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_settings
+from kurt2rt.experiments.lockstep.batch_mind import choice_of
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
@@ -72,17 +75,20 @@ def open_batch_lesson(
     *,
     seed: int,
     on_progress: Callable[[float], None],
+    learners: LearnerTeam | None = None,
 ) -> Iterator["BatchTrainingRun"]:
     """Yield a lesson that has not begun, with its robot; close the robot's simulation (`teach_in_batch`).
 
-    Raises BatchRefusedError, hal.settings.SettingsError.
+    `learners`: taught in place of the RLAs; None: RLAs decide. Raises BatchRefusedError, hal.settings.SettingsError.
     """
     plan, store = plan_of(task), InMemoryEventStore()
-    lesson = build_lesson_settings(settings, task)
+    choose = None if learners is None else choice_of(learners, task, taught=lambda: runtime.handler.is_taught)
+    lesson = build_lesson_settings(settings, task, choose)
     with closing(factory.open_lesson(task.teaching.world, seed, plan.purpose, lesson)) as robot:
-        recent = LoggedDecisions(robot.log, lesson.features.average_steps, task.behaviours)
-        runtime = build_training_runtime(robot, settings, task, TrainingStore(store), recent)
-        mind = LessonMind(runtime, robot, recent, store)
+        recent = LoggedDecisions(robot.log, lesson.features.average_steps, robot.actions, task.behaviours)
+        training = TrainingStore(store, learners=learners)
+        runtime = build_training_runtime(robot, settings, task, training, recent)
+        mind = LessonMind(runtime, robot, recent, store, learners)
         session = f"{plan.purpose}-{seed}-after-0"
         yield BatchTrainingRun(robot, mind, plan, seed=seed, session=session, on_progress=on_progress)
 
@@ -109,10 +115,17 @@ class BatchTrainingRun(TrainingRun):
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._messages: list[tuple[int, HoldAction]] = []
         """Messages of a hold that goes on in the present stretch, with their ticks."""
+        self.on_stretch: Callable[[], None] = lambda: None
+        """Called after each stretch: in its last tick the teacher may have sent a command, never in an earlier one."""
 
     def given(self) -> GivenLesson:
         """Return the lesson so far."""
-        return GivenLesson(self.result(), self._mind.events)
+        return GivenLesson(self.result(), self.events)
+
+    @property
+    def events(self) -> list[TeachingEvent]:
+        """Lessons so far, oldest first."""
+        return self._mind.events
 
     def drive_stretches(self) -> bool:
         """Teach all phases of the plan; return False, with an unfinished result, if the robot leaves the batch."""
@@ -141,6 +154,7 @@ class BatchTrainingRun(TrainingRun):
         if self._mind.holds:
             self._hold_on(begin + 1 + due, cut)
         self._pass(begin, cut, poses)
+        self.on_stretch()
         return True
 
     def _drive_on(self, begin: int) -> int | None:

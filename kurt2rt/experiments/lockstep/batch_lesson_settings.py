@@ -1,6 +1,8 @@
 """Settings of a lesson in a batch, and the refusal of lessons that a batch does not know."""
 
-from hal.batch import TabledPolicy
+import numpy as np
+
+from hal.batch import Choose, TabledPolicy
 from hal.batch_lesson import LessonDriveSettings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.perception.definition import load_situation
@@ -16,8 +18,12 @@ def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
     build_lesson_settings(settings, task)
 
 
-def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> LessonDriveSettings:
+def build_lesson_settings(
+    settings: RobotSettings, task: TaskSettings, choose: Choose | None = None
+) -> LessonDriveSettings:
     """Return what a batch needs to know of a robot that is taught a task by its teacher.
+
+    `choose`: choice of its actions, for situations in counts; None: RLAs decide, for weighted situations.
 
     Raises:
         BatchRefusedError: the batch does not know the task or its teacher.
@@ -46,6 +52,7 @@ def build_lesson_settings(settings: RobotSettings, task: TaskSettings) -> Lesson
         minimum_ticks=drive.minimum_ticks,
         behaviours=task.behaviours,
         policy=policy,
-        features=feature_table(definition, settings, weights, task),
+        features=feature_table(definition, settings, weights if choose is None else np.ones_like(weights), task),
         ticks=round(plan_of(task).duration_s / settings.can.cycle_s),
+        choose=choose,
     )

@@ -1,6 +1,6 @@
 """Minds of a batch, from a task and its knowledge, and the refusal of exams that a batch does not know."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,8 @@ from behaviors.motor_primitive import MotorPrimitive
 from behaviors.turn_by_angle import TurnByAngle
 from hal.batch import (
     Action,
+    AskedMind,
+    Choose,
     DriveSettings,
     FeatureKind,
     FeatureTable,
@@ -25,6 +27,7 @@ from hal.batch import (
 )
 from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.definition import (
     Extreme,
     Feature,
@@ -71,8 +74,6 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "a robot that avoids obstacles that it remembers")
     if doubt is not None and doubt.asks and doubt.alone:
         raise refused(task, "a robot that stands at a doubt without a teacher")
-    if any(setup.learners for setup in setups):
-        raise refused(task, "a learner that is no RLA system")
     if any(setup.broken for setup in setups):
         raise refused(task, "a broken sensor")
 
@@ -145,12 +146,32 @@ def build_minds(
                 raise refused(task, f"policy {task.policy.kind}")
             minds.append(PolicyMind(policy))
             continue
+        if setup.learners is not None:
+            definition = load_situation(task.situation, settings.infrared.names)
+            features = feature_table(definition, settings, np.ones(definition.dimensions), task)
+            minds.append(AskedMind(choice_of(setup.learners, task, taught=lambda: False), features))
+            continue
         key = id(events), id(setup.saved), id(setup.autonomous_values)
         if key not in taught:
             runtime = build_exam_runtime(simulation, settings, task, events, setup, RuntimeOptions())
             taught[key] = _taught_mind(runtime, settings, task)
         minds.append(taught[key])
     return minds
+
+
+def choice_of(team: LearnerTeam, task: TaskSettings, *, taught: Callable[[], bool]) -> Choose:
+    """Return the choice of actions by learners; it raises BatchRefusedError if one fails.
+
+    `taught`: returns whether a teacher is there who answers.
+    """
+
+    def choose(behaviour: str, situation: NDArray[np.float64]) -> str | None:
+        action = team.decide(behaviour, situation, taught=taught())
+        if team.failure:
+            raise refused(task, f"a learner that failed ({team.failure})")
+        return action
+
+    return choose
 
 
 def _taught_mind(runtime: Runtime, settings: RobotSettings, task: TaskSettings) -> TaughtMind:

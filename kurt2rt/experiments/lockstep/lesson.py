@@ -194,6 +194,11 @@ class TrainingRun(Episode):
         self._rescues = self._unknown_rescues = self._alarms = self._deletions = self._refused = 0
         self._trusted_ticks = self._positive_rewards = self._negative_rewards = 0
 
+    @property
+    def presses(self) -> int:
+        """Number of presses that the teacher has sent."""
+        return len(self._workload.press_ticks)
+
     async def drive(self) -> None:
         """Teach all phases of the plan."""
         first = self._plan.phases[0][0]
@@ -216,7 +221,7 @@ class TrainingRun(Episode):
         self._look_after(record.tick)
         self._command_behaviour(record.behaviour)
         most = self._plan.most_presses
-        if most is not None and len(self._workload.press_ticks) > most:
+        if most is not None and self.presses > most:
             self.runtime.scheduler.end()  # the press waits in the inbox, which no further tick reads
 
     def on_second(self, record: TickRecord) -> None:

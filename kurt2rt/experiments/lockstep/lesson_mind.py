@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hal.batch_lesson import LessonCause, LessonMode, LessonRobot, TaughtRlas
 from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
@@ -26,10 +27,19 @@ class LessonMind:
     """Commands, lessons and counts of a robot in a batch; `robot` drives by the RLAs that they make."""
 
     def __init__(
-        self, runtime: Runtime, robot: LessonRobot, recent: LoggedDecisions, store: InMemoryEventStore
+        self,
+        runtime: Runtime,
+        robot: LessonRobot,
+        recent: LoggedDecisions,
+        store: InMemoryEventStore,
+        learners: LearnerTeam | None = None,
     ) -> None:
-        """Connect the runtime, whose handler reads `recent`; the robot's log has no tick yet."""
+        """Connect the runtime, whose handler reads `recent`; the robot's log has no tick yet.
+
+        `learners`: those of the runtime, which decide; None: RLAs decide.
+        """
         self.runtime = runtime
+        self._learners = learners
         self._robot, self._recent, self._store = robot, recent, store
         self._handler = runtime.handler
         width, weights = len(runtime.definition.features), runtime.level.system.weights
@@ -78,6 +88,7 @@ class LessonMind:
     def take(self, tick: int) -> list[CommandResult]:
         """Carry out the commands of a tick that was sensed, and the lessons of a held action; return the results."""
         self.count(tick - 1)
+        labels = self._label_count
         results: list[CommandResult] = []
         situation = Situation(self._recent.situation(tick), history_frozen=False)
         for command in self.runtime.inbox.pop_all():
@@ -93,9 +104,9 @@ class LessonMind:
         if behaviour != self._behaviour:
             self._behaviour = behaviour
             self._robot.select(behaviour)
-            self._robot.set_rlas(self._taught_rlas())
-        elif self._events:
-            self._robot.set_rlas(self._taught_rlas())
+            self._renew_knowledge()
+        elif self._events or self._label_count != labels:
+            self._renew_knowledge()
         self._order(tick)
         return results
 
@@ -124,7 +135,7 @@ class LessonMind:
             self._teach(self._handler.teach_driven(tick), tick)
             tick += 1
         if self._events:
-            self._robot.set_rlas(self._taught_rlas())
+            self._renew_knowledge()
 
     def count(self, tick: int) -> None:
         """Let the counts of uses, ends of RLAs and questions reach a tick of the log."""
@@ -164,6 +175,18 @@ class LessonMind:
         if mode != self._mode:
             self._mode = mode
             self._robot.set_mode(mode)
+
+    @property
+    def _label_count(self) -> int:
+        """Number of labels of the learners; 0 if RLAs decide."""
+        return 0 if self._learners is None else len(self._learners.labels)
+
+    def _renew_knowledge(self) -> None:
+        """Let the robot drive by what was learned; the next decision may take another action at once."""
+        if self._learners is not None:
+            self._robot.allow_switch()
+        else:
+            self._robot.set_rlas(self._taught_rlas())
 
     def _taught_rlas(self) -> TaughtRlas:
         system, values = self.runtime.level.system, self._values

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
+from hal.batch_lesson import LessonFactory
+from hal.batch_refusal import BatchRefusedError
 from hal.simulation import Simulation
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.learner.learner import OWN, Label, Signal
@@ -16,12 +18,11 @@ from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.phases.steps import reward_plan
-from kurt2rt.experiments.rivals.holds.lesson import teach_by_holds
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
-from kurt2rt.experiments.rivals.lesson import Mark, RivalLesson, teach_rival
+from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival, teach_rival_in_batch
+from kurt2rt.experiments.rivals.marks import Mark
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.undo import Undo, undo_of_learner, undo_of_rlas
@@ -37,6 +38,7 @@ class PolicyJob(StudyJob):
 
     outcome = PolicyOutcome
     keeps_knowledge: ClassVar[bool] = False
+    gives_exams: ClassVar[bool] = True
 
     @property
     def name(self) -> str:
@@ -58,17 +60,22 @@ class PolicyJob(StudyJob):
         exams = [BatchExam(ExamSetup(world, self.seed, teacher_policy=True)) for world in self.task.exam.worlds]
         drives = tuple(
             drive_of(each, each.verdict(each.progress, self.task.exam.success))
-            for each in await run_drives(self.factory, self.robot, self.task, exams, report)
+            for each in await run_drives(self.factory, self.robot, self.task, exams, report, self.loops.exams)
         )
         return PolicyOutcome(made_of=self.made_of, seed=self.seed, drives=drives)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RivalJob(StudyJob):
-    """Lesson of one robot with one rival, and exams after some of its presses and at the end."""
+    """Lesson of one robot with one rival by presses, and exams after some of them and at the end."""
 
     outcome = RivalOutcome
     keeps_knowledge: ClassVar[bool] = False
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
+    machine_times: ClassVar[frozenset[str]] = frozenset(
+        ("retraining_s", "longest_decision_ms", "tick_p99_us", "undo_s")
+    )
     rival: Rival
     after: tuple[int, ...]
     """Numbers of presses after which the robot is examined, ascending."""
@@ -96,17 +103,16 @@ class RivalJob(StudyJob):
 
         Raises NoLearnerError, SettingsError, LessonLostError, and StudyError without the drives of the policy.
         """
+        try:
+            return await self._measure(self.loops, report)
+        except BatchRefusedError:  # a learner failed, or the batch does not know the task
+            return await self._measure(ON_BUS, report)
+
+    async def _measure(self, loops: DriveLoops, report: Report) -> RivalOutcome:
         clock = LearnerClock()
-        team = self._new_team(clock)
-        seconds = self.task.teaching.duration_s
-        world = self.task.teaching.world
-        with closing(self.factory.open(world, self.seed, "lesson")) as simulation:
-            lesson, runtime = await self._teach(
-                simulation, team, clock, lambda done_s: report(f"teaching in world {world}", done_s, seconds)
-            )
-        report(f"teaching in world {world}", seconds, seconds)
+        lesson, runtime, team = await self._teach(loops.lesson, clock, report)
         failures = [team.failure if team is not None else ""]
-        checkpoints = await self._checkpoints(lesson.marks, clock, failures, report)
+        checkpoints = await self._checkpoints(lesson.marks, clock, failures, loops.exams, report)
         result = lesson.result
         undo = self._undo(lesson, runtime, team)
         return RivalOutcome(
@@ -127,45 +133,46 @@ class RivalJob(StudyJob):
             knowledge_bytes=_rla_bytes(lesson) if team is None else sum(map(len, team.snapshot().values())),
             retraining_s=clock.retraining_s,
             longest_decision_ms=clock.longest_ms,
-            tick_p99_us=result.ledger.tick().p99_us,
+            tick_p99_us=result.ledger.tick().p99_us if result.ledger.ticks else None,
             undo_s=undo.seconds,
             undo_restores=undo.restores,
         )
 
     async def _teach(
+        self, loop: DriveLoop, clock: LearnerClock, report: Report
+    ) -> tuple[RivalLesson, Runtime, LearnerTeam | None]:
+        """Give the lesson; return it with the runtime and the learners that were taught; None: RLAs were."""
+        seconds, what = self.task.teaching.duration_s, f"teaching in world {self.task.teaching.world}"
+
+        def on_progress(done_s: float) -> None:
+            report(what, done_s, seconds)
+
+        team = self._new_team(clock)
+        if loop is DriveLoop.BATCH and isinstance(self.factory, LessonFactory):
+            given = teach_rival_in_batch(
+                self.factory, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
+            )
+            if given is not None:
+                on_progress(seconds)
+                return *given, team
+            clock.restart()
+            team = self._new_team(clock)
+        with closing(self.factory.open(self.task.teaching.world, self.seed, "lesson")) as simulation:
+            given = await self._teach_on_bus(simulation, team, clock, on_progress)
+        on_progress(seconds)
+        return *given, team
+
+    async def _teach_on_bus(
         self,
         simulation: Simulation,
         team: LearnerTeam | None,
-        clock: LearnerClock,
+        clock: LearnerClock,  # noqa: ARG002 - for other teachers
         on_progress: Callable[[float], None],
     ) -> tuple[RivalLesson, Runtime]:
-        """Give the lesson: by the task's teacher, by rewards, or by a teacher in charge."""
-        if not self.rival.is_held:
-            # The teacher of phase 3 answers questions, too, which of these only RLAs ask.
-            rewards = (
-                reward_plan(self.task, self.task.teaching.duration_s, "lesson") if self.rival.is_rewarded else None
-            )
-            return await teach_rival(
-                simulation,
-                self.robot,
-                self.task,
-                team,
-                self.after,
-                seed=self.seed,
-                on_progress=on_progress,
-                plan=rewards,
-            )
-        return await teach_by_holds(
-            simulation, self.robot, self.task, team, clock, self.after, seed=self.seed, on_progress=on_progress
+        """Give the lesson over the CAN bus; a subclass has another teacher."""
+        return await teach_rival(
+            simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
         )
-
-    def _reward_plan(self) -> LessonPlan:
-        """Return the plan of phase 3, whose teacher answers questions, too; of these rivals only RLAs ask.
-
-        The limit on rewards of -1 is for RLAs that know most already. Learners of rewards have nothing else.
-        """
-        plan = reward_plan(self.task, self.task.teaching.duration_s, "lesson")
-        return replace(plan, times=replace(plan.times, most_blame=0)) if self.rival.is_learner else plan
 
     def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
         if not self.rival.is_learner:
@@ -173,7 +180,7 @@ class RivalJob(StudyJob):
         return self.rival.new_team(self.task, self.robot, self.seed, clock.timed(self.rival.factory()))
 
     async def _checkpoints(
-        self, marks: Sequence[Mark], clock: LearnerClock, failures: list[str], report: Report
+        self, marks: Sequence[Mark], clock: LearnerClock, failures: list[str], loop: DriveLoop, report: Report
     ) -> list[RivalCheckpoint]:
         """Examine the knowledge of each mark, and add failures of learners to `failures`."""
         policies = self.results.read(self.policy, PolicyOutcome).drives
@@ -183,12 +190,18 @@ class RivalJob(StudyJob):
             if before is not None and (before.events, before.lessons) == (mark.events, mark.lessons):
                 drives = checkpoints[-1].drives
             else:
-                drives = await self._examine(mark, policies, clock, failures, report)
+                drives = await self._examine(mark, policies, clock, failures, loop, report)
             checkpoints.append(RivalCheckpoint(presses=mark.presses, teaching_s=mark.teaching_s, drives=drives))
         return checkpoints
 
     async def _examine(
-        self, mark: Mark, policies: Sequence[Drive], clock: LearnerClock, failures: list[str], report: Report
+        self,
+        mark: Mark,
+        policies: Sequence[Drive],
+        clock: LearnerClock,
+        failures: list[str],
+        loop: DriveLoop,
+        report: Report,
     ) -> tuple[Drive, ...]:
         """Return the drives in each world, up to the first that failed: one failure decides the success."""
         team = self._new_team(clock)
@@ -197,7 +210,8 @@ class RivalJob(StudyJob):
         drives: list[Drive] = []
         for world, policy in zip(self.task.exam.worlds, policies, strict=True):
             setup = ExamSetup(world, self.seed, learners=team)
-            (exam,) = await run_drives(self.factory, self.robot, self.task, [BatchExam(setup, mark.events)], report)
+            exams = [BatchExam(setup, mark.events)]
+            (exam,) = await run_drives(self.factory, self.robot, self.task, exams, report, loop)
             drives.append(drive_of(exam, verdict_by(policy, exam, self.task.exam.success)))
             if team is not None:
                 failures.append(team.failure)

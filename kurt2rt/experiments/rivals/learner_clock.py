@@ -18,6 +18,10 @@ class LearnerClock:
         self.longest_ns = 0
         """Time of the longest decision."""
 
+    def restart(self) -> None:
+        """Forget all times, because the lesson begins again."""
+        self.retraining_ns = self.longest_ns = 0
+
     @property
     def retraining_s(self) -> float:
         """Time of all lessons with the first decision after each, in s."""

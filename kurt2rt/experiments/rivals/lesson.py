@@ -3,33 +3,21 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from hal.batch_lesson import LessonCause, LessonFactory
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.learner.learner import Label, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.experiments.lockstep.batch_lesson import open_batch_lesson
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, TrainingRun
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
+from kurt2rt.experiments.rivals.marks import Mark, PressMarks
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
-
-
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """Knowledge after a number of presses."""
-
-    presses: int
-    """Number asked for; a robot that gave cause for fewer has all that it was taught."""
-    events: tuple[TeachingEvent, ...]
-    """Lessons so far, which are the knowledge of RLAs."""
-    lessons: tuple[Label | Signal, ...]
-    """Standing labels and rewards so far, which are the knowledge of a learner; empty for RLAs."""
-    teaching_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +68,38 @@ async def teach_rival(
     return run.lesson(), runtime
 
 
+def teach_rival_in_batch(
+    factory: LessonFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    team: LearnerTeam | None,
+    after: Sequence[int],
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> tuple[RivalLesson, Runtime] | None:
+    """Give the task's lesson in a batch, as `teach_rival` does; return None if it belongs on the CAN bus.
+
+    The learners have then been taught a part of it. `factory` opens the simulation; for the rest see `teach_rival`.
+
+    Raises:
+        BatchRefusedError: the batch does not know the task or its teacher, or a learner failed.
+        LessonLostError: the robot refused a command.
+        hal.settings.SettingsError: task and world do not fit.
+    """
+    with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress, learners=team) as run:
+        pressed = PressMarks(after, lambda: run.events, team)
+        run.on_stretch = lambda: pressed.update(run.presses, run.ticks * run.period_s)
+        if not run.drive_stretches():
+            return None
+        causes = run.robot.log.causes[1 : run.ticks + 1]
+        driven_s, waited_s = (
+            int((causes == cause).sum()) * run.period_s for cause in (LessonCause.TEACHER, LessonCause.UNKNOWN)
+        )
+        marks = pressed.at_end(run.presses, run.ticks * run.period_s)
+        return RivalLesson(run.result(), marks, driven_s, waited_s), run.runtime
+
+
 def session_of(plan: LessonPlan, seed: int) -> str:
     """Return the prefix of the command ids of a robot's lesson."""
     return f"{plan.purpose}-{seed}-after-0"
@@ -112,31 +132,22 @@ class MarkedRun(TrainingRun):
             on_progress=on_progress,
             answering=answering,
         )
-        self._store, self._team, self._after = store, team, after
-        self._marks: list[Mark] = []
+        self._pressed = PressMarks(after, lambda: store.events, team)
         self._driven_ticks = self._waiting_ticks = 0
 
     def on_tick(self, record: TickRecord) -> None:
-        """Let the teacher react; mark the knowledge if a press too many was sent, which a later tick applies."""
+        """Let the teacher react, and mark the knowledge."""
         super().on_tick(record)
         decision = record.decision
         self._driven_ticks += decision.cause is DecisionCause.TEACHER
         self._waiting_ticks += decision.asking
-        presses = len(self._workload.press_ticks)
-        while len(self._marks) < len(self._after) and presses > self._after[len(self._marks)]:
-            self._marks.append(self._mark(self._after[len(self._marks)]))
+        self._pressed.update(self.presses, record.tick * self.period_s)
 
     def lesson(self) -> RivalLesson:
-        """Return the result with the marks; those that were not reached are of the end."""
-        last = self._mark(len(self._workload.press_ticks))
-        missing = (self._mark(presses) for presses in self._after[len(self._marks) :])
+        """Return the result with the marks."""
         return RivalLesson(
             self.result(),
-            (*self._marks, *missing, last),
+            self._pressed.at_end(self.presses, self.ticks * self.period_s),
             self._driven_ticks * self.period_s,
             self._waiting_ticks * self.period_s,
         )
-
-    def _mark(self, presses: int) -> Mark:
-        lessons = () if self._team is None else self._team.lessons
-        return Mark(presses, tuple(self._store.events), lessons, self.ticks * self.period_s)

@@ -63,8 +63,11 @@ class RivalOutcome(Settings):
     """Processor time of all lessons, each with the first decision after it; 0 for RLAs of the robot's level."""
     longest_decision_ms: float
     """Processor time of the longest decision; 0 for RLAs of the robot's level."""
-    tick_p99_us: float
-    """99th percentile of the duration of a tick in the last minute of the lesson, with other work of the machine."""
+    tick_p99_us: float | None
+    """99th percentile of the duration of a tick in the last minute of the lesson, with other work of the machine.
+
+    None for a lesson in the batch, which has no ticks of the robot's program.
+    """
     undo_s: float
     """Processor time of the undo of the last lesson, with a decision after it."""
     undo_restores: bool

@@ -1,20 +1,24 @@
 """Plan of a league: every rival is taught as every robot, task by task, after the policy's own drives."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.rivals.holds.jobs import HeldRivalJob
 from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
 from kurt2rt.experiments.rivals.rival import SHIPPED, TUNED, Rival
+from kurt2rt.experiments.rivals.signals.jobs import RewardedRivalJob
 from kurt2rt.experiments.rivals.tuned import TunedRivals
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 
-DECIDING = (PolicyJob, RivalJob)
+DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -37,10 +41,29 @@ class LeaguePlan:
     policy_jobs: tuple[PolicyJob, ...]
     entries: tuple[Entry, ...]
 
+    choice: LoopChoice = NO_CHOICE
+    """Loops of the jobs."""
+
     @property
-    def waves(self) -> tuple[tuple[PolicyJob | RivalJob, ...], ...]:
-        """Jobs in waves; the jobs of a wave need only results of earlier waves."""
-        return self.policy_jobs, tuple(job for entry in self.entries for job in entry.jobs)
+    def rival_jobs(self) -> tuple[RivalJob, ...]:
+        """Jobs of all rivals."""
+        return tuple(job for entry in self.entries for job in entry.jobs)
+
+    @property
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """Jobs and their witnesses in waves; the jobs of a wave need only results of earlier waves."""
+        policies, rivals = self.policy_jobs, self.rival_jobs
+        return (*policies, *self.choice.witnesses(policies)), (*rivals, *self.choice.witnesses(rivals))
+
+    def driven(self, loops: RequestedLoops, robot: RobotSettings) -> "LeaguePlan":
+        """Return the plan with jobs that these loops drive. Raises hal.settings.SettingsError."""
+        choice = choose_loops((*self.policy_jobs, *self.rival_jobs), loops, robot)
+        return replace(
+            self,
+            policy_jobs=choice.apply(self.policy_jobs),
+            entries=tuple(replace(each, jobs=choice.apply(each.jobs)) for each in self.entries),
+            choice=choice,
+        )
 
 
 def make_plan(
@@ -51,6 +74,7 @@ def make_plan(
     parts: JobParts,
     *,
     tuned: TunedRivals | None = None,
+    loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> LeaguePlan:
     """Check tasks and worlds, and return the jobs.
@@ -62,6 +86,7 @@ def make_plan(
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
         tuned: settings that were found for rivals; those that are not among them keep their own.
+        loops: that drive lessons and exams.
         source_of: returns the hash of the program's source.
 
     Raises:
@@ -85,8 +110,9 @@ def make_plan(
                 continue
             own = rival.task(task)
             made = fingerprints.of(own, worlds, rival.source, repr(tuple(after)))
+            kind = _job_class(rival)
             jobs = tuple(
-                RivalJob(
+                kind(
                     task=own,
                     seed=seed,
                     rival=rival,
@@ -98,7 +124,14 @@ def make_plan(
                 for seed in seeds
             )
             entries.append(Entry(task.name, rival, jobs))
-    return LeaguePlan(tuple(tasks), tuple(seeds), tuple(after), tuple(policies.values()), tuple(entries))
+    plan = LeaguePlan(tuple(tasks), tuple(seeds), tuple(after), tuple(policies.values()), tuple(entries))
+    return plan.driven(loops, parts["robot"])
+
+
+def _job_class(rival: Rival) -> type[RivalJob]:
+    if rival.is_held:
+        return HeldRivalJob
+    return RewardedRivalJob if rival.is_rewarded else RivalJob
 
 
 @dataclass(frozen=True, slots=True)

@@ -109,6 +109,12 @@ def effort_table(league: League) -> Table:
     )
 
 
+def _tick_p99_ms(row: Row) -> str:
+    """Return the median over the lessons on the CAN bus; the batch has no ticks of the robot's program."""
+    measured = [each.tick_p99_us for each in row.outcomes if each.tick_p99_us is not None]
+    return f"{median(measured) / 1000:.2f}" if measured else "-"
+
+
 def machine_table(league: League) -> Table:
     """Return what learners take of the machine, and the undo of their last lesson."""
     return Table(
@@ -121,7 +127,7 @@ def machine_table(league: League) -> Table:
             (
                 *_heading(row),
                 *_of_learner(row),
-                f"{median(each.tick_p99_us for each in row.outcomes) / 1000:.2f}",
+                _tick_p99_ms(row),
                 f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
                 f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
                 f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from sklearn.ensemble import RandomForestClassifier
+from sklearn.svm import SVC
 
 from kurt2rt.core.learner.conformance import broken_promises
 from kurt2rt.core.learner.learner import Learner, LearnerSetting, Why
@@ -12,6 +13,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLDS
 from kurt2rt.experiments.rivals.learners.flat_trees import FlatTrees
+from kurt2rt.experiments.rivals.learners.support_vectors import PairVotes
 from kurt2rt.experiments.rivals.registry import find_learner, learner_names
 from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNALS
 from tests.experiments.helpers import ROBOT
@@ -107,6 +109,16 @@ def test_weighted_vote_follows_the_near_label_of_many() -> None:
     labels = [(9.0, 0.0, "b")] * 9 + [(0.0, 0.0, "a")]
     assert says(taught("weighted-vote", *labels), 1.0, 0.0) == "a"
     assert says(taught("k-nn", *labels), 1.0, 0.0) == "b"
+
+
+@pytest.mark.parametrize("classes", [2, 3, 6])
+def test_pair_votes_are_those_of_scikit_learn(classes: int) -> None:
+    rng = np.random.default_rng(classes)
+    points, actions = rng.normal(size=(60, 8)), rng.integers(0, classes, 60).astype(str)
+    machine = SVC(C=10.0, gamma=0.1, decision_function_shape="ovr").fit(points, actions)
+    votes, probes = PairVotes(machine, 0.1), rng.normal(size=(50, 8))
+    found, theirs = np.array([votes.values(probe) for probe in probes]), machine.decision_function(probes)
+    assert np.allclose(found[:, 1] - found[:, 0] if classes == 2 else found, theirs, rtol=0.0, atol=1e-9)
 
 
 def test_flat_trees_have_the_shares_of_the_forest() -> None:

@@ -121,7 +121,7 @@ class _HoldRun(MarkedRun):
         times: FitTimes,
     ) -> None:
         task, period_s = runtime.task, runtime.robot.can.cycle_s
-        self._learners, self._clock = dict(learners), clock
+        self._team, self._learners, self._clock = team, dict(learners), clock
         for learner in self._learners.values():
             learner.fits_at_intervals = True
         self._lessons = LearnerPupil(self._learners, round(times.first_s / period_s)) if learners else None

@@ -1,6 +1,5 @@
 """Vote of the k nearest labels, within R."""
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -26,4 +25,5 @@ class KNearest(LabelLearner):
         nearest = np.argsort(distances, kind="stable")[:_K]
         if distances[nearest[0]] > self.gate(1.0) * self.stricter(taught=taught) * self.setting.radius:
             return None
-        return Counter[str](self._said[place] for place in nearest).most_common(1)[0][0]
+        said: list[str] = [self._said[int(place)] for place in nearest]
+        return max(said, key=said.count)
