@@ -121,8 +121,6 @@ class SearchSettings(Settings):
         keys = [each.key for each in self.space]
         if GATE in keys and self.learner is None:
             raise ValueError(f"space: {GATE} is a number of a learner, and no learner is named")
-        if self.learner is not None and DriveLoop.BATCH in (self.lessons, self.exams):
-            raise ValueError("lessons, exams: learners are taught on the CAN bus (got batch, allowed bus)")
         twice = next((key for key in keys if keys.count(key) > 1), None)
         if twice:
             raise ValueError(f"space: the key {twice} stands twice")

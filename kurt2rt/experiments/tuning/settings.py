@@ -5,7 +5,6 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.settings import Settings, SettingsError, find_config, load_settings
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.rivals.rival import TUNED
 from kurt2rt.experiments.rivals.tuned import GATE
 from kurt2rt.experiments.search.settings import (
@@ -64,13 +63,10 @@ class TuningSettings(Settings):
         if gate is not None:
             learner = LearnerToSearch(name=rival, gate=gate.first)
             own = (Dimension(key=GATE, low=gate.low, high=gate.high),)
-        loop = DriveLoop.BATCH if gate is None else DriveLoop.BUS
         return SearchSettings(
             name=f"{rival}_{task}".replace("-", "_"),
             task=task,
             teacher=self.teacher,
-            lessons=loop,
-            exams=loop,
             objective=self.objective,
             trials=trials,
             learner=learner,
