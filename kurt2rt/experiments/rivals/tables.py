@@ -10,6 +10,8 @@ from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
+_CLAIMED = 0.9
+"""Part of the success of the RLA system that refutes the claim."""
 _GATES = (
     "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
 )
@@ -29,6 +31,7 @@ def tuning_text(league: League) -> str:
 def all_tables(league: League) -> Iterator[Table]:
     """Yield all tables: success by presses, the comparison, the effort, the machine, and failures if there are any."""
     yield success_table(league)
+    yield claim_table(league)
     yield comparison_table(league)
     yield effort_table(league)
     yield machine_table(league)
@@ -57,6 +60,40 @@ def success_table(league: League) -> Table:
         "With 95 % intervals. A robot that gave cause for fewer presses has all that it was taught. Mean: of the "
         f"shares in this row. {tuning_text(league)} All see the situation with the weights of the RLAs.",
     )
+
+
+def claim_table(league: League) -> Table:
+    """Return whether a rival comes close to the RLA system as shipped, task by task, at the end of the lessons."""
+    rows = []
+    for task in league.plan.tasks:
+        shipped = league.shipped(task.name)
+        own = (row for row in league.rows if row.entry.task == task.name and row.entry.rival.is_learner)
+        best = max((row for row in own if row.judged), key=_share_at_end, default=None)
+        if best is None or not shipped.judged:
+            continue
+        ours, theirs = _share_at_end(shipped), _share_at_end(best)
+        rows.append(
+            (
+                task.name,
+                _share(shipped.passed(-1), len(shipped.judged)),
+                best.entry.rival.title,
+                _share(best.passed(-1), len(best.judged)),
+                f"{theirs / ours:.2f}" if ours else "-",
+                "refuted" if theirs >= _CLAIMED * ours else "stands",
+            )
+        )
+    return Table(
+        f"Claim: no other learner reaches {_CLAIMED:g} of the success of the RLA system",
+        ("task", "RLA system", "best other", "passes", "of the RLA system's", "claim"),
+        tuple(rows),
+        words=1,
+        note="At the end of the lessons, with the same teacher's effort for all. The best of many rows is chosen after "
+        "the fact, which favours it. Other rows of the RLA system do not count.",
+    )
+
+
+def _share_at_end(row: Row) -> float:
+    return row.passed(-1) / len(row.judged)
 
 
 def comparison_table(league: League) -> Table:

@@ -6,6 +6,7 @@ from kurt2rt.experiments.rivals.figures import draw_curves
 from kurt2rt.experiments.rivals.report import write_report
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
+    claim_table,
     comparison_table,
     effort_table,
     machine_table,
@@ -33,6 +34,17 @@ def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
     assert "with the defaults of their classes: 1-NN without R" in table.note
 
 
+def test_claim_is_refuted_by_a_learner_that_comes_close(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    right, stuck = (tuple(robot(seed, *[end] * 3) for seed in range(1, 11)) for end in ("right", "stuck"))
+    claims = [claim_table(league_of(results, right, (*right[:passed], *stuck[passed:]))).rows[0] for passed in (9, 8)]
+    assert [(claim[0], claim[2], *claim[4:]) for claim in claims] == [
+        ("wall_following", "1-NN without R", "0.90", "refuted"),
+        ("wall_following", "1-NN without R", "0.80", "stands"),
+    ]
+    assert claim_table(league_of(results, stuck, stuck)).rows[0][4:] == ("-", "refuted")
+
+
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
     table = comparison_table(league_of(Results(tmp_path), OURS, THEIRS))
     assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500"),)
@@ -53,7 +65,7 @@ def test_machine_leaves_times_of_a_learner_out_for_rlas(tmp_path: Path) -> None:
 def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
     *_, failures = all_tables(league_of(Results(tmp_path), OURS, THEIRS))
     assert failures.rows == (("wall_following", "1-NN without R", "2", "1-nn: ValueError: empty"),)
-    assert len(list(all_tables(league_of(Results(tmp_path), OURS, OURS)))) == 4
+    assert len(list(all_tables(league_of(Results(tmp_path), OURS, OURS)))) == 5
 
 
 def test_report_says_which_rivals_were_tuned(tmp_path: Path) -> None:
