@@ -49,6 +49,7 @@ class SimulatedRobot:
         knowledge: Knowledge | None = None,
         path: str | PathLike[str] | None = None,
         robot: str = "kurt2",
+        bus: str | None = None,
     ) -> None:
         """Put the robot into its world and take its first step, so that it has readings.
 
@@ -59,9 +60,12 @@ class SimulatedRobot:
             knowledge: to begin with; its file stays as it is.
             path: of a new file that gets each lesson at once; None: lessons are kept by `save` alone.
             robot: name or path of the robot's settings.
+            bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
+                shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
 
         Raises:
-            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, or there is a file at `path`.
+            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, or `bus`
+                is missing, real or taken.
         """
         settings = load_robot(robot)
         self._robot = robot
@@ -69,7 +73,7 @@ class SimulatedRobot:
         loaded = load_task(self._task)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world
-        self._factory = open_factory(settings)
+        self._factory = open_factory(settings, bus)
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
         self._sent = 0
