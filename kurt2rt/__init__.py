@@ -8,6 +8,8 @@ These names are promised; all other modules may change without notice:
     Knowledge       taught RLAs, in a file
     examine         let taught robots drive without a teacher
     Examination     result of `examine`, with a table and a plot
+    replay          decide a recorded run again, and compare bit for bit
+    ReplayedRun     result of `replay`, with decisions and a plot
     Error           base of the errors that you can mend
 
 A first plot:
@@ -28,20 +30,34 @@ if TYPE_CHECKING:
     from hal.errors import UserError as Error
     from kurt2rt.library.examination import Examination, examine
     from kurt2rt.library.knowledge import Knowledge, teach
+    from kurt2rt.library.replay import ReplayedRun, replay
     from kurt2rt.library.simulated_robot import SimulatedRobot
     from kurt2rt.teacher.client.teacher import Teacher
 
     __version__: str
 
-__all__ = ["Error", "Examination", "Knowledge", "SimulatedRobot", "Teacher", "__version__", "examine", "teach"]
+__all__ = [
+    "Error",
+    "Examination",
+    "Knowledge",
+    "ReplayedRun",
+    "SimulatedRobot",
+    "Teacher",
+    "__version__",
+    "examine",
+    "replay",
+    "teach",
+]
 
 _PLACES = {
     "Error": ("hal.errors", "UserError"),
     "Examination": ("kurt2rt.library.examination", "Examination"),
     "Knowledge": ("kurt2rt.library.knowledge", "Knowledge"),
+    "ReplayedRun": ("kurt2rt.library.replay", "ReplayedRun"),
     "SimulatedRobot": ("kurt2rt.library.simulated_robot", "SimulatedRobot"),
     "Teacher": ("kurt2rt.teacher.client.teacher", "Teacher"),
     "examine": ("kurt2rt.library.examination", "examine"),
+    "replay": ("kurt2rt.library.replay", "replay"),
     "teach": ("kurt2rt.library.knowledge", "teach"),
 }
 """Module and name there of each promised name, imported on first use (PEP 562)."""

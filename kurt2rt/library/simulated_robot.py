@@ -18,13 +18,15 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.knowledge.files.atomic_write import write_new
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.drive import Drive
+from kurt2rt.library.drive_recorder import DriveRecorder
 from kurt2rt.library.knowledge import Knowledge
 from kurt2rt.library.senses import Senses
 from kurt2rt.library.simulation import open_factory
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import MOST_OTHERS
-from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.reasons import format_decision
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -50,6 +52,7 @@ class SimulatedRobot:
         path: str | PathLike[str] | None = None,
         robot: str = "kurt2",
         bus: str | None = None,
+        record: str | PathLike[str] | None = None,
     ) -> None:
         """Put the robot into its world and take its first step, so that it has readings.
 
@@ -62,10 +65,11 @@ class SimulatedRobot:
             robot: name or path of the robot's settings.
             bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
                 shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
+            record: folder of recordings, in which this run gets a folder, for `kurt2rt.replay`; None: no recording.
 
         Raises:
-            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, or `bus`
-                is missing, real or taken.
+            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, `bus` is
+                missing, real or taken, or nothing can be written to `record`.
         """
         settings = load_robot(robot)
         self._robot = robot
@@ -77,6 +81,7 @@ class SimulatedRobot:
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
         self._sent = 0
+        self._recorder: DriveRecorder | None = None
         with ExitStack() as opened:
             folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
             self._file = Path(folder).resolve() / "taught.knowledge" if path is None else Path(path)
@@ -85,11 +90,14 @@ class SimulatedRobot:
             if knowledge is not None:
                 with Journal.read_only(knowledge.path) as journal:
                     write_new(journal.image(), self._file)
-            self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded))
+            self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded, self._on_saved))
             simulation = self._factory.open(self._world, seed, _PURPOSE)
             opened.callback(simulation.close)
             self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
-            self._drive.step()
+            if record is not None:
+                self._recorder = DriveRecorder(Path(record), settings, loaded, self._keeping.opened, simulation)
+                opened.callback(self._end_recording, self._recorder)
+            self._tick()
             self._opened = opened.pop_all()
         self._closed = False
 
@@ -102,7 +110,7 @@ class SimulatedRobot:
             raise UserError(f"not a number of steps (got {ticks!r}, allowed whole numbers from 1 on)", where="ticks")
         self._require_open()
         for _ in range(int(ticks)):
-            self._drive.step()
+            self._tick()
         self._keeping.check()
 
     def run(self, seconds: float) -> None:
@@ -134,7 +142,7 @@ class SimulatedRobot:
         """Return the decision of the newest step and its reasons, a line each."""
         drive = self._drive
         facts = collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS)
-        return "\n".join([headline(facts), *format_reasons(facts)])
+        return format_decision(facts)
 
     def save(self, path: str | PathLike[str]) -> Knowledge:
         """Save all lessons in a new file, durable on return.
@@ -180,6 +188,11 @@ class SimulatedRobot:
         return self._drive.runtime.level.system.rlas
 
     @property
+    def recording(self) -> Path | None:
+        """Folder of this run's recording, which is whole when the robot is closed; None if it is not recorded."""
+        return None if self._recorder is None else self._recorder.run
+
+    @property
     def seconds(self) -> float:
         """Robot time since the beginning."""
         return self._drive.ticks * self._drive.period_s
@@ -215,6 +228,21 @@ class SimulatedRobot:
             f"SimulatedRobot in world {self._world}, task {self._task}: {self.seconds:.2f} s, "
             f"{len(self.rlas)} RLAs, {self.action or 'stands'}"
         )
+
+    def _tick(self) -> None:
+        self._drive.step()
+        if self._recorder is not None:
+            self._recorder.on_tick(self._drive.record, self.why)
+
+    def _on_saved(self, acknowledgement: Acknowledgement) -> None:
+        if self._recorder is not None:
+            self._recorder.on_saved(acknowledgement)
+
+    def _end_recording(self, recorder: DriveRecorder) -> None:
+        try:
+            self._keeping.end(self._drive.runtime.snapshot())  # the recording says of each lesson that it is durable
+        finally:
+            recorder.close()
 
     def _command(self, command: Teach | Correct | Resume) -> None:
         """Send a command, take one step, and raise kurt2rt.Error if the robot refuses it."""

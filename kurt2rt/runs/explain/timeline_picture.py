@@ -29,6 +29,11 @@ _INTERVALS = 200
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
     """Write the picture in the format of the file's suffix. Raises OSError."""
+    save_figure(timeline_figure(timeline, title), path)
+
+
+def timeline_figure(timeline: Timeline, title: str) -> Figure:
+    """Return the picture as a figure."""
     colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
     figure = Figure(figsize=(16.0, 8.6), facecolor="white")
     figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
@@ -60,7 +65,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
             lane.set_xticks([])
     lanes[-1].set_xlabel("s into the run", fontsize=9.5, color=PALE_INK)
     _legend(figure, timeline, colours)
-    save_figure(figure, path)
+    return figure
 
 
 def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
