@@ -1,7 +1,8 @@
 """Simulated robot for scripts and notebooks, taught by the caller."""
 
+import math
 import tempfile
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
@@ -10,12 +11,15 @@ from typing import TYPE_CHECKING, Self
 from hal.errors import UserError
 from hal.robot_settings import load_robot
 from hal.simulation import Pose
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.files.atomic_write import write_new
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement
@@ -77,6 +81,7 @@ class SimulatedRobot:
         loaded = load_task(self._task)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world
+        self._settings, self._loaded, self._seed = settings, loaded, seed
         self._factory = open_factory(settings, bus)
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
@@ -138,11 +143,33 @@ class SimulatedRobot:
         """
         self._command(Resume(self._next_id(), _TEACHER))
 
-    def why(self) -> str:
-        """Return the decision of the newest step and its reasons, a line each."""
-        drive = self._drive
-        facts = collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS)
-        return format_decision(facts)
+    def why(self, *, at: float | None = None, tick: int | None = None) -> str:
+        """Return the decision of a step and its reasons, a line each.
+
+        An earlier step is simulated again from the beginning, which takes as long as the drive up to it took.
+
+        Args:
+            at: time of the step, in s as `seconds`; None: the newest step.
+            tick: number of the step, from 1, in place of `at`.
+
+        Raises:
+            UserError: as kurt2rt.Error, there was no such step, or other programs on `bus` changed the drive.
+        """
+        if at is None and tick is None:
+            return _explain(self._drive)
+        number = self._tick_at(at, tick)
+        opened = self._keeping.opened
+        counter = StatisticsCounter(dict(opened.saved.uses), dict(opened.saved.transitions))
+        training = TrainingStore(InMemoryEventStore(), opened.events, counter, opened.saved)
+        with closing(open_factory(self._settings).open(self._world, self._seed, _PURPOSE)) as simulation:
+            again = Drive(simulation, self._settings, self._loaded, training, self._seed)
+            if not again.repeat(self._drive, number):
+                raise UserError(
+                    "cannot be simulated again, because another program sent on its bus",
+                    where=f"step {number}",
+                    do="record the run, and ask kurt2rt.replay",
+                )
+            return _explain(again)
 
     def save(self, path: str | PathLike[str]) -> Knowledge:
         """Save all lessons in a new file, durable on return.
@@ -234,6 +261,19 @@ class SimulatedRobot:
         if self._recorder is not None:
             self._recorder.on_tick(self._drive.record, self.why)
 
+    def _tick_at(self, at: float | None, tick: int | None) -> int:
+        """Return the number of a step by time or number. Raises UserError if there was none."""
+        if at is not None and tick is not None:
+            raise UserError(f"got at={at!r} and tick={tick!r}, allowed one of them", where="why")
+        taken = self._drive.ticks
+        if at is not None:
+            if not 0.0 <= at <= self.seconds:
+                raise UserError(f"no time of this robot (got {at!r}, allowed 0 to {self.seconds:g} s)", where="at")
+            return max(1, math.floor(at / self._drive.period_s + 1e-6))
+        if tick is None or tick not in range(1, taken + 1):
+            raise UserError(f"no step of this robot (got {tick!r}, allowed 1 to {taken})", where="tick")
+        return int(tick)
+
     def _on_saved(self, acknowledgement: Acknowledgement) -> None:
         if self._recorder is not None:
             self._recorder.on_saved(acknowledgement)
@@ -264,6 +304,11 @@ class SimulatedRobot:
     def _require_open(self) -> None:
         if self._closed:
             raise UserError("is closed", where="SimulatedRobot", do="make a new one")
+
+
+def _explain(drive: Drive) -> str:
+    """Return the newest decision and its reasons, a line each."""
+    return format_decision(collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS))
 
 
 def _require_one_behaviour(task: TaskSettings) -> None:
