@@ -21,6 +21,23 @@ A first plot:
         robot.run(seconds=5)
         print(robot.senses["front"].metres, robot.why())
         robot.plot().savefig("drive.png")
+
+Let a scripted teacher teach, and examine what was learned:
+
+    taught = kurt2rt.teach("walls.knowledge", task="wall_following", seed=1)
+    print(kurt2rt.examine(taught, worlds=["b"], seeds=[1, 2]))
+
+Record a run, and decide it again:
+
+    with kurt2rt.SimulatedRobot(knowledge=taught, record="recordings") as robot:
+        robot.run(seconds=20)
+    print(kurt2rt.replay("recordings").exact, robot.why(at=7.5))
+
+Test your own code with pytest, whose fixtures kurt2, taught_robot and kurt2_on_vcan come with this package:
+
+    def test_my_code(kurt2):
+        my_code(kurt2)
+        assert kurt2.collisions == 0
 """
 
 from importlib import import_module

@@ -24,7 +24,6 @@ from kurt2rt.knowledge.files.atomic_write import write_new
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.drive import Drive
-from kurt2rt.library.drive_recorder import DriveRecorder
 from kurt2rt.library.knowledge import Knowledge
 from kurt2rt.library.senses import Senses
 from kurt2rt.library.simulation import open_factory
@@ -34,6 +33,8 @@ from kurt2rt.runs.explain.reasons import format_decision
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from kurt2rt.library.drive_recorder import DriveRecorder
 
 _PURPOSE = "library"
 _TEACHER = "caller"
@@ -86,7 +87,7 @@ class SimulatedRobot:
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
         self._sent = 0
-        self._recorder: DriveRecorder | None = None
+        self._recorder: "DriveRecorder | None" = None
         with ExitStack() as opened:
             folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
             self._file = Path(folder).resolve() / "taught.knowledge" if path is None else Path(path)
@@ -100,6 +101,9 @@ class SimulatedRobot:
             opened.callback(simulation.close)
             self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
             if record is not None:
+                # Late import: a tenth of a second.
+                from kurt2rt.library.drive_recorder import DriveRecorder
+
                 self._recorder = DriveRecorder(Path(record), settings, loaded, self._keeping.opened, simulation)
                 opened.callback(self._end_recording, self._recorder)
             self._tick()
@@ -278,7 +282,7 @@ class SimulatedRobot:
         if self._recorder is not None:
             self._recorder.on_saved(acknowledgement)
 
-    def _end_recording(self, recorder: DriveRecorder) -> None:
+    def _end_recording(self, recorder: "DriveRecorder") -> None:
         try:
             self._keeping.end(self._drive.runtime.snapshot())  # the recording says of each lesson that it is durable
         finally:
