@@ -87,7 +87,7 @@ class SimulatedRobot:
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
         self._sent = 0
-        self._recorder: "DriveRecorder | None" = None
+        self._recorder: DriveRecorder | None = None
         with ExitStack() as opened:
             folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
             self._file = Path(folder).resolve() / "taught.knowledge" if path is None else Path(path)
