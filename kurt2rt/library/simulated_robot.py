@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self
 
 from hal.errors import UserError
 from hal.robot_settings import load_robot
-from hal.simulation import Pose
+from hal.simulation import Pose, Simulation
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
@@ -101,10 +101,7 @@ class SimulatedRobot:
             opened.callback(simulation.close)
             self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
             if record is not None:
-                # Late import: a tenth of a second.
-                from kurt2rt.library.drive_recorder import DriveRecorder
-
-                self._recorder = DriveRecorder(Path(record), settings, loaded, self._keeping.opened, simulation)
+                self._recorder = self._start_recording(Path(record), simulation)
                 opened.callback(self._end_recording, self._recorder)
             self._tick()
             self._opened = opened.pop_all()
@@ -281,6 +278,12 @@ class SimulatedRobot:
     def _on_saved(self, acknowledgement: Acknowledgement) -> None:
         if self._recorder is not None:
             self._recorder.on_saved(acknowledgement)
+
+    def _start_recording(self, folder: Path, simulation: Simulation) -> "DriveRecorder":
+        # Late import: a tenth of a second.
+        from kurt2rt.library.drive_recorder import DriveRecorder
+
+        return DriveRecorder(folder, self._settings, self._loaded, self._keeping.opened, simulation)
 
     def _end_recording(self, recorder: "DriveRecorder") -> None:
         try:
