@@ -135,6 +135,6 @@ def _marked(request: pytest.FixtureRequest) -> dict[str, Any]:
 def _locked(bus: str) -> Iterator[None]:
     """Wait until no other process of this user has the bus in a test."""
     path = Path(tempfile.gettempdir(), f"kurt2rt-{os.getuid()}-{bus.replace('/', '_')}.lock")
-    with path.open("w", encoding="ascii") as lock:
+    with path.open("a", encoding="ascii") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         yield
