@@ -203,11 +203,8 @@ class SimulationFactory(Protocol):
         ...
 
 
-class SimulatedWorld(Protocol):
-    """The world of a running simulation, as a teacher sees and changes it.
-
-    No call waits; changes happen between two steps of the simulation.
-    """
+class WorldView(Protocol):
+    """The world of a simulation, as a recording shows it. No call waits."""
 
     def place(self) -> SimulatedPlace:
         """Return the true place of the robot."""
@@ -216,6 +213,13 @@ class SimulatedWorld(Protocol):
     def world(self) -> WorldPlan:
         """Return the world from above."""
         ...
+
+
+class SimulatedWorld(WorldView, Protocol):
+    """The world of a running simulation, as a teacher sees and changes it.
+
+    No call waits; changes happen between two steps of the simulation.
+    """
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         """Shift a wall or obstacle by (dx_m, dy_m), in m.

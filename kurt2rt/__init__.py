@@ -8,6 +8,8 @@ These names are promised; all other modules may change without notice:
     Knowledge       taught RLAs, in a file
     examine         let taught robots drive without a teacher
     Examination     result of `examine`, with a table and a plot
+    replay          decide a recorded run again, and compare bit for bit
+    ReplayedRun     result of `replay`, with decisions and a plot
     Error           base of the errors that you can mend
 
 A first plot:
@@ -19,6 +21,23 @@ A first plot:
         robot.run(seconds=5)
         print(robot.senses["front"].metres, robot.why())
         robot.plot().savefig("drive.png")
+
+Let a scripted teacher teach, and examine what was learned:
+
+    taught = kurt2rt.teach("walls.knowledge", task="wall_following", seed=1)
+    print(kurt2rt.examine(taught, worlds=["b"], seeds=[1, 2]))
+
+Record a run, and decide it again:
+
+    with kurt2rt.SimulatedRobot(knowledge=taught, record="recordings") as robot:
+        robot.run(seconds=20)
+    print(kurt2rt.replay("recordings").exact, robot.why(at=7.5))
+
+Test your own code with pytest, whose fixtures kurt2, taught_robot and kurt2_on_vcan come with this package:
+
+    def test_my_code(kurt2):
+        my_code(kurt2)
+        assert kurt2.collisions == 0
 """
 
 from importlib import import_module
@@ -28,20 +47,34 @@ if TYPE_CHECKING:
     from hal.errors import UserError as Error
     from kurt2rt.library.examination import Examination, examine
     from kurt2rt.library.knowledge import Knowledge, teach
+    from kurt2rt.library.replay import ReplayedRun, replay
     from kurt2rt.library.simulated_robot import SimulatedRobot
     from kurt2rt.teacher.client.teacher import Teacher
 
     __version__: str
 
-__all__ = ["Error", "Examination", "Knowledge", "SimulatedRobot", "Teacher", "__version__", "examine", "teach"]
+__all__ = [
+    "Error",
+    "Examination",
+    "Knowledge",
+    "ReplayedRun",
+    "SimulatedRobot",
+    "Teacher",
+    "__version__",
+    "examine",
+    "replay",
+    "teach",
+]
 
 _PLACES = {
     "Error": ("hal.errors", "UserError"),
     "Examination": ("kurt2rt.library.examination", "Examination"),
     "Knowledge": ("kurt2rt.library.knowledge", "Knowledge"),
+    "ReplayedRun": ("kurt2rt.library.replay", "ReplayedRun"),
     "SimulatedRobot": ("kurt2rt.library.simulated_robot", "SimulatedRobot"),
     "Teacher": ("kurt2rt.teacher.client.teacher", "Teacher"),
     "examine": ("kurt2rt.library.examination", "examine"),
+    "replay": ("kurt2rt.library.replay", "replay"),
     "teach": ("kurt2rt.library.knowledge", "teach"),
 }
 """Module and name there of each promised name, imported on first use (PEP 562)."""

@@ -31,17 +31,19 @@ class Kurt2Simulation:
         wire: str = NO_WIRE,
         driver: type[Kurt2] = Kurt2,
         loaded: WorldSettings | None = None,
+        bus: str | None = None,
     ) -> None:
         """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
 
         `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
         `driver`: drives the simulated robot over its bus. `loaded`: settings of the world; None: they are loaded.
+        `bus`: that carries the frames of a robot without a wire (hal.bus.open_bus); None: one of its own.
         """
         self._world = loaded or load_world(world, settings)
         self._cycle_s = settings.can.cycle_s
         chance = random.Random(f"{purpose} in world {world}, seed {seed}")
         noise_seed = chance.getrandbits(32)
-        self._line = open_line(wire, self._cycle_s, noise_seed)
+        self._line = open_line(wire, self._cycle_s, noise_seed, bus)
         self.simulated_robot = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
         self.robot = driver(settings, self._line.notebook_end)
         self._settings = settings

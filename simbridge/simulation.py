@@ -29,13 +29,15 @@ class Kurt2SimulationFactory:
 
     settings: RobotSettings
     wire: str = NO_WIRE
+    bus: str | None = None
+    """Bus that carries the frames of a robot without a wire, for one simulation at a time; None: one of its own."""
 
     def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
         """Open the simulated robot in a world; `seed` and `purpose` make its sensors, start pose and noise.
 
-        Raises SettingsError for an unknown world or wire.
+        Raises BusError for a bus that cannot be opened, SettingsError for an unknown world or wire.
         """
-        return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
+        return Kurt2Simulation(self.settings, world, seed, purpose, self.wire, bus=self.bus)
 
     def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:
         """Open a simulation for each start; a world that several share is loaded once (hal.batch.BatchFactory).

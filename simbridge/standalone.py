@@ -28,7 +28,7 @@ class StandaloneRobot:
         Args: `seed` selects sensors, noise and, if `start` is None, the start pose; `start` counts from 1.
         Raises BusError if a robot is on the bus already.
         """
-        _require_no_robot(settings, bus)
+        require_free_bus(settings, bus)
         bus.set_id_filter({CONTROL_ID})  # other frames must not cost the robot its cycle
         self._bus = bus
         self.bus = ReconnectingBus(bus)
@@ -51,8 +51,11 @@ class StandaloneRobot:
             self._bus.shutdown()
 
 
-def _require_no_robot(settings: RobotSettings, bus: CanBus) -> None:
-    """Raise BusError if a robot sends: two would both execute CONTROL, and their telemetry would mix."""
+def require_free_bus(settings: RobotSettings, bus: CanBus) -> None:
+    """Listen for 0.1 s. If a robot sends on the bus, shut this end down and raise BusError.
+
+    Two robots would both execute CONTROL, and their telemetry would mix.
+    """
     encoder_id = load_codec(settings.can.database).message("ENCODER").frame_id
     bus.set_id_filter({encoder_id})
     time.sleep(_LISTEN_S)

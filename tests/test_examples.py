@@ -4,6 +4,7 @@ import json
 import re
 import runpy
 import sys
+import tempfile
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -20,6 +21,7 @@ from tests.forked_robot import fork_robots
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
 SCRIPT = EXAMPLES / "teach_from_a_script.py"
 NOTEBOOK = EXAMPLES / "teach_in_a_notebook.ipynb"
+LIBRARY_NOTEBOOK = EXAMPLES / "use_as_a_library.ipynb"
 
 
 @pytest.fixture(autouse=True)
@@ -38,20 +40,20 @@ def run_script(monkeypatch: pytest.MonkeyPatch, *words: str) -> None:
     runpy.run_path(str(SCRIPT), run_name="__main__")
 
 
-def cells() -> list[str]:
-    """Return the code cells of the notebook in order."""
-    notebook = json.loads(NOTEBOOK.read_text(encoding="utf-8"))
+def cells(path: Path) -> list[str]:
+    """Return the code cells of a notebook in order."""
+    notebook = json.loads(path.read_text(encoding="utf-8"))
     return ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]
 
 
-def run_notebook(**shorter: float) -> dict[str, Any]:
+def run_notebook(path: Path = NOTEBOOK, **shorter: float) -> dict[str, Any]:
     """Execute the cells in order; `shorter` gives constants of the notebook another value."""
     names: dict[str, Any] = {"__name__": "__main__"}
-    for cell in cells():
+    for cell in cells(path):
         source = cell
         for name, value in shorter.items():
             source = re.sub(rf"^{name} = .*$", f"{name} = {value}", source, flags=re.MULTILINE)
-        exec(compile(source, NOTEBOOK.name, "exec"), names)
+        exec(compile(source, path.name, "exec"), names)
     return names
 
 
@@ -94,6 +96,15 @@ def test_the_notebook_shows_the_plots_of_its_last_run() -> None:
     ]
     assert sum("image/png" in output.get("data", {}) for output in outputs) == 3
     assert not any(output["output_type"] == "error" for output in outputs)
+
+
+async def test_notebook_of_the_library_runs_in_a_running_loop(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    names = run_notebook(LIBRARY_NOTEBOOK, SECONDS=3.0)
+    assert names["run"].exact
+    assert names["taught"].rlas
+    assert len(names["result"].drives) == 1
+    assert names["robot"].plot()._repr_png_().startswith(b"\x89PNG")
 
 
 @pytest.mark.deep

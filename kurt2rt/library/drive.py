@@ -1,10 +1,14 @@
 """Drive of a simulated robot, one tick at a time."""
 
 import random
+import zlib
+from array import array
+from itertools import groupby
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
@@ -30,6 +34,10 @@ class Drive(Episode):
             on_progress=lambda _: None,
         )
         self._record: TickRecord | None = None
+        self._commands: list[tuple[int, Command]] = []
+        """Commands, each with the number of its tick."""
+        self._checksums = array("I")
+        """Checksum of each tick."""
 
     @property
     def record(self) -> TickRecord:
@@ -44,8 +52,34 @@ class Drive(Episode):
         self._clock.step_until(number * self.period_s)
         self._record = self.runtime.tick.run(number, self._clock.now_s())
         self.after_tick(self._record)
+        self._checksums.append(_checksum(self._record))
+
+    def send(self, command: Command) -> None:
+        """Put a command into the robot's inbox, for the next tick."""
+        self._commands.append((self.ticks + 1, command))
+        super().send(command)
+
+    def repeat(self, other: "Drive", ticks: int) -> bool:
+        """Take so many steps with the commands of another drive from the same start.
+
+        Returns whether the last of them had the same situation and the same result, bit for bit.
+        """
+        due = {
+            number: [command for _, command in sent] for number, sent in groupby(other._commands, lambda each: each[0])
+        }
+        for number in range(1, ticks + 1):
+            for command in due.get(number, ()):
+                self.send(command)
+            self.step()
+        return self._checksums[-1] == other._checksums[ticks - 1]
 
     def on_tick(self, record: TickRecord) -> None:
         """Measure the drive; the caller acts on `record` after the step."""
         del record
         self.measure()
+
+
+def _checksum(record: TickRecord) -> int:
+    """Return the CRC-32 of a tick's situation and of its result."""
+    result = record.decision.cause, record.decision.action, record.guard_result
+    return zlib.crc32(repr(result).encode(), zlib.crc32(record.situation.vector.tobytes()))

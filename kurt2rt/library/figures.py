@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from hal.simulation import Position, SimulationFactory
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
+from kurt2rt.runs.explain.save_figure import ShownFigure
 
 _CARRIED_M = 0.2
 """Greater distance of two points of a trail, 0.1 s apart: the robot was repositioned."""
@@ -18,7 +19,7 @@ def drive_figure(
 
     Raises hal.settings.SettingsError for an unknown world.
     """
-    figure = Figure(figsize=(5.2, 5.2), layout="constrained")
+    figure = ShownFigure(figsize=(5.2, 5.2), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)
     draw_trail(axes, trail, "the robot", carried_m=_CARRIED_M)

@@ -1,7 +1,8 @@
 """Simulated robot for scripts and notebooks, taught by the caller."""
 
+import math
 import tempfile
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
@@ -9,25 +10,31 @@ from typing import TYPE_CHECKING, Self
 
 from hal.errors import UserError
 from hal.robot_settings import load_robot
-from hal.simulation import Pose
+from hal.simulation import Pose, Simulation
+from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.files.atomic_write import write_new
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.drive import Drive
 from kurt2rt.library.knowledge import Knowledge
 from kurt2rt.library.senses import Senses
 from kurt2rt.library.simulation import open_factory
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import MOST_OTHERS
-from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.reasons import format_decision
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from kurt2rt.library.drive_recorder import DriveRecorder
 
 _PURPOSE = "library"
 _TEACHER = "caller"
@@ -49,6 +56,8 @@ class SimulatedRobot:
         knowledge: Knowledge | None = None,
         path: str | PathLike[str] | None = None,
         robot: str = "kurt2",
+        bus: str | None = None,
+        record: str | PathLike[str] | None = None,
     ) -> None:
         """Put the robot into its world and take its first step, so that it has readings.
 
@@ -59,9 +68,13 @@ class SimulatedRobot:
             knowledge: to begin with; its file stays as it is.
             path: of a new file that gets each lesson at once; None: lessons are kept by `save` alone.
             robot: name or path of the robot's settings.
+            bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
+                shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
+            record: folder of recordings, in which this run gets a folder, for `kurt2rt.replay`; None: no recording.
 
         Raises:
-            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, or there is a file at `path`.
+            UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, `bus` is
+                missing, real or taken, or nothing can be written to `record`.
         """
         settings = load_robot(robot)
         self._robot = robot
@@ -69,10 +82,12 @@ class SimulatedRobot:
         loaded = load_task(self._task)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world
-        self._factory = open_factory(settings)
+        self._settings, self._loaded, self._seed = settings, loaded, seed
+        self._factory = open_factory(settings, bus)
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
         self._sent = 0
+        self._recorder: DriveRecorder | None = None
         with ExitStack() as opened:
             folder = opened.enter_context(tempfile.TemporaryDirectory(prefix="kurt2rt-"))
             self._file = Path(folder).resolve() / "taught.knowledge" if path is None else Path(path)
@@ -81,11 +96,14 @@ class SimulatedRobot:
             if knowledge is not None:
                 with Journal.read_only(knowledge.path) as journal:
                     write_new(journal.image(), self._file)
-            self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded))
+            self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded, self._on_saved))
             simulation = self._factory.open(self._world, seed, _PURPOSE)
             opened.callback(simulation.close)
             self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
-            self._drive.step()
+            if record is not None:
+                self._recorder = self._start_recording(Path(record), simulation)
+                opened.callback(self._end_recording, self._recorder)
+            self._tick()
             self._opened = opened.pop_all()
         self._closed = False
 
@@ -98,7 +116,7 @@ class SimulatedRobot:
             raise UserError(f"not a number of steps (got {ticks!r}, allowed whole numbers from 1 on)", where="ticks")
         self._require_open()
         for _ in range(int(ticks)):
-            self._drive.step()
+            self._tick()
         self._keeping.check()
 
     def run(self, seconds: float) -> None:
@@ -126,11 +144,33 @@ class SimulatedRobot:
         """
         self._command(Resume(self._next_id(), _TEACHER))
 
-    def why(self) -> str:
-        """Return the decision of the newest step and its reasons, a line each."""
-        drive = self._drive
-        facts = collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS)
-        return "\n".join([headline(facts), *format_reasons(facts)])
+    def why(self, *, at: float | None = None, tick: int | None = None) -> str:
+        """Return the decision of a step and its reasons, a line each.
+
+        An earlier step is simulated again from the beginning, which takes as long as the drive up to it took.
+
+        Args:
+            at: time of the step, in s as `seconds`; None: the newest step.
+            tick: number of the step, from 1, in place of `at`.
+
+        Raises:
+            UserError: as kurt2rt.Error, there was no such step, or other programs on `bus` changed the drive.
+        """
+        if at is None and tick is None:
+            return _explain(self._drive)
+        number = self._tick_at(at, tick)
+        opened = self._keeping.opened
+        counter = StatisticsCounter(dict(opened.saved.uses), dict(opened.saved.transitions))
+        training = TrainingStore(InMemoryEventStore(), opened.events, counter, opened.saved)
+        with closing(open_factory(self._settings).open(self._world, self._seed, _PURPOSE)) as simulation:
+            again = Drive(simulation, self._settings, self._loaded, training, self._seed)
+            if not again.repeat(self._drive, number):
+                raise UserError(
+                    "cannot be simulated again, because another program sent on its bus",
+                    where=f"step {number}",
+                    do="record the run, and ask kurt2rt.replay",
+                )
+            return _explain(again)
 
     def save(self, path: str | PathLike[str]) -> Knowledge:
         """Save all lessons in a new file, durable on return.
@@ -176,6 +216,11 @@ class SimulatedRobot:
         return self._drive.runtime.level.system.rlas
 
     @property
+    def recording(self) -> Path | None:
+        """Folder of this run's recording, which is whole when the robot is closed; None if it is not recorded."""
+        return None if self._recorder is None else self._recorder.run
+
+    @property
     def seconds(self) -> float:
         """Robot time since the beginning."""
         return self._drive.ticks * self._drive.period_s
@@ -212,6 +257,40 @@ class SimulatedRobot:
             f"{len(self.rlas)} RLAs, {self.action or 'stands'}"
         )
 
+    def _tick(self) -> None:
+        self._drive.step()
+        if self._recorder is not None:
+            self._recorder.on_tick(self._drive.record, self.why)
+
+    def _tick_at(self, at: float | None, tick: int | None) -> int:
+        """Return the number of a step by time or number. Raises UserError if there was none."""
+        if at is not None and tick is not None:
+            raise UserError(f"got at={at!r} and tick={tick!r}, allowed one of them", where="why")
+        taken = self._drive.ticks
+        if at is not None:
+            if not 0.0 <= at <= self.seconds:
+                raise UserError(f"no time of this robot (got {at!r}, allowed 0 to {self.seconds:g} s)", where="at")
+            return max(1, math.floor(at / self._drive.period_s + 1e-6))
+        if tick is None or tick not in range(1, taken + 1):
+            raise UserError(f"no step of this robot (got {tick!r}, allowed 1 to {taken})", where="tick")
+        return int(tick)
+
+    def _on_saved(self, acknowledgement: Acknowledgement) -> None:
+        if self._recorder is not None:
+            self._recorder.on_saved(acknowledgement)
+
+    def _start_recording(self, folder: Path, simulation: Simulation) -> "DriveRecorder":
+        # Late import: a tenth of a second.
+        from kurt2rt.library.drive_recorder import DriveRecorder
+
+        return DriveRecorder(folder, self._settings, self._loaded, self._keeping.opened, simulation)
+
+    def _end_recording(self, recorder: "DriveRecorder") -> None:
+        try:
+            self._keeping.end(self._drive.runtime.snapshot())  # the recording says of each lesson that it is durable
+        finally:
+            recorder.close()
+
     def _command(self, command: Teach | Correct | Resume) -> None:
         """Send a command, take one step, and raise kurt2rt.Error if the robot refuses it."""
         self._require_open()
@@ -232,6 +311,11 @@ class SimulatedRobot:
     def _require_open(self) -> None:
         if self._closed:
             raise UserError("is closed", where="SimulatedRobot", do="make a new one")
+
+
+def _explain(drive: Drive) -> str:
+    """Return the newest decision and its reasons, a line each."""
+    return format_decision(collect_facts(drive.runtime, drive.record, lambda _command_id: "", most=MOST_OTHERS))
 
 
 def _require_one_behaviour(task: TaskSettings) -> None:

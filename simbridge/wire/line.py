@@ -15,6 +15,9 @@ from simbridge.wire.wire_interface import WireInterface
 NO_WIRE = "none"
 """Name of the line without a wire, on which frames arrive at once."""
 
+_KERNEL_DELIVERY_S = 0.001
+"""Pause in which the kernel's own thread delivers the frames of a cycle."""
+
 
 class Line(Protocol):
     """Both ends of the bus, and the course of a simulated cycle on it."""
@@ -34,14 +37,23 @@ class Line(Protocol):
 class DirectLine:
     """Line without a wire."""
 
-    def __init__(self) -> None:
+    def __init__(self, bus: str | None = None) -> None:
+        """Open both ends of a bus (hal.bus.open_bus) that others may listen to; None: of a channel of their own.
+
+        Raises BusError.
+        """
         # A unique channel: two lines in one process must not share frames.
-        spec = f"virtual:{uuid.uuid4()}"
+        spec = bus or f"virtual:{uuid.uuid4()}"
         self.robot_end, self.notebook_end = open_bus(spec), open_bus(spec)
+        if bus is not None:
+            self.robot_end.set_id_filter({CONTROL_ID})  # frames of others must not cost the robot its cycle
+        self._delivery_s = 0.0 if ":" in spec else _KERNEL_DELIVERY_S
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
         """Step the robot."""
         step_robot()
+        if self._delivery_s:
+            time.sleep(self._delivery_s)
 
     def live(self) -> AbstractContextManager[None]:
         """Return an empty context: this line has no time."""
@@ -88,13 +100,14 @@ class WiredLine:
             self.wire.follow(None)
 
 
-def open_line(wire: str, cycle_s: float, seed: int) -> Line:
-    """Return a line over a wire given by name in config/wires or by path, or `none`. Raises SettingsError.
+def open_line(wire: str, cycle_s: float, seed: int, bus: str | None = None) -> Line:
+    """Return a line over a wire given by name in config/wires or by path, or `none`. Raises BusError, SettingsError.
 
-    `cycle_s`: duration of a simulated cycle in s. `seed`: of noise and losses.
+    `cycle_s`: duration of a simulated cycle in s. `seed`: of noise and losses. `bus`: that carries a line without a
+    wire; None: one of its own.
     """
     if wire == NO_WIRE:
-        return DirectLine()
+        return DirectLine(bus)
     return WiredLine(load_wire(wire), cycle_s, seed)
 
 

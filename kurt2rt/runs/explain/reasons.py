@@ -49,6 +49,11 @@ def headline(facts: DecisionFacts) -> str:
     return f"stands: {_STANDS.get(DecisionCause(facts.cause), facts.cause)}"
 
 
+def format_decision(facts: DecisionFacts) -> str:
+    """Return the robot's behaviour and its reasons, a line each."""
+    return "\n".join([headline(facts), *format_reasons(facts)])
+
+
 def standing_of(facts: DecisionFacts) -> Standing:
     """Return the guard's reason to stand, or the bumper contact; DRIVES in all other cases."""
     if facts.latched:

@@ -1,5 +1,6 @@
-"""Reproducible figure files."""
+"""Reproducible figure files, and figures that a notebook shows."""
 
+from io import BytesIO
 from pathlib import Path
 
 import matplotlib as mpl
@@ -14,6 +15,15 @@ _NO_DATE: dict[str, dict[str, None]] = {
 
 FORMATS = tuple(_NO_DATE)
 """Suffixes of figure files."""
+
+
+class ShownFigure(Figure):
+    """Figure that a notebook shows; Jupyter shows other figures only after matplotlib.pyplot was imported."""
+
+    def _repr_png_(self) -> bytes:
+        file = BytesIO()
+        self.savefig(file, format="png")
+        return file.getvalue()
 
 
 def save_figure(figure: Figure, path: Path) -> None:

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
-from kurt2rt.runs.explain.save_figure import save_figure
+from kurt2rt.runs.explain.save_figure import ShownFigure, save_figure
 from kurt2rt.runs.explain.timeline import Kind, Note, Sample, Stretch, Timeline, format_summary, kind_intervals
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
@@ -29,8 +29,13 @@ _INTERVALS = 200
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
     """Write the picture in the format of the file's suffix. Raises OSError."""
+    save_figure(timeline_figure(timeline, title), path)
+
+
+def timeline_figure(timeline: Timeline, title: str) -> Figure:
+    """Return the picture as a figure."""
     colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
-    figure = Figure(figsize=(16.0, 8.6), facecolor="white")
+    figure = ShownFigure(figsize=(16.0, 8.6), facecolor="white")
     figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
     figure.text(0.02, 0.925, format_summary(timeline), fontsize=10.5, color=PALE_INK, va="center")
     grid = figure.add_gridspec(
@@ -60,7 +65,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
             lane.set_xticks([])
     lanes[-1].set_xlabel("s into the run", fontsize=9.5, color=PALE_INK)
     _legend(figure, timeline, colours)
-    save_figure(figure, path)
+    return figure
 
 
 def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulatedWorld
+from hal.simulation import WorldView
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead, encode_head
 
 SEGMENT_METADATA = "segment"
@@ -24,7 +24,7 @@ class RecordedRun:
     settings: RobotSettings
     features: tuple[str, ...]
     """Names of the situation's values."""
-    world: SimulatedWorld | None = None
+    world: WorldView | None = None
     """World of a simulated robot."""
     began_at_ns: int | None = None
     """Time since 1970 of the runtime clock's 0 for simulated time; None: measured at the first tick."""

@@ -9,7 +9,7 @@ from typing import Any, Self
 
 from foxglove import Context
 
-from hal.simulation import SimulatedWorld
+from hal.simulation import WorldView
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
@@ -44,7 +44,7 @@ class RunRecorder:
         live: LiveView | None,
         live_log: NoteLog | None,
         *,
-        world: SimulatedWorld | None = None,
+        world: WorldView | None = None,
         began_at_ns: int | None = None,
         capacity: int = CAPACITY,
     ) -> None:

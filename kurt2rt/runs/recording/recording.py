@@ -7,7 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulatedWorld
+from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.perception.definition import load_situation
@@ -48,7 +48,7 @@ class Recording:
     budget: Budget
     bus: str
     """sim, or the robot's bus."""
-    world: SimulatedWorld | None = None
+    world: WorldView | None = None
     """World of a simulated robot."""
     live: tuple[str, int] | None = None
     """Host and port of a live view; None: no live view."""
