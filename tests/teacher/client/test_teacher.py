@@ -12,7 +12,6 @@ import pytest
 
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.codec import WireError
-from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import AppraiseRequest, StopRequest, WatchRequest
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
@@ -151,17 +150,13 @@ async def test_each_command_reaches_the_robot(pairing: Pairing) -> None:
                 assert all(command().accepted for command in commands)
 
         await in_a_thread(give)
-        names = [type(each).__name__ for each in _without_doubles(robot.orders())]
+        names = [type(each).__name__ for each in robot.orders()]
         assert names[-9:] == [
             *("SessionRequest", "SessionRequest", "RewardRequest", "AppraiseRequest", "PursueRequest"),
             *("PlaceRequest", "SaveRequest", "HandOverRequest", "StopRequest"),
         ]
         assert robot.all_of(AppraiseRequest)[0].appraisal == "bad"
         assert robot.all_of(StopRequest)
-
-
-def _without_doubles(requests: list[Request]) -> list[Request]:
-    return list(dict.fromkeys(requests))
 
 
 def test_no_robot_is_one_line_that_says_what_to_do(pairing: Pairing) -> None:
