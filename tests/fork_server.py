@@ -21,6 +21,8 @@ import sys
 from importlib import import_module
 from typing import NamedTuple
 
+import pytest
+
 ADDRESS = "KURT2RT_NURSERY"
 """The variable of the environment in which a session's workers find the address."""
 NUMBER = struct.Struct("=q")
@@ -66,7 +68,9 @@ def preload() -> None:
     from hal.codec import load_codec
     from hal.robot_settings import load_robot
     from kurt2rt.core.task_settings import load_task
+    from tests.patient_shutdown import extend_deadlines
 
+    extend_deadlines(pytest.MonkeyPatch())
     load_codec()  # and remembers it
     load_robot()
     load_task("wall_following")  # with the code of its judges

@@ -186,7 +186,6 @@ def test_run_can_log_is_read_by_other_tools(kurt2rt: CommandLine, tmp_path: Path
         frames = list(reader)
     assert re.search(rf"^{len(frames)} .* drive\.log$", said.out, re.MULTILINE)
     sent = [frame.arbitration_id for frame in frames if not frame.is_rx]
-    assert len(sent) >= 5
     assert set(sent) == {CONTROL_ID}
     heard = {frame.arbitration_id for frame in frames if frame.is_rx}
     assert {load_codec().message(name).frame_id for name in ("ADC00_03", "BDC00_03", "ENCODER", "BUMPERC")} <= heard

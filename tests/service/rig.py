@@ -8,6 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import pytest
+
 from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.robot_settings import load_robot
@@ -27,6 +29,7 @@ from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
+from tests.patient_shutdown import extend_deadlines
 
 SETTINGS = load_robot()
 LONGEST_S = 60.0
@@ -103,7 +106,8 @@ def rig(seed: int = 1) -> Iterator[Rig]:
     simulation = RealtimeSimulation(simulated)
     simulation.start()
     try:
-        with robot.watchdog:
+        with robot.watchdog, pytest.MonkeyPatch.context() as patch:
+            extend_deadlines(patch)
             yield Rig(robot, robot_bus, far_end, ear, simulation, simulated)
     finally:
         robot.close()

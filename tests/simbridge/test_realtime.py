@@ -11,16 +11,20 @@ from tests.simbridge.rig import Rig
 
 
 class StepCounter:
-    """Replacement of a robot's step that records the stepping threads and signals the n-th step."""
+    """Replacement of a robot's step that records the stepping threads and signals the n-th step.
+
+    It reads the frames of each step: a main thread that waits for a processor would let them fill the bus.
+    """
 
     def __init__(self, rig: Rig, monkeypatch: pytest.MonkeyPatch, wanted: int) -> None:
         self.threads: list[threading.Thread] = []
         self.enough = threading.Event()
-        self._step, self._wanted = rig.robot.step, wanted
+        self._rig, self._step, self._wanted = rig, rig.robot.step, wanted
         monkeypatch.setattr(rig.robot, "step", self)
 
     def __call__(self) -> None:
         self._step()
+        self._rig.listen()
         self.threads.append(threading.current_thread())
         if len(self.threads) >= self._wanted:
             self.enough.set()
@@ -36,7 +40,6 @@ def test_thread_steps_and_stops(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> No
         assert steps.enough.wait(30.0)
     assert rig.robot.time_s == pytest.approx(len(steps.threads) * 0.01)
     assert simulation.error is None
-    rig.listen()
     assert rig.heard["ENCODER"] == (0, 0)
 
 
@@ -114,7 +117,6 @@ def test_submit_failing_job_ends_the_thread(rig: Rig) -> None:
 def test_hold_leaves_steps_and_jobs_to_the_caller(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> None:
     steps = StepCounter(rig, monkeypatch, 4)
     jobs: list[int] = []
-    # No shorter cycle: nothing reads the frames, and a main thread that waits for a processor would let them pile up.
     with RealtimeSimulation(rig.robot, cycle_s=1e-3) as simulation:
         simulation.hold()
         steps.threads.clear()

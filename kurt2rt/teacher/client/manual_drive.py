@@ -71,7 +71,7 @@ class ManualDrive:
             name: of the teacher.
             stream: states of the robot.
             requests: to the robot.
-            now: monotonic clock in seconds.
+            now: monotonic clock in seconds, also for the time of a press.
             on_begin: called as a press with speeds begins.
         """
         self.watching = True
@@ -82,7 +82,7 @@ class ManualDrive:
         self._name = name
         self._stream = stream
         self._requests = requests
-        self._now = now
+        self.now_s = now
         self._on_begin = on_begin
         self._press: _Press | None = None
         self._under_way: deque[_Sent] = deque()
@@ -155,13 +155,13 @@ class ManualDrive:
         return self._stream.newest if self._stream.age_s <= BLIND_AFTER_S else None
 
     def _send(self, request: StreamRequest, press: _Press | None) -> None:
-        sent = _Sent(self._requests.next_number, self._now(), request.boot, press)
+        sent = _Sent(self._requests.next_number, self.now_s(), request.boot, press)
         self._under_way.append(sent)
         sent.exchange = self._requests.post(request.path, encode_request(request), partial(self._on_response, sent))
 
     def _on_response(self, sent: _Sent, response: Response) -> None:
         sent.answered = True
-        self.meter.on_answer(self._now() - sent.at_s)
+        self.meter.on_answer(self.now_s() - sent.at_s)
         try:
             answer = answer_of(response.code, decode_answer(response.payload) if response.payload else {})
         except WireError as error:
@@ -179,7 +179,7 @@ class ManualDrive:
             self.end(answer)
 
     def _drop_timed_out(self) -> None:
-        before_s = self._now() - _TIMEOUT_S
+        before_s = self.now_s() - _TIMEOUT_S
         while self._under_way and (self._under_way[0].answered or self._under_way[0].at_s < before_s):
             sent = self._under_way.popleft()
             if not sent.answered:
@@ -214,9 +214,9 @@ class PressHandle:
 
     async def wait(self, seconds: float) -> None:
         """Wait for a time, or until the press is ended by a refusal or another call."""
-        ends_s = anyio.current_time() + seconds
+        ends_s = self._drive.now_s() + seconds
         while self._press_id is not None and self.ended is None:
-            left_s = ends_s - anyio.current_time()
+            left_s = ends_s - self._drive.now_s()
             if left_s <= 0.0:
                 return
             await anyio.sleep(min(left_s, _POLL_S))

@@ -15,8 +15,10 @@ async def test_every_second_stretch_is_recorded(subject: BenchFixture, tmp_path:
     (run,) = runs_in(tmp_path / "runs")
     (segment,) = segments_in(run)
     written = list(SegmentReader(segment).messages({TICK}))
-    assert len(written) + sum(each.missed_ticks for each in drive.recorded) == 40
-    assert drive.trouble == ""
+    # More than 40 if the last ticks of a stretch were missed: the stall counts as a whole.
+    assert len(written) + sum(each.missed_ticks for each in drive.recorded) >= 40
+    assert len(written) <= 40
+    assert (drive.trouble, drive.dropped) == ("", 0)
     assert drive.bytes_written > 0
     late, note, writing = recording_results(drive)
     assert [goal.what for goal in late.goals] == ["missed", "lost"]

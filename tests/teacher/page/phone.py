@@ -16,7 +16,7 @@ from selenium.webdriver.support.wait import WebDriverWait
 
 BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 800)
-PATIENCE_S = 10.0
+PATIENCE_S = 30.0
 """Ends a story whose event never comes."""
 
 # Each page gets a process of its own, and the next one has its process already, unless it is told not to: starting

@@ -14,6 +14,7 @@ from kurt2rt.core.rla.programs import AUTO, SCRIPTED
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Stop, Undo
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.scripted.command_sender import CommandSender
+from tests.teacher.client.test_client import LONGEST_S, Clock
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 TICK = 40
@@ -31,7 +32,7 @@ async def robot(tmp_path: Path) -> AsyncIterator[StandInRobot]:
 
 @pytest.fixture
 async def sender(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[CommandSender]:
-    device = TeacherClient(tmp_path / "devices" / AUTO, port=robot.port, patience_s=0.5)
+    device = TeacherClient(tmp_path / "devices" / AUTO, port=robot.port, patience_s=LONGEST_S, now=Clock())
     async with in_a_task_of_its_own(device) as client:
         await anext(client.states())
         yield CommandSender(client)

@@ -56,7 +56,7 @@ from kurt2rt.teacher.terminal.terminal_text import (
 )
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
-from tests.teacher.client.test_client import HELLO, Clock, seen
+from tests.teacher.client.test_client import HELLO, LONGEST_S, Clock, be_patient, seen
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 
@@ -80,7 +80,7 @@ class Console:
 
     async def reads(self, text: str) -> str:
         """Wait until the screen shows a text; return its line."""
-        with anyio.fail_after(10.0):
+        with anyio.fail_after(LONGEST_S):
             while True:
                 for line in self.said:
                     if text in line:
@@ -110,7 +110,7 @@ class RobotStub:
 
 
 @asynccontextmanager
-async def console_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> AsyncIterator[Console]:
+async def console_at(pairing: Pairing, port: int, *, patience_s: float = LONGEST_S) -> AsyncIterator[Console]:
     reading, writing = os.pipe()
     clock = Clock()
     other_readers = reading_threads()
@@ -129,7 +129,7 @@ async def console_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) ->
             os.close(writing)
             # The thread that reads the pipe sees its end; it must not find the file closed instead.
             for each in reading_threads() - other_readers:
-                each.join(10.0)
+                each.join(LONGEST_S)
 
 
 def reading_threads() -> set[threading.Thread]:
@@ -212,7 +212,7 @@ async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: S
         robot.mind = mind = RobotStub(StopRequest)
         console.type("stop")
         console.type("go")
-        await robot.hears(StopRequest, 3)
+        await robot.hears(StopRequest, 3, copies=True)
         assert robot.all_of(ResumeRequest) == []
         mind.may_answer.set()
         await console.reads("/resume is done")
@@ -278,7 +278,7 @@ async def test_action_of_a_driving_robot_is_a_late_correction(pairing: Pairing, 
 
 
 async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port, patience_s=0.3) as console:
+    async with console_at(pairing, robot.port) as console:
         await console.reads("/take is done")
         nines = "9" * 5000
         for line in (
@@ -292,14 +292,16 @@ async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: Stand
         ):
             shown = sum("help, quit" in each for each in console.said)
             console.type(line)
-            with anyio.fail_after(5.0):
+            with anyio.fail_after(LONGEST_S):
                 while sum("help, quit" in each for each in console.said) == shown:
                     await console._news.wait()
         console.type("step forward 999999999")
         await console.reads("refused: ticks has to be a whole number")
         robot.mind = RobotStub(LessonsRequest)
+        console.client._open.sender.patience_s = 0.3
         console.type("lessons")
         await console.reads("no answer for 0.3 s")
+        be_patient(console.client)
         console.type("phase 2")
         await console.reads("/phase is done")
 
@@ -313,6 +315,7 @@ async def test_teach_waits_for_a_robot_that_is_not_there(pairing: Pairing) -> No
         await console.reads(f"no robot at 127.0.0.1:{port} yet")
         console.type("forward")
         await console.reads(f"not done, there is no robot at 127.0.0.1:{port} yet: forward")
+        be_patient(console.client)
         async with stand_in_robot(pairing.teacher.parent, port=port) as robot:
             robot.mind = RobotStub()
             robot.show(teacher="phone")
@@ -326,7 +329,7 @@ async def test_teach_waits_for_a_robot_that_is_not_there(pairing: Pairing) -> No
 
 
 async def test_quit_without_a_robot_ends_at_once(pairing: Pairing) -> None:
-    with anyio.fail_after(5.0):
+    with anyio.fail_after(LONGEST_S):
         async with console_at(pairing, 9, patience_s=0.2) as console:
             console.type("quit")
     (said,) = console.said
