@@ -21,8 +21,8 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.malloc import pin_mmap_threshold
 from kurt2rt.platform.signal_handlers import SignalHandlers
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording
-from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.settings import load_service
 

@@ -8,7 +8,7 @@ from hal.robot_settings import RobotSettings
 if TYPE_CHECKING:
     from simbridge.simulation import Kurt2SimulationFactory
 
-_NEEDED = ("contourpy", "matplotlib", "PIL", "pymunk", "scipy", "shapely")
+_NEEDED = ("contourpy", "matplotlib", "networkx", "PIL", "pymunk", "shapely")
 """Packages of the extra `simulation`."""
 
 
