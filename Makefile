@@ -91,6 +91,7 @@ lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python -m tests.lint
+	$(BIN)/hadolint Containerfile
 
 types: $(INSTALLED)
 	$(BIN)/mypy
