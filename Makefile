@@ -4,6 +4,7 @@
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
+# make wheelhouse  all packages of a robot as wheels, for x86-64 and aarch64, to install without a network: a minute
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
 VENV := .venv
@@ -14,7 +15,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test test-deep guard mutants kills equal-lessons studies hil bench lint types clean
+.PHONY: run demo test test-deep guard mutants kills equal-lessons studies wheelhouse hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -58,6 +59,24 @@ SEARCHES ?= $(basename $(notdir $(wildcard config/searches/*.yaml)))
 studies: $(INSTALLED)
 	for name in $(SEARCHES); do $(BIN)/kurt2rt search $$name || exit 1; done
 
+# With a small environment of its own, because a robot needs no tests. Wheels for glibc 2.34 and newer, Debian 12.
+ARCHITECTURES ?= x86_64 aarch64
+EXTRAS ?= page,recording
+ROBOT_PYTHON ?= 3.11
+ABIS := cp$(subst .,,$(ROBOT_PYTHON)) abi3 none
+wheelhouse:
+	rm -rf wheelhouse build
+	$(PYTHON) -m venv wheelhouse/venv
+	for machine in $(ARCHITECTURES); do \
+		wheelhouse/venv/bin/pip wheel --quiet --no-deps --wheel-dir wheelhouse/$$machine . \
+		&& wheelhouse/venv/bin/pip download --quiet --dest wheelhouse/$$machine --constraint constraints.txt \
+			--only-binary :all: --python-version $(ROBOT_PYTHON) --implementation cp $(ABIS:%=--abi %) \
+			$(foreach glibc,2_17 2_28 2_34,--platform manylinux_$(glibc)_$$machine) --platform manylinux2014_$$machine \
+			'.[$(EXTRAS)]' || exit 1; \
+		echo "wheelhouse/$$machine: $$(ls wheelhouse/$$machine | wc -l) wheels"; \
+	done
+	rm -rf wheelhouse/venv build
+
 # First that both machines can be had (the small kernel is built once, 3 minutes), then real time, then simulated time.
 hil: $(INSTALLED)
 	$(BIN)/python -m tests.hil.machine $(HIL) --check
@@ -72,6 +91,7 @@ lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python -m tests.lint
+	$(BIN)/hadolint Containerfile
 
 types: $(INSTALLED)
 	$(BIN)/mypy
@@ -94,4 +114,4 @@ $(INSTALLED): pyproject.toml constraints.txt
 	touch $@
 
 clean:
-	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage mutants build *.egg-info
+	rm -rf $(VENV) .mypy_cache .ruff_cache .pytest_cache .hypothesis .coverage mutants build wheelhouse *.egg-info

@@ -192,6 +192,14 @@ class SharedBus(can.BusABC):
         return True
 
 
+def shared_bus_names() -> list[str]:
+    """Return the names of this user's buses, sorted; a bus of killed processes may be among them."""
+    try:
+        return sorted(path.name for path in _folder().iterdir() if _NAME.fullmatch(path.name))
+    except FileNotFoundError:  # no program has opened one yet
+        return []
+
+
 def _folder() -> Path:
     return SHARED_MEMORY / f"kurt2rt-can-{os.geteuid()}"
 

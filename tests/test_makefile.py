@@ -35,6 +35,14 @@ def test_make_studies_makes_each_shipped_search_again(tmp_path: Path) -> None:
     assert "kurt2rt search $name" in line
 
 
+def test_make_wheelhouse_takes_wheels_alone_for_both_processors(tmp_path: Path) -> None:
+    said = dry(tmp_path, "wheelhouse")
+    assert "for machine in x86_64 aarch64;" in said
+    assert "--only-binary :all:" in said
+    assert "--abi cp311 --abi abi3 --abi none" in said
+    assert "'.[page,recording]'" in said
+
+
 def test_first_make_run_says_that_it_installs_before_it_does(dry_run: str) -> None:
     said, installs = dry_run.index("one to five minutes"), dry_run.index("-m venv")
     assert said < installs

@@ -4,11 +4,13 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-
-import networkx as nx
+from typing import TYPE_CHECKING
 
 from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap, side_towards
 from hal.simulation import Pose
+
+if TYPE_CHECKING:
+    pass
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,9 @@ class Town:
 
     def __init__(self, streets: StreetMap, meaning: Mapping[str, int]) -> None:
         """`meaning`: quarter turns to the left of each behaviour."""
+        # Late import: networkx is in the extra `simulation`, and a robot reads the settings of a task in a town.
+        import networkx as nx
+
         self._map = streets
         self.streets = tuple(self._all())
         self._of = {(street.way, street.ahead): street for street in self.streets}
@@ -67,6 +72,8 @@ class Town:
 
     def shortest(self, start: Street, goal: Street) -> tuple[Street, ...] | None:
         """Return the streets of the shortest way, start and goal included; None without a way."""
+        import networkx as nx  # late as above
+
         try:
             return tuple(nx.dijkstra_path(self._graph, start, goal, weight="length_m"))
         except nx.NetworkXNoPath:

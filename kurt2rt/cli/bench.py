@@ -78,7 +78,9 @@ def bench(
 def _measure(
     benches: frozenset[BenchName], folder: Path, lengths: Lengths, task: TaskSettings
 ) -> tuple[BenchResult, ...]:
-    # Late import: the simulator is an extra that a robot does not need.
+    # Late imports: the simulator and the recorder are extras that a robot does not need.
+    if benches & {BenchName.PROGRAM, BenchName.RECORDING}:
+        import kurt2rt.runs.recording.recorder  # noqa: F401 # told before the measurements, not after minutes
     from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot()

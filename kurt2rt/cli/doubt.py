@@ -66,6 +66,8 @@ def doubt(options: _Options) -> None:
         kurt2rt doubt results/lesson --seeds 915-919 --world floors-SEED --response stands --set-down 0
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
+
     from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(options.robot_settings)

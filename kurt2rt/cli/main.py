@@ -1,6 +1,6 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library, hal.errors and kurt2rt.cli.interrupt only: Ctrl-C before `main` begins leaves a
+Imports of the standard library, hal.errors and two small modules only: Ctrl-C before `main` begins leaves a
 traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
@@ -11,25 +11,7 @@ from typing import NoReturn
 
 from hal.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
-
-_EXTRAS = {
-    "contourpy": "simulation",
-    "jinja2": "simulation",
-    "dask": "cluster",
-    "distributed": "cluster",
-    "optuna": "search",
-    "PIL": "simulation",
-    "pymunk": "simulation",
-    "river": "rivals",
-    "scipy": "simulation",
-    "matplotlib": "simulation",
-    "shapely": "simulation",
-    "sklearn": "rivals",
-    "starlette": "page",
-    "uvicorn": "page",
-    "websockets": "page",
-}
-"""Packages that a robot can do without, and the extra that brings each."""
+from kurt2rt.platform.extras import extra_for
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -66,7 +48,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.exit(ExitCode.INTERRUPTED)
     except ModuleNotFoundError as error:
-        extra = _EXTRAS.get(error.name or "")
+        extra = extra_for(error)
         if extra is None:
             raise
         _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")

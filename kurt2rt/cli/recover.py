@@ -6,7 +6,6 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
-from kurt2rt.runs.recording.recover import NothingRecoverableError, recover_segment
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.service.settings import load_service
 
@@ -26,6 +25,9 @@ def recover(
         kurt2rt recover copies
         kurt2rt recover copies 20261122T031005Z-wall_following
     """
+    # Late import: mcap is in the extra `recording`, and this module is imported without it.
+    from kurt2rt.runs.recording.recover import NothingRecoverableError, recover_segment
+
     found = find_run(run, runs or Path(load_service(settings).recordings))
     folder.mkdir(parents=True, exist_ok=True)
     segments = [found] if found.is_file() else segments_in(found)

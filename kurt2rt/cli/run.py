@@ -10,6 +10,7 @@ import typer
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.options import EarlierBus, WireName, bus_of, task_option, world_option
+from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
 if TYPE_CHECKING:
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from kurt2rt.service.settings import ServiceSettings
 
 _CHANNEL, _NO_TEACHER = "channel", "none"
+_NOT_RECORDED = (
+    "the run is not recorded: foxglove-sdk is not installed; pip install 'kurt2rt[recording]', or give --no-record"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,12 +184,30 @@ def run(options: _Options) -> None:
 
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
+    options = replace(options, bus=bus_of(options.bus, options.robot, default=SIMULATED), robot=None)
+    _require_consistent(options)
     with end_at_interrupt():
         import kurt2rt.service.program
         import kurt2rt.teacher.scripted.channel_teacher  # noqa: F401  # loads all that the program needs
-    options = replace(options, bus=bus_of(options.bus, options.robot, default=SIMULATED), robot=None)
-    _require_consistent(options)
-    _program(options).run()
+
+        recorded = _load_recorder(options)
+    _program(options, recorded=recorded).run()
+
+
+def _load_recorder(options: _Options) -> bool:
+    """Import the recorder unless it is not wanted; return whether the run is recorded.
+
+    Without the extra `recording` a run is not recorded. Raises ModuleNotFoundError then if --record is given.
+    """
+    if options.no_record:
+        return False
+    try:
+        import kurt2rt.runs.recording.recorder  # noqa: F401
+    except ModuleNotFoundError as error:
+        if options.record is not None or extra_for(error) != "recording":
+            raise
+        return False
+    return True
 
 
 def _require_consistent(options: _Options) -> None:
@@ -228,7 +250,7 @@ def _require_consistent(options: _Options) -> None:
             raise typer.BadParameter(text, param_hint=hint)
 
 
-def _program(options: _Options) -> "RobotProgram":
+def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from rich.console import Console
 
     from hal.robot_settings import load_robot
@@ -251,7 +273,7 @@ def _program(options: _Options) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
-    run_options = _run_options(options, taught, live_view)
+    run_options = _run_options(options, taught, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),
         Path(settings.devices),
@@ -259,10 +281,14 @@ def _program(options: _Options) -> "RobotProgram":
         phones=options.phone,
         browser=not options.no_open,
     )
+    if not recorded and not options.no_record:
+        screen.print_line(_NOT_RECORDED, "yellow")
     return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
 
 
-def _run_options(options: _Options, task: "TaskSettings", live_view: tuple[str, int] | None) -> "RunOptions":
+def _run_options(
+    options: _Options, task: "TaskSettings", live_view: tuple[str, int] | None, *, recorded: bool
+) -> "RunOptions":
     from kurt2rt.service.run_options import RunOptions
 
     simulated, attended = options.bus == SIMULATED, options.teacher != _NO_TEACHER
@@ -278,7 +304,7 @@ def _run_options(options: _Options, task: "TaskSettings", live_view: tuple[str, 
         scripted_teacher=_scripted_teacher(options, task),
         page_port=options.page_port,
         can_log=options.can_log,
-        record=not options.no_record,
+        record=recorded,
         live_view=live_view,
         seconds=options.seconds,
         seed=options.seed,
@@ -298,10 +324,13 @@ def _scripted_teacher(options: _Options, task: "TaskSettings") -> str | None:
 
 
 def _live_view(address: str | None) -> tuple[str, int] | None:
+    if address is None:
+        return None
+    # Late import: foxglove-sdk is in the extra `recording`.
     from kurt2rt.runs.recording.live_view import parse_address
 
     try:
-        return None if address is None else parse_address(address)
+        return parse_address(address)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--live-view") from error
 

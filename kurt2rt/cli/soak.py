@@ -21,8 +21,8 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.malloc import pin_mmap_threshold
 from kurt2rt.platform.signal_handlers import SignalHandlers
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording
-from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.settings import load_service
 
@@ -88,7 +88,6 @@ def soak(
     from kurt2rt.checks.soak.report import print_report
 
     settings = load_soak(day)
-    _make_room(out)
     result = _run_day(settings, out, hours, seed, by_module=by_module)
     if as_json:
         typer.echo(soak_as_json(result))
@@ -103,6 +102,7 @@ def _run_day(settings: SoakSettings, out: Path, hours: float, seed: int, *, by_m
     from kurt2rt.checks.soak.soak_run import SoakRun
     from simbridge.faults.long_run_rig import LongRunRig
 
+    _make_room(out)
     pin_mmap_threshold()  # as the robot's program does
     table, task = load_faults(settings.faults), load_task(settings.task)
     robot = load_robot(table.robot)

@@ -42,6 +42,8 @@ def study_run(
         BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
         ClusterError: no scheduler answers, or its address is not safe.
     """
+    import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
+
     own = plan if part is None else part
     with open_executor(on, jobs) as executor, results.held():
         require_no_difference(results, {job.made_of.source for wave in plan.waves for job in wave})

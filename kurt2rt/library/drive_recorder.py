@@ -12,8 +12,9 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.library.extras import extra_named
+from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.recording import Recording, RunContext
-from kurt2rt.runs.recording.run_files import Budget
 
 _NO_LIMIT = Budget(total_bytes=1 << 62, segment_bytes=32_000_000)
 _WRITES_EVERY_TICKS = 10
@@ -53,7 +54,8 @@ class DriveRecorder:
         recording = Recording(folder, _NO_LIMIT, _SIMULATED, _StillWorld(simulation))
         context = RunContext(secrets.token_hex(8), knowledge="", attended=False)
         # Without the recorder's thread: it writes in real time, and loses ticks of a faster drive.
-        self._recorder = recording.recorder(settings, task, knowledge, context, started=datetime.now(UTC))
+        with extra_named():
+            self._recorder = recording.recorder(settings, task, knowledge, context, started=datetime.now(UTC))
         self._folder = folder
         self._asking = False
         self._asked_at = -_QUESTIONS_EVERY_TICKS

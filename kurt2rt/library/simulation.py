@@ -2,15 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from hal.errors import UserError
 from hal.robot_settings import RobotSettings
+from kurt2rt.library.extras import extra_named
 from kurt2rt.library.named_bus import require_bus
 
 if TYPE_CHECKING:
     from simbridge.simulation import Kurt2SimulationFactory
-
-_NEEDED = ("contourpy", "matplotlib", "PIL", "pymunk", "scipy", "shapely")
-"""Packages of the extra `simulation`."""
 
 
 def open_factory(settings: RobotSettings, bus: str | None = None) -> "Kurt2SimulationFactory":
@@ -18,14 +15,8 @@ def open_factory(settings: RobotSettings, bus: str | None = None) -> "Kurt2Simul
 
     Raises UserError (kurt2rt.Error) if the extra `simulation` is not installed, or `bus` is not for a simulated robot.
     """
-    try:
+    with extra_named():
         from simbridge.simulation import Kurt2SimulationFactory
-    except ModuleNotFoundError as error:
-        if error.name is None or error.name.split(".")[0] not in _NEEDED:
-            raise
-        raise UserError(
-            f"{error.name} is not installed", where="simulation", do="install kurt2rt[simulation]"
-        ) from error
     if bus is not None:
         require_bus(bus, settings)
     return Kurt2SimulationFactory(settings, bus=bus)

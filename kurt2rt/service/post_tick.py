@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.decision.decision import DecisionCause, withdrawn_rla_in
@@ -14,12 +15,14 @@ from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_do
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.gc_control import collect_young
-from kurt2rt.runs.recording.recorder import RunRecorder
-from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.settings import ServiceSettings
+
+if TYPE_CHECKING:
+    from kurt2rt.runs.recording.recorder import RunRecorder
 
 TickCallback = Callable[[TickRecord], Command | None]
 """Gets each tick's record, inside the robot's program; returns a command for the next tick, or None."""
@@ -65,7 +68,7 @@ class PostTick:
         on_tick: TickCallback | None = None,
         channel: Channel | None = None,
         health: HealthMonitor | None = None,
-        recorder: RunRecorder | None = None,
+        recorder: "RunRecorder | None" = None,
     ) -> None:
         runtime = self._runtime = service.runtime
         self._writer = service.writer

@@ -6,6 +6,7 @@ from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import anyio
 
@@ -28,7 +29,6 @@ from kurt2rt.platform.realtime_priority import set_sched_fifo
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.service.assembly import RobotService, RunSettings, assemble_service, open_service_channel
 from kurt2rt.service.health.monitor import HealthMonitor
@@ -42,6 +42,9 @@ from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
 from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.service.systemd.watchdog import WatchdogNotifier
+
+if TYPE_CHECKING:
+    from kurt2rt.runs.recording.recorder import RunRecorder
 
 _RECORDING_S = 2.0
 """Time to write the end of the recording, unless a signal asks for less."""
@@ -164,7 +167,7 @@ class _Run:
         run: RunContext,
         options: ServeOptions,
         context: ProcessContext,
-        recorder: RunRecorder | None,
+        recorder: "RunRecorder | None",
     ) -> None:
         self._robot = robot
         self._service = service
@@ -284,7 +287,7 @@ def _recording(
     knowledge: OpenedKnowledge,
     run: RunContext,
     shutdown: ShutdownHandler,
-) -> Iterator[RunRecorder]:
+) -> Iterator["RunRecorder"]:
     recorder = recording.recorder(settings.robot, settings.task, knowledge, run)
     recorder.start()
     try:

@@ -15,12 +15,15 @@ KINDS_OF_BUS = {
     "hal/bus.py",
     "hal/can_interface.py",
     "hal/in_process_bus.py",
+    "hal/python_can.py",
     "hal/shared_bus.py",
     "hal/socketcan_bus.py",
 }
 WAYS_OUT = {
     # Ends that reach beyond this process are opened by hal.bus alone; a simulation may build upon those within it.
-    "SharedBus": {"hal/bus.py"},
+    "SharedBus": {"hal/bus.py", "hal/python_can.py"},
+    # The plug-in is for python-can's own tools: no part of the project may come to the bus through it.
+    "python_can": set(),
     "SocketCanBus": {"hal/bus.py"},
     "SocketcanBus": {"hal/socketcan_bus.py"},
     "CAN_RAW": {"kurt2rt/checks/doctor/can_bus.py"},  # which closes it at once

@@ -13,6 +13,7 @@ _VALUES: dict[str, float | str] = {
     "used_for": "tables",
     "fault": "no module",
     "python": "/bin/python",
+    "extra": "simulation",
     "ticks": 100,
     "period_ms": 10.0,
     "median_ms": 0.1,

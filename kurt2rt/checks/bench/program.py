@@ -27,8 +27,8 @@ from kurt2rt.platform.ledger import TickTimer, percentiles_of
 from kurt2rt.platform.scheduler import Scheduler
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording
-from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.post_tick import ProgramConsole

@@ -16,8 +16,8 @@ from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording, RunContext
-from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_folder import used_bytes
 from kurt2rt.runtime import Runtime, build_runtime
 

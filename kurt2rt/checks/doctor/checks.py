@@ -28,6 +28,7 @@ def run_checks(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
         check_can_kernel(),
         *check_can_interfaces(),
         check_vcan(),
+        check_package("foxglove", "recordings of runs", "recording"),
         check_package("pymunk", "the simulator's physics"),
         check_package("shapely", "the simulator's worlds"),
         check_package("matplotlib", "drawing to files, without a display"),

@@ -37,7 +37,7 @@ _TEXTS: Mapping[Code, FindingText] = {
     Code.PACKAGE_MISSING: FindingText(
         "{name}",
         "cannot be imported ({fault}), needed for {used_for}",
-        "in the project's folder: {python} -m pip install -e '.[simulation]'",
+        "in the project's folder: {python} -m pip install -e '.[{extra}]'",
     ),
     Code.TIMER: FindingText("timer", _TIMER),
     Code.TIMER_LATE: FindingText(

@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-from importlib.metadata import version
+from importlib.metadata import packages_distributions, version
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 
@@ -18,19 +18,18 @@ def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckRes
     return CheckResult(FindingCode.PYTHON, CheckStatus.OK, {"version": name}, needed=True)
 
 
-def check_package(name: str, used_for: str, python: str = sys.executable) -> CheckResult:
-    """Check that a package of the `simulation` extra can be imported by the interpreter `python`.
+def check_package(name: str, used_for: str, extra: str = "simulation", python: str = sys.executable) -> CheckResult:
+    """Check that a package of an extra can be imported by the interpreter `python`.
 
-    `used_for`: for the advice. The import runs in another process, because a broken native library may crash the
-    interpreter.
+    `used_for` and `extra`: for the advice. The import runs in another process, because a broken native library may
+    crash the interpreter.
     """
     fault = _import_fault(name, python)
     if fault:
-        values = {"name": name, "used_for": used_for, "fault": fault, "python": python}
+        values = {"name": name, "used_for": used_for, "fault": fault, "python": python, "extra": extra}
         return CheckResult(FindingCode.PACKAGE_MISSING, CheckStatus.MISSING, values)
-    return CheckResult(
-        FindingCode.PACKAGE, CheckStatus.OK, {"name": name, "used_for": used_for, "version": version(name)}
-    )
+    found = version(packages_distributions()[name][0])
+    return CheckResult(FindingCode.PACKAGE, CheckStatus.OK, {"name": name, "used_for": used_for, "version": found})
 
 
 def _import_fault(name: str, python: str) -> str:

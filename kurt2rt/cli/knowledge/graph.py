@@ -7,7 +7,6 @@ import typer
 
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network, write_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.table_cells import printable
 
@@ -30,6 +29,9 @@ def graph(
         kurt2rt knowledge graph var/wall_following.knowledge
         kurt2rt knowledge graph var/streets.knowledge --level mid --out net.graphml
     """
+    # Late import: networkx is in the extra `simulation`, and every command is loaded where --help is said.
+    from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network, write_network
+
     if out.suffix not in FORMATS:
         raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")
     with Journal.read_only(file) as journal:

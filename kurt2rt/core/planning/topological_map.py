@@ -4,11 +4,10 @@ A place is a mid-level situation with all RLAs on it. Each RLA is an edge to the
 """
 
 from collections import Counter
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Collection, Generator, Iterable, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
-import networkx as nx
 import numpy as np
 
 from kurt2rt.core.planning.target import GroupAt, Target, Vector
@@ -72,27 +71,26 @@ class TopologicalMap:
 
     def __init__(self) -> None:
         self.places: dict[int, Place] = {}
-        self.graph: nx.DiGraph[int] = nx.DiGraph()
+        self._edges: dict[int, dict[int, Edge]] = {}
+        """Edges by start and end."""
 
     def add_place(self, place: Place) -> None:
         """Add a place; edges to and from it are added by `add_edge`."""
         self.places[place.place_id] = place
-        self.graph.add_node(place.place_id)
 
     def add_edge(self, edge: Edge) -> None:
         """Add an edge between two places; of parallel edges only the cheapest is kept."""
-        known = (edge.start, edge.end) in self.graph.edges
-        if not known or edge.cost < self.graph.edges[edge.start, edge.end]["cost"]:
-            self.graph.add_edge(edge.start, edge.end, cost=edge.cost, edge=edge)
+        edges = self._edges.setdefault(edge.start, {})
+        if edge.end not in edges or edge.cost < edges[edge.end].cost:
+            edges[edge.end] = edge
+
+    def edges_from(self, place_id: int) -> Collection[Edge]:
+        """Return the edges that start at a place, in the order in which their ends were first led to."""
+        return self._edges.get(place_id, {}).values()
 
     def members(self, place_id: int) -> frozenset[int]:
         """Return the ids of the RLAs on a place. Raises KeyError for an unknown place."""
         return frozenset(rla.rla_id for rla in self.places[place_id].members)
-
-    def edge(self, start: int, end: int) -> Edge:
-        """Return the cheapest edge from one place to another. Raises KeyError if there is none."""
-        edge: Edge = self.graph.edges[start, end]["edge"]
-        return edge
 
 
 def build_map(

@@ -13,12 +13,13 @@ from hal.simulation import WorldView
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
+from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.live_view import LiveView
 from kurt2rt.runs.recording.notes import HealthNote, Note, NoteLog, QuestionNote, TickNote
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recording_disk import Disk
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.run_files import Budget, RunFiles
+from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.runs.recording.topics import Topics
 from kurt2rt.runs.recording.writer_thread import WriterThread
 

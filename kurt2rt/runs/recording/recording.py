@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import WorldView
@@ -14,12 +15,14 @@ from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
-from kurt2rt.runs.recording.live_view import LiveView
+from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.recorded_run import RecordedRun
-from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
-from kurt2rt.runs.recording.run_files import Budget
 from kurt2rt.runs.recording.run_folder import run_name
 from kurt2rt.runs.recording.run_head import RunHead
+
+if TYPE_CHECKING:
+    from kurt2rt.runs.recording.live_view import LiveView
+    from kurt2rt.runs.recording.recorder import RunRecorder
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +66,7 @@ class Recording:
         context: RunContext,
         *,
         started: datetime | None = None,
-    ) -> RunRecorder:
+    ) -> "RunRecorder":
         """Return the recorder of one run, not started yet; call it before the first tick.
 
         `knowledge`: state at the start; None: nothing is known. `started`: beginning of a run in simulated time; None:
@@ -73,6 +76,9 @@ class Recording:
             SettingsError: a file that the task uses cannot be read.
             KnowledgeError: a knowledge file that an action of the task uses cannot be read.
         """
+        # Late import: foxglove-sdk is in the extra `recording`, and a robot may do without it.
+        from kurt2rt.runs.recording.recorder import open_run_recorder
+
         entries = () if knowledge is None else knowledge.entries
         attachments = collect_attachments(settings, task, entries, None if knowledge is None else knowledge.saved)
         began = started or datetime.now(UTC)
@@ -102,12 +108,12 @@ class Recording:
         )
         return open_run_recorder(self.recordings, run, self.budget, live=self.live, opened=self._opened)
 
-    def report_end(self, recorder: RunRecorder) -> None:
+    def report_end(self, recorder: "RunRecorder") -> None:
         """Report the result of a closed recorder to the user."""
         if recorder.trouble:
             self.notify(recorder.trouble)
         if recorder.run is not None:
             self.notify(f"the run is recorded in {recorder.run}")
 
-    def _opened(self, view: LiveView) -> None:
+    def _opened(self, view: "LiveView") -> None:
         self.notify(f"a live view for Foxglove is on {view.address}")

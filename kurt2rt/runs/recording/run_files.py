@@ -2,38 +2,20 @@
 
 import contextlib
 import zlib
-from dataclasses import dataclass
 from pathlib import Path
 
 from foxglove import Context
 
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
+from kurt2rt.runs.recording.budget import MEGA, Budget
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recording_disk import Disk, LockedFolder, RealDisk
 from kurt2rt.runs.recording.run_folder import make_room, next_run_name, segment_name, used_bytes
 from kurt2rt.runs.recording.segment import Segment
 
-_MEGA = 1_000_000
 _MAX_SAME_NAME = 1000
 _IN_EACH = (ROBOT, TASK)
 """Attachments of every segment: a segment stays readable after older ones were deleted."""
-
-
-@dataclass(frozen=True, slots=True)
-class Budget:
-    """Disk space of recordings."""
-
-    total_bytes: int
-    """Limit of all runs together."""
-    segment_bytes: int
-    """Size at which the next segment is started."""
-    reserve_bytes: int = 200 * _MEGA
-    """Free space kept for lessons: below it recordings are deleted, then suspended."""
-
-
-def budget_of(megabytes: int) -> Budget:
-    """Return a budget of `megabytes` for all runs."""
-    return Budget(megabytes * _MEGA, min(32 * _MEGA, megabytes * _MEGA // 10))
 
 
 class RunFiles:
@@ -176,8 +158,8 @@ class RunFiles:
         if free - coming >= budget.reserve_bytes:
             return True
         self.trouble = (
-            f"nothing is recorded: {free // _MEGA} MB are free on the disk of {self._recordings}, "
-            f"{budget.reserve_bytes // _MEGA} are left for lessons; make room there"
+            f"nothing is recorded: {free // MEGA} MB are free on the disk of {self._recordings}, "
+            f"{budget.reserve_bytes // MEGA} are left for lessons; make room there"
         )
         return False
 

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from kurt2rt.runs.recording.recording_disk import is_locked
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
 
 SEGMENT_ENDING = ".mcap"
 _RUN_NAME = re.compile(r"\d{8}T\d{6}Z-.+")
@@ -83,6 +82,9 @@ def find_run(given: Path | None, recordings: Path) -> Path:
 
 
 def _has_ticks(run: Path) -> bool:
+    # Late import: mcap is in the extra `recording`, and this module is imported without it.
+    from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
+
     return any(True for segment in segments_in(run) for _ in SegmentReader(segment).messages({TICK_TOPIC}))
 
 

@@ -41,6 +41,6 @@ def test_check_package_crash_on_import_spares_the_doctor(tmp_path: Path, monkeyp
 
 
 def test_a_python_that_cannot_be_started_twice_is_said_so(tmp_path: Path) -> None:
-    finding = check_package("rich", "tables", str(tmp_path / "python"))
+    finding = check_package("rich", "tables", python=str(tmp_path / "python"))
     assert finding.status is CheckStatus.MISSING
     assert str(tmp_path / "python") in str(finding.values["fault"])

@@ -11,8 +11,8 @@ from kurt2rt.checks.soak.result import SoakResult
 from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings, load_soak
 from kurt2rt.checks.soak.soak_run import SoakRun
 from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recording import Recording
-from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.settings import ServiceSettings, load_service
 from simbridge.faults.long_run_rig import LongRunRig

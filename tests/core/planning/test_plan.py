@@ -1,10 +1,12 @@
 """Plans on the topological map."""
 
+import networkx as nx
 import numpy as np
+import pytest
 
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import FeatureTarget, NearTarget, Target
-from kurt2rt.core.planning.topological_map import TopologicalMap
+from kurt2rt.core.planning.topological_map import Edge, Place, TopologicalMap
 from tests.core.planning.town import SPACE, Town
 from tests.core.rla.helpers import withdrawn
 
@@ -87,7 +89,8 @@ def test_map_follow_ups_replace_distant_expectation() -> None:
     town.follow_ups[torn, place_id(town, "ne")] = 1
     town.follow_ups[torn, place_id(town, "nw")] = 1
     chart, here = town.chart(), place_id(town, "sw")
-    ways = [chart.edge(here, place_id(town, each)) for each in ("ne", "nw")]
+    ends = {place_id(town, each) for each in ("ne", "nw")}
+    ways = [edge for edge in chart.edges_from(here) if edge.end in ends]
     assert {way.rla_id for way in ways} == {torn}
     assert {(way.end, way.share) for way in ways} == {(place_id(town, "ne"), 0.5), (place_id(town, "nw"), 0.5)}
 
@@ -112,3 +115,23 @@ def test_map_withdrawn_rla_is_no_edge() -> None:
     rla_id = place_id(town, "se")
     town.system.apply(withdrawn(rla_id, "turn_left"))
     assert plan_to(town.chart(), place_id(town, "sw"), {place_id(town, "ne")}) is None
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_plan_is_that_of_networkx_ties_included(seed: int) -> None:
+    random, chart = np.random.default_rng(seed), TopologicalMap()
+    graph: nx.DiGraph[int] = nx.DiGraph()
+    for place in range(12):
+        chart.add_place(Place(place, (), ()))
+        graph.add_node(place)
+    for number, (start, end, ticks) in enumerate(random.integers(1, 12, size=(40, 3)).tolist()):
+        edge = Edge(number, "forward", start, end, 0.3, ticks // 3)
+        chart.add_edge(edge)
+        if not graph.has_edge(start, end) or edge.cost < graph.edges[start, end]["cost"]:
+            graph.add_edge(start, end, cost=edge.cost)
+    paths = nx.single_source_dijkstra_path(graph, 1, weight="cost")
+    for goal in range(12):
+        found = plan_to(chart, 1, {goal})
+        assert (found is None) == (goal not in paths)
+        if found is not None:
+            assert [1, *(edge.end for edge in found.edges)] == paths[goal]

@@ -19,11 +19,11 @@ from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 from kurt2rt.runs.recording.foxglove_scene import ROBOT as ROBOT_FRAME
 from kurt2rt.runs.recording.foxglove_scene import START, WORLD, timestamp, transforms
 from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
-from kurt2rt.runs.recording.run_files import Budget
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader

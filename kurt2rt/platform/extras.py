@@ -1,0 +1,30 @@
+"""Extras of the installation."""
+
+EXTRAS = {
+    "contourpy": "simulation",
+    "dask": "cluster",
+    "distributed": "cluster",
+    "foxglove": "recording",
+    "h11": "page",
+    "jinja2": "simulation",
+    "matplotlib": "simulation",
+    "mcap": "recording",
+    "networkx": "simulation",
+    "optuna": "search",
+    "PIL": "simulation",
+    "pymunk": "simulation",
+    "river": "rivals",
+    "scipy": "studies",
+    "shapely": "simulation",
+    "sklearn": "rivals",
+    "starlette": "page",
+    "uvicorn": "page",
+    "websockets": "page",
+    "zstandard": "recording",
+}
+"""Packages that a robot can do without, by their importable names, and the extra that brings each."""
+
+
+def extra_for(error: ModuleNotFoundError) -> str | None:
+    """Return the extra that brings the missing module; None if no extra does."""
+    return EXTRAS.get((error.name or "").partition(".")[0])
