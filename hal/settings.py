@@ -17,6 +17,7 @@ from pydantic_core import ErrorDetails
 
 from config import CONFIG_DIR
 from hal.errors import UserError
+from hal.plugins import settings_from_elsewhere
 
 SHIPPED_DIR: Final = CONFIG_DIR
 """Folder of the files that ship with the project."""
@@ -133,7 +134,8 @@ def settings_override(folder: Path) -> Iterator[None]:
     """
     token = _KEPT.set(folder)
     try:
-        yield
+        with settings_from_elsewhere():
+            yield
     finally:
         _KEPT.reset(token)
 
