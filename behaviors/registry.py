@@ -40,8 +40,6 @@ METRICS = PluginKind(
 class _Absent(KindSettings):
     """Settings of a plug-in that is not here, with all their keys; a replay needs none of policy, judge and course."""
 
-    model_config = ConfigDict(extra="allow")
-
     def build(self, *_: object, **__: object) -> NoReturn:
         """Raise SettingsError."""
         raise SettingsError(
@@ -51,16 +49,19 @@ class _Absent(KindSettings):
         )
 
 
+_ANY_KEYS = ConfigDict(extra="allow")
+
+
 class _AbsentPolicy(_Absent, PolicySettings):
-    pass
+    model_config = _ANY_KEYS
 
 
 class _AbsentJudge(_Absent, JudgeSettings):
-    pass
+    model_config = _ANY_KEYS
 
 
 class _AbsentMetric(_Absent, MetricSettings):
-    pass
+    model_config = _ANY_KEYS
 
 
 def _checked_judge(given: object) -> JudgeSettings:

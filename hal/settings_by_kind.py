@@ -70,7 +70,8 @@ def as_its_kind(
 
     Args:
         given: Mapping with the key `kind` and the settings of that kind, or an instance of `base`, which is returned.
-        package: Dotted name of the package with one module per kind, such as behaviors.policies.
+        package: Dotted name of the package with one module per kind, such as behaviors.policies; empty: no kinds but
+            those of plug-ins.
         base: Base class of the settings of all kinds in the package.
         plugins: Plug-ins that are taken as well; None: no plug-ins.
         stand_in: Settings that hold any keys, for a plug-in that settings from elsewhere name and that is not here.
@@ -100,6 +101,8 @@ def as_its_kind(
 
 
 def _modules(package: str) -> list[str]:
+    if not package:
+        return []
     return sorted(module.name for module in pkgutil.iter_modules(import_module(package).__path__))
 
 

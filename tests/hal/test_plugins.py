@@ -32,7 +32,7 @@ def test_plugin_by_entry_point_is_found_and_names_its_package(plugin_folder: Pat
     assert [(each.name, each.source) for each in loaded_plugins()] == [("nine", "nines 1.0")]
 
 
-def test_plugin_of_the_current_folder_is_found_and_names_its_file(plugin_folder: Path) -> None:
+def test_plugin_of_the_current_folder_names_its_file(plugin_folder: Path) -> None:
     (plugin_folder / "plug_b.py").write_text("import plug_c\n\n\nclass Held:\n    NINE = plug_c.NINE\n")
     (plugin_folder / "plug_c.py").write_text("NINE = 9\n")
     assert NUMBERS.find("plug_b:Held.NINE") == 9

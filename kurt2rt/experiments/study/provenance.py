@@ -8,9 +8,10 @@ from collections.abc import Collection, Iterable
 from functools import lru_cache
 from importlib.metadata import version
 
+from behaviors.repertoire_settings import RepertoireSettings
 from hal.plugins import source_hash_of
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, content_of, find_config
+from hal.settings import Settings, content_of, find_config, load_settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.import_graph import modules_needed
@@ -114,8 +115,9 @@ class Fingerprints:
 
 def _plugin_sources(task: TaskSettings) -> list[str]:
     """Return the hash of each plug-in's source that a task names; the program's own source has a field of its own."""
-    hashes = map(source_hash_of, (task.policy, task.course, task.judge))
-    return [each for each in hashes if each]
+    actions = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
+    hashes = map(source_hash_of, (task.policy, task.course, task.judge, *actions))
+    return [each for each in dict.fromkeys(hashes) if each]
 
 
 @lru_cache(maxsize=1024)
