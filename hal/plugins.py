@@ -69,6 +69,11 @@ def are_settings_from_elsewhere() -> bool:
     return _FROM_ELSEWHERE.get()
 
 
+def installed_plugins(group: str) -> list[Plugin]:
+    """Return the plug-ins of a kind, such as policies, that installed packages offer, by name; nothing is imported."""
+    return sorted(_of_entry_point(group, point) for point in entry_points(group=_GROUPS + group))
+
+
 def loaded_plugins() -> tuple[Plugin, ...]:
     """Return the plug-ins that this process loaded, in that order."""
     return tuple(_LOADED.values())
@@ -91,7 +96,7 @@ class PluginKind:
 
     def installed(self) -> list[Plugin]:
         """Return the plug-ins that the entry points of installed packages offer, by name; nothing is imported."""
-        return sorted(_of_entry_point(self.group, point) for point in entry_points(group=_GROUPS + self.group))
+        return installed_plugins(self.group)
 
     def find(self, name: str) -> object:
         """Import and return the plug-in of a name, or of `module:Name` on Python's path or in the current folder.
