@@ -126,7 +126,7 @@ class PluginKind:
             )
         if named:
             return named[0]
-        if not _is_target(name):
+        if not is_target(name):
             raise self._unknown(name, [*self.shipped(), *(each.name for each in offered)])
         is_known = (self.group, name) in _LOADED or any(each.target == name for each in offered)
         if are_settings_from_elsewhere() and not is_known:
@@ -203,7 +203,8 @@ def _of_entry_point(group: str, point: EntryPoint) -> Plugin:
     return Plugin(group, point.name, f"{point.module}:{point.attr}", source)
 
 
-def _is_target(name: str) -> bool:
+def is_target(name: str) -> bool:
+    """Return whether a name has the form `module:Name`."""
     parts = name.split(":")
     return len(parts) == 2 and all(each.isidentifier() for part in parts for each in part.split("."))
 

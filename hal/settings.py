@@ -167,6 +167,13 @@ TASKS = PluginKind(
     lambda found: isinstance(found, str | Path),
     lambda: shipped_names("tasks"),
 )
+WORLDS = PluginKind(
+    "worlds",
+    "world",
+    "the path of a YAML file, or a function without arguments",
+    lambda found: isinstance(found, str | Path) or callable(found),
+    lambda: shipped_names("worlds"),
+)
 
 
 def find_config(kind: str, name_or_path: str) -> Path:

@@ -6,17 +6,9 @@ from pathlib import Path
 
 import shapely
 
-from hal.plugins import PluginError, PluginKind, UnknownPluginError
+from hal.plugins import PluginError, UnknownPluginError
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
-from hal.settings import (
-    SettingsError,
-    content_of,
-    find_config,
-    load_settings,
-    plugin_file,
-    settings_of,
-    shipped_names,
-)
+from hal.settings import WORLDS, SettingsError, content_of, find_config, load_settings, plugin_file, settings_of
 from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room
@@ -34,15 +26,6 @@ _GENERATED = re.compile(rf"({'|'.join(_GENERATORS)})-(0|[1-9]\d{{0,8}})", re.ASC
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
 """Suffixes of images, which are no worlds."""
-
-
-WORLDS = PluginKind(
-    "worlds",
-    "world",
-    "the path of a YAML file, or a function without arguments",
-    lambda found: isinstance(found, str | Path) or callable(found),
-    lambda: shipped_names("worlds"),
-)
 
 
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
