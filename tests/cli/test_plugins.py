@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 
 from hal import plugins
+from kurt2rt import SimulatedRobot
 from kurt2rt.runs.recording.run_folder import runs_in
 from kurt2rt.runs.replay.reader import read_run
 from tests.cli.helpers import CommandLine
-from tests.plugin_packages import write_parts, write_task
+from tests.plugin_packages import write_parts, write_repertoire, write_task
 
 
 def test_run_names_its_plugins_and_a_replay_imports_none(kurt2rt: CommandLine, plugin_folder: Path) -> None:
@@ -26,6 +27,18 @@ def test_run_names_its_plugins_and_a_replay_imports_none(kurt2rt: CommandLine, p
     replayed = kurt2rt("replay")
     assert replayed.exit_code == 0, replayed.err
     assert "parts_run" not in sys.modules
+
+
+def test_robot_stands_and_asks_once_an_action_failed(plugin_folder: Path) -> None:
+    write_parts(plugin_folder, "parts_dizzy")
+    wiggle = {"kind": "parts_dizzy:Wiggling", "name": "wiggle", "fails_at_tick": 30}
+    task = write_task(plugin_folder, repertoire=str(write_repertoire(plugin_folder, wiggle)))
+    with SimulatedRobot(task=str(task), world="a", seed=1) as robot:
+        robot.teach("wiggle")
+        robot.run(seconds=0.2)
+        assert str(robot.why()).startswith("wiggle\n")
+        robot.run(seconds=0.5)
+        assert str(robot.why()).startswith("stands and asks\n")
 
 
 @pytest.mark.deep
