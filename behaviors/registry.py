@@ -1,25 +1,79 @@
-"""Registry of judges, metrics and policies: the kind `wall_following` is the module of that name in their folder."""
+"""Registry of judges, metrics and policies: the kind `wall_following` is the module of that name in their folder.
 
-from typing import Annotated
+A kind without a module there is a plug-in (hal.plugins).
+"""
 
-from pydantic import PlainValidator, SerializeAsAny
+from typing import Annotated, NoReturn
+
+from pydantic import ConfigDict, PlainValidator, SerializeAsAny
 
 from behaviors.judges.judge import JudgeSettings
 from behaviors.metrics.task_metric import MetricSettings
 from behaviors.policies.policy import PolicySettings
-from hal.settings_by_kind import as_its_kind
+from hal.plugins import PluginKind
+from hal.settings import SettingsError
+from hal.settings_by_kind import KindSettings, as_its_kind, is_settings_class, shipped_kinds
+
+POLICIES = PluginKind(
+    "policies",
+    "policy",
+    "a subclass of PolicySettings (behaviors.policies.policy)",
+    lambda found: is_settings_class(found, PolicySettings),
+    lambda: shipped_kinds("behaviors.policies", PolicySettings),
+)
+JUDGES = PluginKind(
+    "judges",
+    "judge",
+    "a subclass of JudgeSettings (behaviors.judges.judge)",
+    lambda found: is_settings_class(found, JudgeSettings),
+    lambda: shipped_kinds("behaviors.judges", JudgeSettings),
+)
+METRICS = PluginKind(
+    "metrics",
+    "course",
+    "a subclass of MetricSettings (behaviors.metrics.task_metric)",
+    lambda found: is_settings_class(found, MetricSettings),
+    lambda: shipped_kinds("behaviors.metrics", MetricSettings),
+)
+
+
+class _Absent(KindSettings):
+    """Settings of a plug-in that is not here, with all their keys; a replay needs none of policy, judge and course."""
+
+    def build(self, *_: object, **__: object) -> NoReturn:
+        """Raise SettingsError."""
+        raise SettingsError(
+            "belongs to a recording or package, and its plug-in is not installed here",
+            where=f"kind {self.kind}",
+            do="install it",
+        )
+
+
+_ANY_KEYS = ConfigDict(extra="allow")
+
+
+class _AbsentPolicy(_Absent, PolicySettings):
+    model_config = _ANY_KEYS
+
+
+class _AbsentJudge(_Absent, JudgeSettings):
+    model_config = _ANY_KEYS
+
+
+class _AbsentMetric(_Absent, MetricSettings):
+    model_config = _ANY_KEYS
 
 
 def _checked_judge(given: object) -> JudgeSettings:
-    return as_its_kind(given, "behaviors.judges", JudgeSettings)  # type: ignore[type-abstract]
+    return as_its_kind(given, "behaviors.judges", JudgeSettings, JUDGES, _AbsentJudge)  # type: ignore[type-abstract]
 
 
 def _checked_metric(given: object) -> MetricSettings:
-    return as_its_kind(given, "behaviors.metrics", MetricSettings)  # type: ignore[type-abstract]
+    return as_its_kind(given, "behaviors.metrics", MetricSettings, METRICS, _AbsentMetric)  # type: ignore[type-abstract]
 
 
 def _checked_policy(given: object) -> PolicySettings:
-    return as_its_kind(given, "behaviors.policies", PolicySettings)  # type: ignore[type-abstract]
+    return as_its_kind(given, "behaviors.policies", PolicySettings, POLICIES, _AbsentPolicy)  # type: ignore[type-abstract]
 
 
 AnyJudgeSettings = Annotated[SerializeAsAny[JudgeSettings], PlainValidator(_checked_judge)]

@@ -4,17 +4,20 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from behaviors.behaviour import Behaviour
+from behaviors.contained_behaviour import ContainedBehaviour
 from behaviors.keep_distance import KeepDistance
 from behaviors.motor_primitive import MotorPrimitive
 from behaviors.repertoire_settings import (
     KeepDistanceAction,
     MotorAction,
+    PluginAction,
     RepertoireSettings,
     TaskAction,
     TaughtAction,
     TurnByAngleAction,
 )
 from behaviors.turn_by_angle import TurnByAngle
+from hal.plugins import PluginError
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, find_config, load_settings
@@ -50,6 +53,8 @@ def load_repertoire(
             continue
         try:
             repertoire[action.name] = _build(action, robot)
+        except PluginError as error:
+            raise SettingsError(error.what, where=place, do=error.do) from error
         except ValueError as error:
             allowed = ", ".join(robot.infrared.names)
             raise SettingsError(str(error), where=place, do=f"the robot's sensors are {allowed}") from error
@@ -67,8 +72,12 @@ def _build_taught(action: TaughtAction | TaskAction, path: Path, place: str, bui
         raise SettingsError(str(error), where=place) from error
 
 
-def _build(action: MotorAction | KeepDistanceAction | TurnByAngleAction, robot: RobotSettings) -> Behaviour:
+def _build(
+    action: MotorAction | KeepDistanceAction | TurnByAngleAction | PluginAction, robot: RobotSettings
+) -> Behaviour:
     match action:
+        case PluginAction():
+            return ContainedBehaviour(action, robot)
         case MotorAction():
             return MotorPrimitive(WheelSpeeds(action.left_m_s, action.right_m_s))
         case KeepDistanceAction():

@@ -1,10 +1,15 @@
 """Schema of `config/repertoires/*.yaml`, the actions that a teacher may choose."""
 
+from abc import abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Discriminator, Field, PlainValidator, SerializeAsAny, Tag, model_validator
 
+from behaviors.behaviour import Behaviour
+from hal.plugins import PluginKind
+from hal.robot_settings import RobotSettings
 from hal.settings import Settings
+from hal.settings_by_kind import KindSettings, as_its_kind, is_settings_class
 
 Speed = Annotated[float, Field(ge=-1.0, le=1.0)]
 PositiveSpeed = Annotated[float, Field(gt=0, le=1.0)]
@@ -77,8 +82,48 @@ class TaskAction(Settings):
     """Knowledge file; a relative path starts at the folder of this repertoire."""
 
 
+class PluginAction(KindSettings):
+    """Base of the settings of an action that a plug-in offers."""
+
+    name: ActionName
+
+    @abstractmethod
+    def build(self, robot: RobotSettings) -> Behaviour:
+        """Return the action for a robot. Raises ValueError for settings that do not fit the robot."""
+
+
+_SHIPPED = ("motor", "keep_distance", "turn_by_angle", "taught", "task")
+_PLUGIN = "plugin"
+BEHAVIOURS = PluginKind(
+    "behaviours",
+    "action",
+    "a subclass of PluginAction (behaviors.repertoire_settings)",
+    lambda found: is_settings_class(found, PluginAction),
+    lambda: _SHIPPED,
+)
+
+
+def _tag_of(given: object) -> str | None:
+    kind = given.get("kind") if isinstance(given, dict) else getattr(given, "kind", None)
+    return None if kind is None else kind if kind in _SHIPPED else _PLUGIN
+
+
+def _checked_plugin(given: object) -> PluginAction:
+    return as_its_kind(given, "", PluginAction, BEHAVIOURS)  # type: ignore[type-abstract]
+
+
 ActionSettings = Annotated[
-    MotorAction | KeepDistanceAction | TurnByAngleAction | TaughtAction | TaskAction, Field(discriminator="kind")
+    Annotated[MotorAction, Tag("motor")]
+    | Annotated[KeepDistanceAction, Tag("keep_distance")]
+    | Annotated[TurnByAngleAction, Tag("turn_by_angle")]
+    | Annotated[TaughtAction, Tag("taught")]
+    | Annotated[TaskAction, Tag("task")]
+    | Annotated[SerializeAsAny[PluginAction], PlainValidator(_checked_plugin), Tag(_PLUGIN)],
+    Discriminator(
+        _tag_of,
+        custom_error_type="union_tag_not_found",
+        custom_error_context={"discriminator": "'kind'"},
+    ),
 ]
 
 

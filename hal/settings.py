@@ -17,6 +17,7 @@ from pydantic_core import ErrorDetails
 
 from config import CONFIG_DIR
 from hal.errors import UserError
+from hal.plugins import PluginError, PluginKind, UnknownPluginError, settings_from_elsewhere
 
 SHIPPED_DIR: Final = CONFIG_DIR
 """Folder of the files that ship with the project."""
@@ -133,7 +134,8 @@ def settings_override(folder: Path) -> Iterator[None]:
     """
     token = _KEPT.set(folder)
     try:
-        yield
+        with settings_from_elsewhere():
+            yield
     finally:
         _KEPT.reset(token)
 
@@ -158,10 +160,26 @@ def find_beside(settings: Path, name: str) -> Path:
     return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
 
 
+TASKS = PluginKind(
+    "tasks",
+    "task",
+    "the path of a YAML file, as a str or Path",
+    lambda found: isinstance(found, str | Path),
+    lambda: shipped_names("tasks"),
+)
+WORLDS = PluginKind(
+    "worlds",
+    "world",
+    "the path of a YAML file, or a function without arguments",
+    lambda found: isinstance(found, str | Path) or callable(found),
+    lambda: shipped_names("worlds"),
+)
+
+
 def find_config(kind: str, name_or_path: str) -> Path:
     """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
-    Raises SettingsError that lists the shipped names when there is no such file.
+    A task may also be a plug-in. Raises SettingsError that lists the names when there is no such file.
     """
     kept = _KEPT.get()
     if kept is not None:
@@ -175,13 +193,28 @@ def find_config(kind: str, name_or_path: str) -> Path:
     shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
     if shipped.is_file():
         return shipped
-    names = shipped_names(kind)
+    names, plugins = shipped_names(kind), ""
+    if kind == TASKS.group:
+        try:
+            return plugin_file(str(TASKS.find(name_or_path)), name_or_path)
+        except UnknownPluginError:
+            names += (each.name for each in TASKS.installed())
+            plugins = "module:NAME, "
+        except PluginError as error:
+            raise SettingsError(error.what, where=error.where, do=error.do) from error
     meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
     raise SettingsError(
         f"no such file in {kind}",
         where=name_or_path,
-        do=f"give a path to a .yaml file or one of: {', '.join(names)}{meant}",
+        do=f"give {plugins}a path to a .yaml file or one of: {', '.join(names)}{meant}",
     )
+
+
+def plugin_file(path: str, name: str) -> Path:
+    """Return the path of a file that a plug-in names. Raises SettingsError if there is no such file."""
+    if not Path(path).is_file():
+        raise SettingsError(f"its plug-in names the file {path}, which is not there", where=name, do="mend the plug-in")
+    return Path(path)
 
 
 def shipped_names(kind: str) -> list[str]:
@@ -233,9 +266,22 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
         for key, value in changes.items():
             _change(content, key, _value_of(key, value, path), path)
         told = json.dumps(content)
+    return _validated(told, schema, path, changes or {})
+
+
+def settings_of(content: Mapping[str, Any], schema: type[SettingsT], where: str) -> SettingsT:
+    """Return settings of a content in the types of JSON. Raises SettingsError that names `where` and the key."""
+    try:
+        told = json.dumps(content)
+    except (TypeError, ValueError) as error:
+        raise SettingsError(f"holds what no YAML file can hold: {error}", where=where) from error
+    return _validated(told, schema, where, {})
+
+
+def _validated(told: str, schema: type[SettingsT], where: Path | str, changes: Mapping[str, str]) -> SettingsT:
     if not told.startswith("{"):
         holds, allowed = type(json.loads(told)).__name__, ", ".join(schema.model_fields)
-        raise SettingsError(f"holds {holds}, allowed is a mapping with the keys: {allowed}", where=path)
+        raise SettingsError(f"holds {holds}, allowed is a mapping with the keys: {allowed}", where=where)
     try:
         # Through JSON, where strictness still lets a list be a tuple and a string an enum's value.
         return schema.model_validate_json(told)
@@ -244,8 +290,8 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
         problems = sorted(error.errors(include_url=False), key=lambda each: each["type"] != "extra_forbidden")
         more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
         explained = " ".join(_explain(problems[0], schema).split())  # a key may hold a line break
-        given = _given_by(problems[0], changes or {})
-        raise SettingsError(f"{explained}{more}{given}", where=path) from error
+        given = _given_by(problems[0], changes)
+        raise SettingsError(f"{explained}{more}{given}", where=where) from error
 
 
 def _value_of(key: str, value: str, path: Path) -> Any:

@@ -43,6 +43,8 @@ Test your own code with pytest, whose fixtures kurt2, taught_robot and kurt2_on_
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from kurt2rt.platform.own_packages import hidden_packages
+
 if TYPE_CHECKING:
     from hal.errors import UserError as Error
     from kurt2rt.library.examination import Examination, examine
@@ -83,7 +85,10 @@ _PLACES = {
 if not TYPE_CHECKING:  # a type checker would take any name for promised
 
     def __getattr__(name: str) -> object:
-        """Import a promised name on its first use. Raises AttributeError for any other name."""
+        """Import a promised name on its first use.
+
+        Raises AttributeError for any other name, ImportError if a foreign package hides one of the program's.
+        """
         if name == "__version__":
             # Not at the top: this module takes longer to import than all others here.
             from importlib.metadata import version
@@ -91,6 +96,8 @@ if not TYPE_CHECKING:  # a type checker would take any name for promised
             return version("kurt2rt")
         if name not in _PLACES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}; allowed are {', '.join(__all__)}")
+        if hidden := hidden_packages():
+            raise ImportError(hidden)
         module, there = _PLACES[name]
         found: object = getattr(import_module(module), there)
         globals()[name] = found

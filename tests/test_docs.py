@@ -157,8 +157,9 @@ def sooner(words: Sequence[str]) -> list[str]:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, taught: Path) -> Path:
+def folder(plugin_folder: Path, taught: Path) -> Path:
     """Return a reader's folder: a short task, the files of the demo, and a recorded run."""
+    tmp_path = plugin_folder
     (tmp_path / TAUGHT_BY_THE_DEMO).parent.mkdir(parents=True)
     shutil.copy(taught, tmp_path / TAUGHT_BY_THE_DEMO)
     task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
@@ -284,6 +285,22 @@ def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) 
     success, *_ = json.loads(said.out)["tables"]
     assert [row[1] for row in success["rows"]] == ["RLA, as shipped", "my_learner:Nearest"]
     assert "my_learner:Nearest" in Path("results/rivals/report.html").read_text(encoding="utf-8")
+
+
+def test_added_policy_is_checked_refused_and_taught_as_printed(kurt2rt: CommandLine) -> None:
+    text = (ROOT / "docs/add-a-policy.md").read_text(encoding="utf-8")
+    printed = re.findall(r"^\$ kurt2rt (.+)\n((?:(?!\$|```).+\n)*)", text, re.MULTILINE)
+    assert len(printed) == 6
+    for command, output in printed:
+        said = kurt2rt(*shlex.split(command))
+        if output.startswith("kurt2rt: "):
+            assert said.err.replace(str(Path.cwd()), "FOLDER") == output
+        else:
+            assert (said.exit_code, said.out[: len(output)]) == (0, output), said.err
+    short = ("teaching.supervised_s=3", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
+    said = kurt2rt("demo", "--task", "my_flight.yaml", *(word for each in short for word in ("--set", each)))
+    assert said.exit_code in (0, 1), said.err
+    assert Path("results/demo/fleeing-0.knowledge").is_file()
 
 
 @pytest.mark.deep

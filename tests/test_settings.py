@@ -260,7 +260,7 @@ def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: 
         (
             "kind: motor",
             "kind: motr",
-            r"^actions\.0: .*'motr'",
+            r"^actions\.0\.plugin\.kind: .*'motr'; .*: motor, keep_distance, .*did you mean motor\?",
         ),
         ("kind: motor", "knd: motor", r"^actions\.0: .*'kind'"),
         ("name: back,", "name: forward,", r"\bforward\b"),

@@ -29,6 +29,10 @@ _PANELS = {
         "knowledge": "Look after what the robot was taught. A file is changed only while no robot runs on it; it is "
         "read also while one does.",
     },
+    "Plug-ins": {
+        "plugin": "List, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks and worlds of "
+        "your own.",
+    },
     "Robot and service": {
         "status": "Tell how a running robot program is: from another terminal, or another machine.",
         "doctor": "Check this machine: what it offers the robot, what is missing, what to do.",

@@ -1,13 +1,19 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library, hal.errors and two small modules only: Ctrl-C before `main` begins leaves a
-traceback, and `kurt2rt --help` takes as long as its imports.
+Imports of the standard library, hal.errors and what is small only (interrupt, extras, foreign packages): Ctrl-C
+before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
 import errno
 import os
 import sys
 from typing import NoReturn
+
+from kurt2rt.platform.own_packages import hidden_packages
+
+if _hidden := hidden_packages():  # before the first import of one of them, which would leave a traceback
+    print(f"kurt2rt: {_hidden}", file=sys.stderr)
+    sys.exit(2)
 
 from hal.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt

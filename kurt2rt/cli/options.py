@@ -8,26 +8,28 @@ from typing import Annotated, Any
 import typer
 
 from config import CONFIG_DIR
+from hal.plugins import installed_plugins
 
 _NAME_OR_PATH = "NAME|PATH"
 _MOST_SEEDS = 100_000
 
 
 def _names_in(kind: str) -> Callable[[str], list[str]]:
-    """Return what completes the names of shipped settings of a kind, for a shell."""
+    """Return what completes the names of settings of a kind, shipped and installed, for a shell."""
 
     def complete(incomplete: str) -> list[str]:
         names = sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
+        names += (each.name for each in installed_plugins(kind))
         return [name for name in names if name.startswith(incomplete)]
 
     return complete
 
 
-_TASK = "Task: a name in config/tasks, or the path of a YAML file."
+_TASK = "Task: a name in config/tasks or of a plug-in, module:NAME, or the path of a YAML file."
 _TEACHER = "Scripted teacher: a name in config/teachers, or the path of a YAML file."
 _WORLD = (
-    "World: a name in config/worlds, rooms-N, flats-N, streets-N or floors-N for a generated one, or the path of a "
-    "YAML file (a world, or a map of ROS map_server)."
+    "World: a name in config/worlds or of a plug-in, module:NAME, rooms-N, flats-N, streets-N or floors-N for a "
+    "generated one, or the path of a YAML file (a world, or a map of ROS map_server)."
 )
 
 

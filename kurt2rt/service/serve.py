@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import anyio
 
+from behaviors.contained_behaviour import failures_of
 from hal.guard_reason import GuardReason
+from hal.plugins import loaded_plugins
 from hal.robot import Robot
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
@@ -133,6 +135,8 @@ async def serve(
             recorder = stack.enter_context(_recording(options.recording, settings, knowledge, run, shutdown))
         with _writing(knowledge.journal, shutdown) as writer:
             service = assemble_service(robot, settings, knowledge, writer, clock, run)
+            for plugin in loaded_plugins():
+                context.log(f"plug-in of {plugin.group}: {plugin.name}, from {plugin.source}")
             for command in () if options.channel is None else options.channel.first_commands:
                 service.runtime.inbox.put(command)
             last = await _Run(robot, service, run, options, context, recorder).serve(console, speed)
@@ -186,7 +190,10 @@ class _Run:
             tolerates_stalls=run.tolerates_stalls,
         )
         status = self._status = StatusSocket(self._health, status_socket_path(knowledge), options.probes.pages)
-        self._health.include(errors={"status": lambda: status.trouble})
+        repertoire = service.runtime.level.repertoire
+        self._health.include(
+            errors={"status": lambda: status.trouble, "plug-ins": lambda: failures_of(repertoire.values())}
+        )
         if recorder is not None:
             self._health.include(
                 drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}

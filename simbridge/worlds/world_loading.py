@@ -1,12 +1,14 @@
 """Loader of worlds by name or path, with a check that the robot can drive in them."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import shapely
 
+from hal.plugins import PluginError, UnknownPluginError
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
-from hal.settings import SettingsError, content_of, find_config, load_settings
+from hal.settings import WORLDS, SettingsError, content_of, find_config, load_settings, plugin_file, settings_of
 from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room
@@ -32,16 +34,35 @@ def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> W
     Names: those in config/worlds, and `rooms-17`, `flats-17`, `streets-17` and `floors-17` for any number
     (simbridge.worlds.generator).
     Files: a world, a map of ROS's map_server, or a world on such a map (simbridge.worlds.map_server).
+    Plug-ins: the path of such a file, or a function without arguments that returns a world or the content of its file.
     Raises hal.settings.SettingsError that names file and key.
     """
     geometry = (robot or load_robot()).geometry
     world = _generated(name_or_path)
     source = name_or_path
     if world is None:
-        path = _find(name_or_path)
-        source, world = str(path), _read(path, geometry)
+        found = _find(name_or_path)
+        if isinstance(found, Path):
+            source, world = str(found), _read(found, geometry)
+        else:
+            world = _made(found, name_or_path)
     require_drivable(world, geometry, source)
     return world
+
+
+def _made(make: Callable[[], object], name: str) -> WorldSettings:
+    """Return the world that the function of a plug-in makes. Raises SettingsError."""
+    try:
+        world = make()
+    except Exception as error:
+        told = " ".join(f"{type(error).__name__}: {error}".split())
+        raise SettingsError(f"its function raised {told}", where=f"world {name}", do="mend the plug-in") from error
+    if isinstance(world, WorldSettings):
+        return world
+    if not isinstance(world, dict):
+        told = f"its function returned a {type(world).__name__}, allowed are WorldSettings or a dict"
+        raise SettingsError(told, where=f"world {name}", do="mend the plug-in")
+    return settings_of(world, WorldSettings, f"world {name}")
 
 
 def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
@@ -63,7 +84,8 @@ def _keys(path: Path) -> set[str]:
     return set(content) if isinstance(content, dict) else set()
 
 
-def _find(name_or_path: str) -> Path:
+def _find(name_or_path: str) -> Path | Callable[[], object]:
+    """Return the file of a world, or the function of a plug-in that makes it. Raises SettingsError."""
     given = Path(name_or_path)
     if given.suffix.lower() in _IMAGES:
         raise SettingsError(
@@ -77,7 +99,18 @@ def _find(name_or_path: str) -> Path:
     try:
         return find_config("worlds", name_or_path)
     except SettingsError as error:
-        raise SettingsError(str(error), do=f"or {GENERATED}") from error
+        return _of_plugin(name_or_path, error)
+
+
+def _of_plugin(name: str, unknown: SettingsError) -> Path | Callable[[], object]:
+    try:
+        found = WORLDS.find(name)
+    except UnknownPluginError as error:
+        offered = "".join(f"{each.name}, " for each in WORLDS.installed())
+        raise SettingsError(str(unknown), do=f"or {offered}module:NAME, {GENERATED}") from error
+    except PluginError as error:
+        raise SettingsError(error.what, where=error.where, do=error.do) from error
+    return found if callable(found) else plugin_file(str(found), name)
 
 
 def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:

@@ -47,6 +47,8 @@ def test_every_command_is_found() -> None:
             "phases",
             "replay",
             "knowledge",
+            "plugin",
+            "new",
             "show",
             "lessons",
             "check",
@@ -146,7 +148,7 @@ def test_version_is_that_of_the_installed_package(kurt2rt: CommandLine) -> None:
 def test_help_lists_each_command_in_one_panel(kurt2rt: CommandLine) -> None:
     lines = kurt2rt("--help").out.splitlines()
     panels = [line.strip("╭─╮ ") for line in lines if line.startswith("╭")]
-    assert panels == ["Options", "Teach", "Examine", "Knowledge", "Robot and service", "Studies"]
+    assert panels == ["Options", "Teach", "Examine", "Knowledge", "Plug-ins", "Robot and service", "Studies"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

@@ -42,6 +42,7 @@ REPORTING = {
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
     *(("broken",), ("certify",), ("results", "show"), ("rivals",), ("results", "merge"), ("search",), ("tune",)),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
+    *(("plugin", "list"), ("plugin", "check")),
 }
 
 

@@ -1,5 +1,6 @@
 """The task comes from the knowledge file; a task that contradicts the file is refused in one line."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
 from tests.cli.test_bad_input import changed
 from tests.experiments.helpers import ROBOT
+from tests.plugin_packages import install
 
 
 @pytest.fixture
@@ -70,6 +72,13 @@ def test_exam_of_an_unknown_tasks_file_asks_for_the_settings(kurt2rt: CommandLin
     assert kurt2rt("exam", "mine.knowledge", "--task", task, *short).exit_code == 0
 
 
+def test_exam_of_a_file_that_names_a_module_imports_nothing(kurt2rt: CommandLine, plugin_folder: Path) -> None:
+    (plugin_folder / "evil.py").write_text("raise SystemExit('imported')\n")
+    binding = replace(binding_for(ROBOT, load_task("fleeing")), system="evil:TASK")
+    Journal.open(plugin_folder / "mine.knowledge", binding).close()
+    assert "settings from a recording or package may not import it" in kurt2rt.refused("exam", "mine.knowledge")
+
+
 def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, tmp_path: Path) -> None:
     Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task("streets"))).close()
     short = ("--set", "exam.duration_s=1")
@@ -93,11 +102,16 @@ def test_task_and_world_read_alike_in_every_command(
 
 @pytest.mark.parametrize(
     ("typed", "offered"),
-    [("kurt2rt exam x --task wal", "wall_following"), ("kurt2rt run --world manh", "manhattan")],
+    [
+        ("kurt2rt exam x --task wal", "wall_following"),
+        ("kurt2rt exam x --task stro", "strolling"),
+        ("kurt2rt run --world manh", "manhattan"),
+    ],
 )
-def test_completion_offers_shipped_names(
-    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, typed: str, offered: str
+def test_completion_offers_shipped_and_installed_names(
+    kurt2rt: CommandLine, plugin_folder: Path, monkeypatch: pytest.MonkeyPatch, typed: str, offered: str
 ) -> None:
+    install(plugin_folder, "ours", {"tasks": {"strolling": "tasks_b:TASK"}})
     monkeypatch.setenv("_KURT2RT_COMPLETE", "complete_bash")
     monkeypatch.setenv("COMP_WORDS", typed)
     monkeypatch.setenv("COMP_CWORD", str(len(typed.split()) - 1))

@@ -1,5 +1,7 @@
 """Conformance check of a learner: the promises of `Learner`, tried on made-up situations."""
 
+from collections.abc import Callable, Iterable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,19 +21,29 @@ def broken_promises(make: LearnerFactory, setting: LearnerSetting) -> list[str]:
         setting: of a task, with at least two actions. Its seed makes the situations.
     """
     check = _Check(make, setting)
+    return broken_among(
+        (
+            ("`decide` returns None before the first lesson", check.asks_at_first),
+            ("`decide` names an action of the setting, or None", check.names_actions),
+            ("`decide` follows the first lesson in its situation", check.follows_first_lesson),
+            ("`decide` changes nothing", check.decides_without_change),
+            ("the same lessons give the same decisions", check.is_deterministic),
+            ("`restore` gives the decisions of `snapshot`, also after further lessons", check.restores),
+            ("`restore` forgets all that is not in the snapshot", check.forgets),
+        )
+    )
+
+
+def broken_among(promises: Iterable[tuple[str, Callable[[], bool]]]) -> list[str]:
+    """Return the promises that do not hold, each in a sentence; an error of a check is told with its promise.
+
+    `promises`: each promise with a function that returns whether it holds.
+    """
     broken = []
-    for promise, holds in (
-        ("`decide` returns None before the first lesson", check.asks_at_first),
-        ("`decide` names an action of the setting, or None", check.names_actions),
-        ("`decide` follows the first lesson in its situation", check.follows_first_lesson),
-        ("`decide` changes nothing", check.decides_without_change),
-        ("the same lessons give the same decisions", check.is_deterministic),
-        ("`restore` gives the decisions of `snapshot`, also after further lessons", check.restores),
-        ("`restore` forgets all that is not in the snapshot", check.forgets),
-    ):
+    for promise, holds in promises:
         try:
             kept = holds()
-        except Exception as error:  # noqa: BLE001 - any error of a learner is a finding about it
+        except Exception as error:  # noqa: BLE001 - any error of another author's code is a finding about it
             broken.append(f"{promise}: raised {type(error).__name__}: {error}")
         else:
             if not kept:

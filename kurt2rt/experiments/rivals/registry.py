@@ -1,22 +1,11 @@
 """Learners by name, by `module:Name`, or by the entry points of installed packages."""
 
-import hashlib
-import importlib
-import inspect
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from importlib.metadata import entry_points
-from pathlib import Path
-
 from hal.errors import UserError
+from hal.plugins import PluginError, PluginKind, import_target, source_hash_of
 from kurt2rt.core.learner.learner import LearnerFactory
 from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLD_TARGETS
 from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNAL_TARGETS
-from kurt2rt.experiments.study.import_graph import PACKAGES
 
-ENTRY_POINTS = "kurt2rt.learners"
-"""Group of entry points by which a package offers learners."""
 _ROOM = "kurt2rt.experiments.rivals.learners"
 _BUILTIN = {
     "rla-door": "kurt2rt.core.learner.rla_learner:RlaLearner",
@@ -36,13 +25,29 @@ _BUILTIN = {
 """Modules of the learners by their names; a module is imported with its learner only, because it may need an extra."""
 
 
+_METHODS = ("decide", "lesson", "snapshot", "restore")
+
+
+def _makes_learners(found: object) -> bool:
+    return callable(found) and (not isinstance(found, type) or all(hasattr(found, each) for each in _METHODS))
+
+
+LEARNERS = PluginKind(
+    "learners",
+    "learner",
+    f"a class with the methods {', '.join(_METHODS)} (kurt2rt.core.learner.learner), or a function that makes one",
+    _makes_learners,
+    lambda: _BUILTIN,
+)
+
+
 class NoLearnerError(UserError):
     """Name that leads to no learner."""
 
 
 def learner_names() -> tuple[str, ...]:
     """Return the names of all learners of the project and of installed packages."""
-    return (*_BUILTIN, *sorted(point.name for point in entry_points(group=ENTRY_POINTS)))
+    return (*_BUILTIN, *(each.name for each in LEARNERS.installed()))
 
 
 def find_learner(name: str) -> LearnerFactory:
@@ -50,29 +55,14 @@ def find_learner(name: str) -> LearnerFactory:
 
     Raises NoLearnerError if there is none, or if a package that it needs is not installed.
     """
-    where = f"learner {name}"
-    target = _BUILTIN.get(name) or next(
-        (point.value for point in entry_points(group=ENTRY_POINTS) if point.name == name), name
-    )
-    module_name, colon, attribute = target.partition(":")
-    if not colon or not attribute:
-        raise NoLearnerError(
-            "there is no such learner",
-            where=where,
-            do=f"give module:Name, or one of {', '.join(learner_names())}",
-        )
     try:
-        with _current_folder_searched():
-            made = getattr(importlib.import_module(module_name), attribute, None)
-    except ImportError as error:
-        do = "pip install 'kurt2rt[rivals]'" if name in _BUILTIN else "give a module that Python finds from this folder"
-        raise NoLearnerError(f"cannot be imported: {error}", where=where, do=do) from error
-    if not callable(made):
-        raise NoLearnerError(
-            f"{module_name} has no class {attribute!r}",
-            where=where,
-            do="name a class that is a Learner",
-        )
+        if name in _BUILTIN:
+            made = import_target(_BUILTIN[name], f"learner {name}", "pip install 'kurt2rt[rivals]'")
+        else:
+            made = LEARNERS.find(name)
+    except PluginError as error:
+        raise NoLearnerError(error.what, where=error.where, do=error.do) from error
+    assert callable(made)
     factory: LearnerFactory = made
     return factory
 
@@ -82,18 +72,4 @@ def source_of_learner(name: str) -> str:
 
     The source of the program is part of every result's provenance anyway. Raises NoLearnerError.
     """
-    module = inspect.getmodule(find_learner(name))
-    if module is None or module.__file__ is None or module.__name__.split(".")[0] in PACKAGES:
-        return ""
-    return hashlib.sha256(Path(module.__file__).read_bytes()).hexdigest()
-
-
-@contextmanager
-def _current_folder_searched() -> Iterator[None]:
-    """Let Python find modules in the current folder, as a script there would."""
-    here = str(Path.cwd())
-    sys.path.insert(0, here)
-    try:
-        yield
-    finally:
-        sys.path.remove(here)
+    return source_hash_of(find_learner(name))

@@ -6,7 +6,9 @@ from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 
-PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
+from hal.plugins import OWN_PACKAGES
+
+PACKAGES = OWN_PACKAGES
 """Top-level packages of the program; all others come with the environment."""
 
 

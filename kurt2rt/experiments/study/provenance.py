@@ -8,8 +8,10 @@ from collections.abc import Collection, Iterable
 from functools import lru_cache
 from importlib.metadata import version
 
+from behaviors.repertoire_settings import RepertoireSettings
+from hal.plugins import source_hash_of
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, content_of, find_config
+from hal.settings import Settings, content_of, find_config, load_settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.import_graph import modules_needed
@@ -92,6 +94,7 @@ class Fingerprints:
                 self._settings("situations", task.situation),
                 self._settings("repertoires", task.repertoire),
                 *([self._settings("mid_levels", task.mid)] if isinstance(task.mid, str) else ()),
+                *_plugin_sources(task),
                 *more,
             ),
             robot=self._robot,
@@ -108,6 +111,13 @@ class Fingerprints:
             else:
                 self._known[kind, name] = json.dumps(content_of(find_config(kind, name)))
         return self._known[kind, name]
+
+
+def _plugin_sources(task: TaskSettings) -> list[str]:
+    """Return the hash of each plug-in's source that a task names; the program's own source has a field of its own."""
+    actions = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
+    hashes = map(source_hash_of, (task.policy, task.course, task.judge, *actions))
+    return [each for each in dict.fromkeys(hashes) if each]
 
 
 @lru_cache(maxsize=1024)

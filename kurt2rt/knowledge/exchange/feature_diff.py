@@ -27,8 +27,8 @@ def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task
     """
     try:
         there_robot = RobotSettings.model_validate_json(settings[ROBOT])
-        there_task = TaskSettings.model_validate_json(settings[TASK])
         with extracted_settings(settings):
+            there_task = TaskSettings.model_validate_json(settings[TASK])
             there = load_situation(there_task.situation, there_robot.infrared.names)
     except (KeyError, ValidationError, SettingsError, OSError) as error:
         return f"its settings cannot be used here ({' '.join(str(error).split())})"

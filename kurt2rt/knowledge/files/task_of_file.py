@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from hal.plugins import settings_from_elsewhere
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.journal import Journal
@@ -28,7 +29,8 @@ def task_of_file(path: Path, given: str | None = None) -> str:
             raise KnowledgeError(KnowledgeCode.OTHER_TASK_GIVEN, where=path, taught=taught, wanted=wanted)
         return given
     try:
-        load_task(taught)
+        with settings_from_elsewhere():  # the file may be of anyone, and the name in it a module's
+            load_task(taught)
     except SettingsError as error:
         raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=taught, error=error) from error
     return taught

@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hal.plugins import loaded_plugins
 from hal.robot_settings import RobotSettings
 from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
@@ -96,6 +97,7 @@ class Recording:
             behaviour=context.behaviour,
             fingerprints=hash_attachments(attachments),
             tolerates_stalls=context.tolerates_stalls,
+            plugins={f"{each.group} {each.name}": each.source for each in loaded_plugins()},
         )
         run = RecordedRun(
             name=run_name(began, task.name),

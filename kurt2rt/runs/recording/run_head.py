@@ -1,7 +1,7 @@
 """Head of a run: its circumstances, in the metadata of every segment."""
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
 from hal.sensor_signs import SensorRules
@@ -20,6 +20,7 @@ _BEFORE: dict[str, Any] = {
     "asks_when_held": False,
     "checks_sensors": False,
     "sensor_rules": SensorRules.NOISE,
+    "plugins": {},
 }
 """Values of later fields that hold for older recordings."""
 
@@ -66,6 +67,8 @@ class RunHead:
     """True if the robot noticed single broken sensors."""
     sensor_rules: int = SensorRules.MOTION
     """Rules by which it noticed them (hal.sensor_watch.SensorRules)."""
+    plugins: dict[str, str] = field(default_factory=dict)
+    """Source of each plug-in that the program had loaded, by kind and name."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:

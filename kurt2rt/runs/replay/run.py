@@ -8,6 +8,7 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
+from hal.plugins import settings_from_elsewhere
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
@@ -109,7 +110,8 @@ class Run:
     @cached_property
     def task(self) -> TaskSettings:
         """Settings of the task in the run."""
-        return TaskSettings.model_validate_json(self._attachments[TASK])
+        with settings_from_elsewhere():
+            return TaskSettings.model_validate_json(self._attachments[TASK])
 
     @cached_property
     def lessons(self) -> tuple[KnownLesson, ...]:

@@ -1,4 +1,3 @@
-import importlib.metadata
 from pathlib import Path
 
 import pytest
@@ -6,14 +5,9 @@ import pytest
 from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.experiments.rivals import registry
 from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
+from tests.plugin_packages import install
 
-MINE = "class Mine:\n    def __init__(self, setting):\n        self.setting = setting\n"
-
-
-@pytest.fixture
-def own_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+MINE = "from kurt2rt.core.learner.rla_learner import RlaLearner\n\n\nclass Mine(RlaLearner):\n    pass\n"
 
 
 def test_find_learner_by_name_and_by_module() -> None:
@@ -21,17 +15,13 @@ def test_find_learner_by_name_and_by_module() -> None:
     assert find_learner("kurt2rt.core.learner.rla_learner:RlaLearner") is RlaLearner
 
 
-def test_find_learner_in_the_current_folder(own_folder: Path) -> None:
-    (own_folder / "mine_here.py").write_text(MINE)
+def test_find_learner_in_the_current_folder(plugin_folder: Path) -> None:
+    (plugin_folder / "mine_here.py").write_text(MINE)
     assert getattr(find_learner("mine_here:Mine"), "__name__", "") == "Mine"
-    assert str(own_folder) not in __import__("sys").path
 
 
-def test_find_learner_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
-    point = importlib.metadata.EntryPoint(
-        "theirs", "kurt2rt.core.learner.rla_learner:RlaLearner", registry.ENTRY_POINTS
-    )
-    monkeypatch.setattr(registry, "entry_points", lambda group: [point] if group == point.group else [])
+def test_find_learner_by_entry_point(plugin_folder: Path) -> None:
+    install(plugin_folder, "theirs", {"learners": {"theirs": "kurt2rt.core.learner.rla_learner:RlaLearner"}})
     assert find_learner("theirs") is RlaLearner
     assert learner_names()[-1] == "theirs"
 
@@ -39,13 +29,14 @@ def test_find_learner_by_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("k-n", "there is no such learner; give module:Name, or one of rla-door, 1-nn, k-nn"),
+        ("k-n", "there is no such learner; give module:Name, or one of: rla-door, 1-nn, k-nn"),
         (
             "no_such_module:Mine",
-            "cannot be imported: No module named 'no_such_module'; give a module that Python finds",
+            "there is no module 'no_such_module' on Python's path or in ",
         ),
-        ("kurt2rt.core.learner.rla_learner:Rlalearner", "has no class 'Rlalearner'"),
+        ("kurt2rt.core.learner.rla_learner:Rlalearner", "rla_learner.py has no 'Rlalearner'"),
         ("kurt2rt.core.learner.rla_learner:", "there is no such learner"),
+        ("kurt2rt.core.learner.learner:Why", "is the class Why, allowed is a class with the methods decide, lesson, "),
     ],
 )
 def test_find_learner_refuses_what_is_none(name: str, text: str) -> None:
@@ -61,9 +52,9 @@ def test_missing_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
         find_learner("needy")
 
 
-def test_source_of_a_learner_outside_changes_with_its_file(own_folder: Path) -> None:
-    (own_folder / "mine_first.py").write_text(MINE)
-    (own_folder / "mine_second.py").write_text(MINE + "# more\n")
+def test_source_of_a_learner_outside_changes_with_its_file(plugin_folder: Path) -> None:
+    (plugin_folder / "mine_first.py").write_text(MINE)
+    (plugin_folder / "mine_second.py").write_text(MINE + "# more\n")
     first, second = source_of_learner("mine_first:Mine"), source_of_learner("mine_second:Mine")
     assert first != second
     assert first

@@ -17,6 +17,7 @@ from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.runtime import Runtime
 from simbridge.survey.free_poses import FreePoses
 from tests.experiments.helpers import ROBOT, STAGE
+from tests.plugin_packages import write_parts, write_repertoire, write_task
 
 TASK = load_task("wall_following")
 NOT_DECIDING = (
@@ -92,3 +93,17 @@ def test_comments_docstrings_and_layout_are_no_source() -> None:
     plain = code_of("def speed(m, s):\n    return m / s\n")
     assert code_of('"""What."""\n\ndef speed(m, s):  # fast\n    """Metres."""\n    return (m / s)\n') == plain
     assert code_of("def speed(m, s):\n    return s / m\n") != plain
+
+
+def test_change_in_the_source_of_a_plugin_shows(plugin_folder: Path) -> None:
+    write_parts(plugin_folder, "parts_made")
+    repertoire = write_repertoire(plugin_folder, {"kind": "parts_made:Wiggling", "name": "wiggle"})
+    path = write_task(plugin_folder, policy={"kind": "parts_made:Turning"})
+    task = load_task(str(path))
+    by_action = TASK.model_copy(update={"repertoire": str(repertoire)})
+    fingerprints = Fingerprints(STAGE, ROBOT, "s")
+    made = [fingerprints.of(each, ("a",)) for each in (task, by_action)]
+    file = plugin_folder / "parts_made.py"
+    file.write_text(file.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
+    changed = [fingerprints.of(each, ("a",)) for each in (task, by_action)]
+    assert [one.differences(other) for one, other in zip(made, changed, strict=True)] == [["task"], ["task"]]

@@ -1,0 +1,249 @@
+"""Plug-ins: parts from outside of the project, by an entry point of an installed package or by `module:Name`."""
+
+import hashlib
+import importlib
+import sys
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import reduce
+from importlib import import_module, invalidate_caches
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from hal.errors import UserError
+
+OWN_PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
+"""Top-level packages of the program; a part of any other one is a plug-in."""
+_GROUPS = "kurt2rt."
+_ERROR_LENGTH = 300
+
+
+class PluginError(UserError, ValueError):
+    """Plug-in that is missing or unusable."""
+
+
+class UnknownPluginError(PluginError):
+    """Name that leads to no plug-in; its `do` lists the names."""
+
+
+class Plugin(NamedTuple):
+    """Plug-in, not necessarily imported."""
+
+    group: str
+    """Kind, such as policies."""
+    name: str
+    """Name in settings and on the command line."""
+    target: str
+    """`module:Name`."""
+    source: str
+    """Distribution with its version; once it is loaded by `module:Name`, its file."""
+
+
+_LOADED: dict[tuple[str, str], Plugin] = {}
+# What a recording or package from elsewhere names must not be imported. A parameter would have to pass through every
+# validator of settings.
+_FROM_ELSEWHERE: ContextVar[bool] = ContextVar("settings from elsewhere", default=False)
+
+
+@contextmanager
+def settings_from_elsewhere() -> Iterator[None]:
+    """Refuse imports by `module:Name` while the context lasts, because the author of the settings may be hostile.
+
+    Plug-ins that are installed, or that this process loaded before, are still found.
+    """
+    token = _FROM_ELSEWHERE.set(True)
+    try:
+        yield
+    finally:
+        _FROM_ELSEWHERE.reset(token)
+
+
+def are_settings_from_elsewhere() -> bool:
+    """Return whether `settings_from_elsewhere` is in force."""
+    return _FROM_ELSEWHERE.get()
+
+
+def installed_plugins(group: str) -> list[Plugin]:
+    """Return the plug-ins of a kind, such as policies, that installed packages offer, by name; nothing is imported."""
+    return sorted(_of_entry_point(group, point) for point in entry_points(group=_GROUPS + group))
+
+
+def loaded_plugins() -> tuple[Plugin, ...]:
+    """Return the plug-ins that this process loaded, in that order."""
+    return tuple(_LOADED.values())
+
+
+@dataclass(frozen=True, slots=True)
+class PluginKind:
+    """Kind of parts that plug-ins may offer. Its registry finds the shipped parts, before it asks here."""
+
+    group: str
+    """Plural, such as policies; the entry points are those of `kurt2rt.policies`."""
+    one: str
+    """Singular, for texts."""
+    allowed: str
+    """Description of what `fits` takes, with an article."""
+    fits: Callable[[object], bool]
+    """Returns whether an imported object is a part of this kind."""
+    shipped: Callable[[], Iterable[str]]
+    """Returns the names of the shipped parts."""
+
+    def installed(self) -> list[Plugin]:
+        """Return the plug-ins that the entry points of installed packages offer, by name; nothing is imported."""
+        return installed_plugins(self.group)
+
+    def find(self, name: str) -> object:
+        """Import and return the plug-in of a name, or of `module:Name` on Python's path or in the current folder.
+
+        Raises:
+            UnknownPluginError: nothing is found by this name.
+            PluginError: two packages offer the name, the import fails, or the object is none of this kind.
+        """
+        plugin = self._plugin(name)
+        found = import_target(plugin.target, self._where(name))
+        if not self.fits(found):
+            told = f"{plugin.target} is {_described(found)}, allowed is {self.allowed}"
+            raise PluginError(told, where=self._where(name), do="name another one, or mend it")
+        if plugin.target == name:
+            module = sys.modules[name.partition(":")[0]]
+            plugin = plugin._replace(source=str(module.__file__ or module.__name__))
+        _LOADED[self.group, name] = plugin
+        return found
+
+    def _plugin(self, name: str) -> Plugin:
+        offered = self.installed()
+        named = [each for each in offered if each.name == name]
+        if len(named) > 1:
+            packages = " and ".join(each.source for each in named)
+            raise PluginError(
+                f"{packages} both offer this name", where=self._where(name), do="uninstall one, or give module:Name"
+            )
+        if named:
+            return named[0]
+        if not is_target(name):
+            raise self._unknown(name, [*self.shipped(), *(each.name for each in offered)])
+        is_known = (self.group, name) in _LOADED or any(each.target == name for each in offered)
+        if are_settings_from_elsewhere() and not is_known:
+            raise PluginError(
+                "settings from a recording or package may not import it",
+                where=self._where(name),
+                do=f"install it as a package with an entry point of {_GROUPS}{self.group}",
+            )
+        return Plugin(self.group, name, name, "")
+
+    def _unknown(self, name: str, names: list[str]) -> UnknownPluginError:
+        meant = "".join(f"; did you mean {each}?" for each in get_close_matches(name, names, n=1))
+        return UnknownPluginError(
+            f"there is no such {self.one}",
+            where=self._where(name),
+            do=f"give module:Name, or one of: {', '.join(names)}{meant}",
+        )
+
+    def _where(self, name: str) -> str:
+        return f"{self.one} {name}"
+
+
+def import_target(target: str, where: str, do: str = "") -> object:
+    """Import and return the object that `module:Name` names.
+
+    A module that is not on Python's path is searched in the current folder, which then stays at the path's end: the
+    processes of a study take the path over, and find the module as well.
+
+    Args:
+        target: `module:Name`; dots within the name lead to attributes.
+        where: what is looked for, for errors.
+        do: remedy of a module that cannot be imported; the file is to be mended by default.
+
+    Raises PluginError, with the file and line of an error within the module.
+    """
+    module_name, _, attribute = target.partition(":")
+    try:
+        module = _import_here(module_name)
+    except (Exception, SystemExit) as error:
+        if isinstance(error, ModuleNotFoundError) and _is_within(module_name, error.name or ""):
+            told = f"there is no module {error.name!r} on Python's path or in {Path.cwd()}"
+            raise PluginError(told, where=where, do=do or "give a module that Python finds from this folder") from error
+        told = f"{module_name} cannot be imported: {_first_cause(error)}"
+        raise PluginError(told, where=where, do=do or "mend it, or install what it needs") from error
+    try:
+        found: object = reduce(getattr, attribute.split("."), module)
+    except AttributeError as error:
+        told = f"{module.__file__ or module_name} has no {attribute!r}"
+        raise PluginError(told, where=where, do="name what stands in that file") from error
+    return found
+
+
+def source_hash_of(part: object) -> str:
+    """Return a hash that changes with the source of a plug-in; empty for a part of the project.
+
+    It covers all Python files of the top-level package, or the single file, that defines the class or function.
+    """
+    name = getattr(part, "__module__", None) or type(part).__module__
+    top = name.split(".")[0]
+    file = getattr(sys.modules.get(top), "__file__", None)
+    if top in OWN_PACKAGES or file is None:
+        return ""
+    path = Path(file)
+    files = sorted(path.parent.rglob("*.py")) if path.name == "__init__.py" else [path]
+    digest = hashlib.sha256()
+    for each in files:
+        digest.update(f"{each.relative_to(path.parent).as_posix()}\0".encode())
+        digest.update(each.read_bytes())
+    return digest.hexdigest()
+
+
+def _of_entry_point(group: str, point: EntryPoint) -> Plugin:
+    source = f"{point.dist.name} {point.dist.version}" if point.dist is not None else "an unknown package"
+    return Plugin(group, point.name, f"{point.module}:{point.attr}", source)
+
+
+def is_target(name: str) -> bool:
+    """Return whether a name has the form `module:Name`."""
+    parts = name.split(":")
+    return len(parts) == 2 and all(each.isidentifier() for part in parts for each in part.split("."))
+
+
+def _is_within(module: str, package: str) -> bool:
+    return module == package or module.startswith(f"{package}.")
+
+
+def _import_here(name: str) -> ModuleType:
+    try:
+        return import_module(name)
+    except ModuleNotFoundError as error:
+        folder = str(Path.cwd())
+        if folder in sys.path or not _is_within(name, error.name or ""):
+            raise
+    # At the end: a file of this folder must not replace a module that some other package imports later.
+    sys.path.append(folder)
+    invalidate_caches()
+    try:
+        return import_module(name)
+    except BaseException:
+        sys.path.remove(folder)
+        raise
+
+
+def _first_cause(error: BaseException) -> str:
+    """Return the file, line and text of an error that a module raised while it was imported."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())[:_ERROR_LENGTH]
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}, line {error.lineno}: {type(error).__name__}: {error.msg}"
+    frames = [
+        frame
+        for frame in traceback.extract_tb(error.__traceback__)
+        if not frame.filename.startswith("<frozen importlib") and frame.filename not in (__file__, importlib.__file__)
+    ]
+    return f"{frames[-1].filename}, line {frames[-1].lineno}: {text}" if frames else text
+
+
+def _described(found: object) -> str:
+    if isinstance(found, type):
+        return f"the class {found.__name__}"
+    return f"a {type(found).__name__}"

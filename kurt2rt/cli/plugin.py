@@ -1,0 +1,102 @@
+"""`kurt2rt plugin ...`: parts of other authors."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import load_robot
+from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import RobotName
+from kurt2rt.cli.tables import console_of
+from kurt2rt.platform.text_table import TextTable, print_whole
+
+plugin = typer.Typer(
+    help="List, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks and worlds of your own.",
+    no_args_is_help=True,
+)
+
+
+@plugin.command("list")
+def list_(
+    kind: Annotated[KindName | None, typer.Option(help="List only this kind.")] = None, as_json: AsJson = False
+) -> None:
+    """List the parts of each kind: the shipped ones and those of installed packages.
+
+    For example:
+
+        kurt2rt plugin list
+        kurt2rt plugin list --kind policies
+    """
+    chosen = KINDS.values() if kind is None else [KINDS[kind]]
+    listed = [each for one in chosen for each in list_parts(one)]
+    if as_json:
+        print_json({"plugins": listed})
+        return
+    table = TextTable()
+    for heading in ("kind", "name", "from", "note"):
+        table.add_column(heading, whole=heading == "name")
+    for each in listed:
+        table.add_row(*each)
+    print_whole(console_of(), table)
+
+
+@plugin.command()
+def new(
+    kind: Annotated[KindName, typer.Argument(help="Kind of the plug-in.")],
+    name: Annotated[str, typer.Argument(help="Its name, such as wandering; also that of its module and its folder.")],
+    out: Annotated[Path, typer.Option(help="Folder that gets the plug-in's folder.")] = Path(),
+) -> None:
+    """Write a plug-in to begin with: a folder that installs, with a test that it passes.
+
+    For example:
+
+        kurt2rt plugin new policies wandering
+        kurt2rt plugin check wandering
+    """
+    from kurt2rt.checks.plugins.skeleton import write_skeleton
+
+    for path in write_skeleton(kind, name, out):
+        typer.echo(path)
+    typer.echo(f"next: kurt2rt plugin check {out / name}")
+
+
+@plugin.command()
+def check(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="Plug-in: an installed name, module:Name in this folder, a folder with a pyproject.toml, or the YAML "
+            "file of a task or a world.",
+        ),
+    ],
+    kind: Annotated[KindName | None, typer.Option(help="Kind of the plug-in, where it is not clear.")] = None,
+    robot_settings: RobotName = "kurt2",
+    as_json: AsJson = False,
+) -> None:
+    """Check that a plug-in keeps the promises of its kind, on made-up readings, lessons and poses.
+
+    For example:
+
+        kurt2rt plugin check wandering
+        kurt2rt plugin check my_policy:Wandering
+        kurt2rt plugin check my_task.yaml
+    """
+    subjects = find_subjects(name, kind)
+    # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
+    from kurt2rt.checks.plugins.check import PluginCheck
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    robot = load_robot(robot_settings)
+    checks = PluginCheck(robot, Kurt2SimulationFactory(robot))
+    found = [(each, checks.broken_promises(each)) for each in subjects]
+    if as_json:
+        print_json({"plugins": [{"kind": each.group, "name": each.name, "broken": broken} for each, broken in found]})
+    else:
+        for each, broken in found:
+            typer.echo(f"{each.name} ({each.group}): " + ("breaks promises" if broken else "keeps all promises"))
+            for line in broken:
+                typer.echo(f"  {line}")
+    if any(broken for _, broken in found):
+        raise typer.Exit(1)
