@@ -8,13 +8,10 @@ from pathlib import Path
 import pytest
 
 from hal.batch_refusal import BatchRefusedError
-from kurt2rt.core.learner.learner_team import LearnerTeam
-from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup
-from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from simbridge.batch.compiled import IS_COMPILED
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
@@ -116,13 +113,6 @@ def test_batch_refuses_tasks_that_it_does_not_know(name: str, changes: dict[str,
     task = load_task(name, changes=changes)
     with pytest.raises(BatchRefusedError, match="use the CAN bus"):
         examine_in_batch(STAGE, ROBOT, task, [BatchExam(ExamSetup(task.exam.worlds[0], 1, policy))])
-
-
-def test_batch_refuses_a_learner_that_is_no_rla_system() -> None:
-    task = short_task()
-    team = LearnerTeam("rla", RlaLearner, learner_setting(task, ROBOT, seed=1), task.behaviours)
-    with pytest.raises(BatchRefusedError, match="a learner that is no RLA system"):
-        examine_in_batch(STAGE, ROBOT, task, [BatchExam(ExamSetup("a", 1, learners=team))])
 
 
 def test_batch_over_a_wire_is_refused() -> None:

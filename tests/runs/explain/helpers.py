@@ -1,5 +1,6 @@
 """A simulated robot that is taught in lockstep, some ticks at a time, and what is known of its newest decision."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import anyio
@@ -25,8 +26,15 @@ ROBOT = load_robot()
 class Lesson:
     """A robot in a world, and its teacher."""
 
-    def __init__(self, task: str = "wall_following", seed: int = 1, *, attended: bool = False) -> None:
-        settings = load_task(task)
+    def __init__(
+        self,
+        task: str = "wall_following",
+        seed: int = 1,
+        *,
+        attended: bool = False,
+        changes: Mapping[str, str] | None = None,
+    ) -> None:
+        settings = load_task(task, changes=changes or {})
         self.notebook = InMemoryEventStore()
         self._simulation = Kurt2SimulationFactory(ROBOT).open(settings.teaching.world, seed, "why")
         self.runtime = build_runtime(
