@@ -123,6 +123,14 @@ async def robot(tmp_path: Path) -> AsyncIterator[StandInRobot]:
 @pytest.fixture
 async def client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherClient]:
     folder = tmp_path / "devices" / AUTO
+    async with in_a_task_of_its_own(TeacherClient(folder, port=robot.port, patience_s=10.0)) as client:
+        yield client
+
+
+@pytest.fixture
+async def impatient_client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherClient]:
+    """Give up soon, for a robot whose answers are lost on purpose."""
+    folder = tmp_path / "devices" / AUTO
     async with in_a_task_of_its_own(TeacherClient(folder, port=robot.port, patience_s=0.15)) as client:
         yield client
 
@@ -390,9 +398,11 @@ async def test_teach_by_script_slow_teacher_sets_the_lesson_speed(
     assert all(n < phase_2 for n in speeds)
 
 
-async def test_teach_by_script_lost_answers_are_asked_again(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_teach_by_script_lost_answers_are_asked_again(
+    impatient_client: TeacherClient, robot: StandInRobot
+) -> None:
     robot.mind = Mind(robot, mute=2)
-    said = await lesson(client, robot, ALONE)
+    said = await lesson(impatient_client, robot, ALONE)
     assert ALONE in said[-1]
     assert robot.state.session is None
     assert len(robot.all_of(SessionRequest)) >= 4
