@@ -55,12 +55,12 @@ class LearnerSearchJob(SearchJob):
         def on_progress(done_s: float) -> None:
             report(f"teaching in world {world}", done_s, seconds)
 
-        team = self.rival.new_team(task, robot, seed)
-        given = None
+        team, given = self.rival.new_team(task, robot, seed), None
         if loop is DriveLoop.BATCH and isinstance(factory, LessonFactory):
             given = teach_rival_in_batch(factory, robot, task, team, (), seed=seed, on_progress=on_progress)
+            if given is None:  # they were taught a part of the lesson
+                team = self.rival.new_team(task, robot, seed)
         if given is None:
-            team = self.rival.new_team(task, robot, seed)
             with closing(factory.open(world, seed, "lesson")) as simulation:
                 given = await teach_rival(simulation, robot, task, team, (), seed=seed, on_progress=on_progress)
         on_progress(seconds)
