@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from functools import cached_property
 
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose, Position, WorldPlan
 from hal.tap import Tap
 from simbridge.realtime import RealtimeSimulation
@@ -24,7 +24,7 @@ class Kurt2Simulation:
 
     def __init__(
         self,
-        settings: RobotSettings,
+        settings: Kurt2Settings,
         world: str,
         seed: int,
         purpose: str,
@@ -40,7 +40,7 @@ class Kurt2Simulation:
         `bus`: that carries the frames of a robot without a wire (hal.bus.open_bus); None: one of its own.
         """
         self._world = loaded or load_world(world, settings)
-        self._cycle_s = settings.can.cycle_s
+        self._cycle_s = settings.cycle_s
         chance = random.Random(f"{purpose} in world {world}, seed {seed}")
         noise_seed = chance.getrandbits(32)
         self._line = open_line(wire, self._cycle_s, noise_seed, bus)

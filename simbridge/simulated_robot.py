@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from simbridge.controller.controller_bus import ControllerBus
 from simbridge.controller.microcontroller import MicroController
@@ -35,7 +35,7 @@ class SimulatedRobot:
 
     def __init__(
         self,
-        robot: RobotSettings,
+        robot: Kurt2Settings,
         world: WorldSettings,
         bus: ControllerBus,
         seed: int,
@@ -48,7 +48,7 @@ class SimulatedRobot:
         Args: `seed` selects the run: noise, phases, slip. `robot_seed` (default: `seed`) selects the robot: gains and
         periods of its sensors, so that an exam can use the robot that was taught. `wheels` replaces the sound ones.
         """
-        cycle_s = robot.can.cycle_s
+        cycle_s = robot.cycle_s
         self.world = World(world)
         self._cycle_s = cycle_s
         self._cycles = 0

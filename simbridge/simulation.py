@@ -9,7 +9,7 @@ from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import WorldPlan
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 class Kurt2SimulationFactory:
     """Opens simulated simulations (hal.simulation.SimulationFactory); can be sent to another process."""
 
-    settings: RobotSettings
+    settings: Kurt2Settings
     wire: str = NO_WIRE
     bus: str | None = None
     """Bus that carries the frames of a robot without a wire, for one simulation at a time; None: one of its own."""
@@ -112,7 +112,7 @@ class Kurt2SimulationFactory:
 
 @contextmanager
 def simulated_robot(
-    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
+    settings: Kurt2Settings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
 ) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
     """Yield a simulation that runs in real time, its watchdog running, and its world for a teacher.
 

@@ -78,7 +78,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         self.loop = read_loop(loop)
         """Loop that drives the robot."""
         self._policy = self._task.policy.build(self._settings.infrared)
-        cycle_s = self._settings.can.cycle_s
+        cycle_s = self._settings.cycle_s
         self._decision_ticks = round(_DECISION_S / cycle_s)
         self._episode_ticks = round(self._checked_duration_s(duration_s) / cycle_s)
         definition = load_situation(self._task.situation, self._settings.infrared.names)
@@ -189,6 +189,6 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             "pose": np.array(now.pose),
             "collisions": now.collisions,
             "progress": now.progress,
-            "time_s": now.ticks * self._settings.can.cycle_s,
+            "time_s": now.ticks * self._settings.cycle_s,
             "ending": "" if now.ending is None else now.ending.value,
         }

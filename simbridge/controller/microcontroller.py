@@ -6,7 +6,7 @@ from typing import NamedTuple
 from hal.bus import CONTROL_ID
 from hal.codec import InvalidFrameError, load_codec
 from hal.control import Mode, RawControl, SystemControl, decode_control
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from simbridge.controller.controller_bus import ControllerBus
 from simbridge.controller.telemetry import Telemetry
 from simbridge.robot.instruments import Instruments
@@ -36,12 +36,12 @@ class MicroController:
     controller: motors off and no telemetry until MC_RESET. A side is ramped down before it reverses.
     """
 
-    def __init__(self, robot: RobotSettings, bus: ControllerBus, instruments: Instruments) -> None:
+    def __init__(self, robot: Kurt2Settings, bus: ControllerBus, instruments: Instruments) -> None:
         self._bus = bus
         self._motors = robot.motors
         self._instruments = instruments
         self._telemetry = Telemetry(robot, load_codec(robot.can.database), bus.telemetry_port(), instruments)
-        self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.can.cycle_s)
+        self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.cycle_s)
         self._silent_cycles = self._watchdog_cycles
         self._actuators_on = True
         self._last_payload: bytes | bytearray | None = None

@@ -12,7 +12,7 @@ from hal.codec import load_codec
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S
@@ -37,7 +37,7 @@ class LongRunRig:
     watchdog's thread.
     """
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
+    def __init__(self, settings: Kurt2Settings, world: str, seed: int) -> None:
         """Place the robot at a random start pose of the world, without a driver. Raises UserError."""
         self._chance = random.Random(f"lasting place in {world}, seed {seed}")
         self.time = EventScheduler()
@@ -51,7 +51,7 @@ class LongRunRig:
         """Number of crashes of the micro-controller, each followed by a power cycle."""
         self._settings = settings
         self._codec = load_codec(settings.can.database)
-        self._cycle_s = settings.can.cycle_s
+        self._cycle_s = settings.cycle_s
         self._numbers = 0
         self._robots_links, self._notebooks_links = Links(), Links()
         self._join: Callable[[str], CanInterface]

@@ -23,7 +23,7 @@ from tests.cli.helpers import Running, running
 ROBOT = load_robot()
 CODEC = load_codec()
 ENCODER = CODEC.message("ENCODER")
-WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
+WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.cycle_s)
 BRAKING_CYCLES = 30
 """Cycles that braking takes: 20 from the guard's limit of 0.6 m/s at 3 m/s², and some for the speed loop."""
 LONG_ENOUGH_S = 120.0

@@ -16,7 +16,7 @@ CODEC: Codec = load_codec()
 ROBOT: RobotSettings = load_robot()
 SENSORS = ROBOT.infrared.sensors
 INFRARED_FRAMES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07")
-TICK_S = ROBOT.can.cycle_s
+TICK_S = ROBOT.cycle_s
 
 _numbers = itertools.count()
 

@@ -29,7 +29,7 @@ def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = Guard
 def told(streams: Streams, make_guard: MakeGuard = Guard) -> str:
     """Return the text of a short stream: settings, and inputs and outputs of each tick."""
     played = play(streams, make_guard)
-    lines = [f"{streams.robot.can.speed_mode}, {streams.robot.can.cycle_s} s, {streams.robot.guard}"]
+    lines = [f"{streams.robot.can.speed_mode}, {streams.robot.cycle_s} s, {streams.robot.guard}"]
     for tick in range(streams.shape[1]):
         comes_in = {
             field.name: value[0, tick]

@@ -75,8 +75,8 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
     chance = _Chance(np.random.default_rng([seed, 4]), (streams, ticks))
     robot = _robot(chance.generator)
     limits = robot.guard
-    now_s, backwards = _times(chance, robot.can.cycle_s)
-    left_m_s, right_m_s = _wishes(chance, limits, robot.can.cycle_s)
+    now_s, backwards = _times(chance, robot.cycle_s)
+    left_m_s, right_m_s = _wishes(chance, limits, robot.cycle_s)
     stormy = chance.streams(0.2)
     receives_own_frames = bool(chance.generator.random() < 0.5)
     stalls = chance.spells(0.2, starts=0.05, ends=0.2)

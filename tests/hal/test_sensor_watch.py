@@ -12,8 +12,8 @@ from hal.sensor_watch import BrokenSensor, SensorWatch
 
 ROBOT = load_robot()
 INFRARED = ROBOT.infrared
-STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.can.cycle_s)
-FORWARD_TICKS = round(0.3 * ROBOT.can.cycle_s / ROBOT.geometry.metres_per_tick)
+STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.cycle_s)
+FORWARD_TICKS = round(0.3 * ROBOT.cycle_s / ROBOT.geometry.metres_per_tick)
 """Encoder ticks of a tick at 0.3 m/s."""
 PLACES = {name: place for place, name in enumerate(INFRARED.names)}
 

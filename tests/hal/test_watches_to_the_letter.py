@@ -27,7 +27,7 @@ class Watched:
 
     def __init__(self, robot: RobotSettings, first_ticks: int) -> None:
         self._watch = WheelWatch(robot)
-        self._cycle_s = robot.can.cycle_s
+        self._cycle_s = robot.cycle_s
         self.now_s = 8.0
         assert self._watch.check(first_ticks, first_ticks, 1, self.now_s) == ""
 

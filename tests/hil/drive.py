@@ -25,7 +25,7 @@ class Drive:
 
     def __init__(self, bus: str) -> None:
         settings = load_robot()
-        self._cycle_s = settings.can.cycle_s
+        self._cycle_s = settings.cycle_s
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
         self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)

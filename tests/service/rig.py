@@ -122,7 +122,7 @@ def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickR
     task = task or eager_task()
     actions = tuple(load_repertoire(task.repertoire, SETTINGS))
     teacher = build_teacher(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
-    corrections_from = round(task.teaching.supervised_s / SETTINGS.can.cycle_s)
+    corrections_from = round(task.teaching.supervised_s / SETTINGS.cycle_s)
 
     def watch(record: TickRecord) -> Command | None:
         if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:

@@ -125,7 +125,7 @@ class Rig:
     def speed_m_s(self) -> float:
         """Return the mean rim speed of both sides by the encoders."""
         left, right = self.heard["ENCODER"]
-        return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+        return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.cycle_s
 
     def reading(self, sensor: str) -> int:
         """Return the newest count of a sensor on the bus."""

@@ -37,7 +37,7 @@ class Scene:
         self.robot = driver(ROBOT, open_bus(spec), lambda: self.now_s)
 
     def tick(self, wanted: WheelSpeeds = TURN) -> GuardResult:
-        self.now_s += ROBOT.can.cycle_s
+        self.now_s += ROBOT.cycle_s
         self.simulated.step()
         self.robot.sense(self.now_s)
         return self.robot.drive(wanted, self.now_s, self.now_s)

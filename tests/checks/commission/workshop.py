@@ -71,7 +71,7 @@ class Workshop:
     def step(self) -> None:
         self.robot.step()
         if self.stranger is not None and any(self.robot.wheel_speeds):
-            self.stranger_waits_s -= self.true.can.cycle_s
+            self.stranger_waits_s -= self.true.cycle_s
         if self.stranger is not None and self.stranger_waits_s < 0.0:
             self.stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
             self.stranger.shutdown()

@@ -21,7 +21,7 @@ DAY: SoakSettings = load_soak()
 TABLE: FaultTable = load_faults(DAY.faults)
 ROBOT: RobotSettings = load_robot(TABLE.robot)
 TASK: TaskSettings = load_task(DAY.task)
-CYCLE_S = ROBOT.can.cycle_s
+CYCLE_S = ROBOT.cycle_s
 
 PATIENT = MoodSettings(
     share=1.0, lasts_s=(10.0, 20.0), phase=2, reaction_s=0.3, patience_s=0.3, error_rate=0.0, most_corrections=3

@@ -37,7 +37,7 @@ class Drive:
         self._level = PolicyLevel(
             TASK.policy.build(robot.infrared), load_repertoire(TASK.repertoire, robot), 10, self.wanted
         )
-        self._period_s = robot.can.cycle_s
+        self._period_s = robot.cycle_s
 
     def ticks(self, duration_s: float) -> Iterator[SensorReadings]:
         """Yield the sensor readings of each tick."""

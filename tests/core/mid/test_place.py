@@ -56,7 +56,7 @@ class Drive:
     def step(self) -> bool:
         """One tick; whether a junction was passed."""
         self._tick += 1
-        now_s = self._tick * ROBOT.can.cycle_s
+        now_s = self._tick * ROBOT.cycle_s
         readings = self.simulation.robot.sense(now_s)
         changed = self.place.perceive(readings, NOTHING)
         decision = self._leader.decide(NOWHERE, readings, None)

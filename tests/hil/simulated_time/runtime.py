@@ -45,7 +45,7 @@ class Hanging(PolicyLevel):
 async def drive(bus: str, seconds: float, hangs_at: int) -> None:
     settings, task = load_robot(), load_task("wall_following")
     policy = task.policy.build(settings.infrared)
-    period_s = settings.can.cycle_s
+    period_s = settings.cycle_s
     level = Hanging(
         policy,
         load_repertoire(task.repertoire, settings),

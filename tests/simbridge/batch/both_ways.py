@@ -67,7 +67,7 @@ def drive_in_batch(
     ids = [getattr(mind, "rla_ids", ()) for mind in minds]
     steps: list[list[Step]] = [[] for _ in exams]
     collisions = [0] * len(exams)
-    ticks = round(task.exam.duration_s / ROBOT.can.cycle_s)
+    ticks = round(task.exam.duration_s / ROBOT.cycle_s)
     for begin in range(0, ticks, stretch):
         active = [r for r in range(len(exams)) if not batch.reason_to_leave(r)]
         batch.drive(active, min(stretch, ticks - begin))

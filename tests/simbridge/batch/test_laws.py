@@ -79,7 +79,7 @@ def test_may_touch_is_false_only_where_the_body_is_free(world: str) -> None:
 )
 def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: float) -> None:
     limits = ROBOT.guard
-    law = GuardLaw(ROBOT.can.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
+    law = GuardLaw(ROBOT.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
     bus = open_bus(f"virtual:{uuid.uuid4()}")
     try:
         guard = Guard(ROBOT, bus)
@@ -133,6 +133,6 @@ def assert_obeys(targets: Targets, put_every: int | None) -> None:
             if put_every is not None and tick % put_every == 0:
                 wheels.halt()
             wheels.turn(told_m_s, -told_m_s)
-            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.can.cycle_s) == ""
+            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.cycle_s) == ""
             told_m_s = int(target_m_s * 100) / 100
             watch.set_command(WheelSpeeds(told_m_s, -told_m_s))

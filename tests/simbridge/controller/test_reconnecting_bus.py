@@ -53,7 +53,7 @@ def test_reconnecting_bus_robot_stands_while_it_is_gone(adapter: Adapter) -> Non
 
     def cycles(count: int) -> None:
         for _ in range(count):
-            adapter.now_s += ROBOT.can.cycle_s
+            adapter.now_s += ROBOT.cycle_s
             adapter.control.send(SLOWLY)
             robot.step()
             adapter.notebook.drain()

@@ -55,7 +55,7 @@ def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
         rig.step(control)
         speeds.append(rig.speed_m_s)
     changes = [after - before for before, after in itertools.pairwise(speeds)]
-    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.cycle_s
     assert max(changes) == pytest.approx(ROBOT.motors.acceleration_m_s2 * 0.01, abs=rounding)
     assert min(changes) == pytest.approx(-ROBOT.motors.braking_m_s2 * 0.01, abs=rounding)
 
