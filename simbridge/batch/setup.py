@@ -32,7 +32,7 @@ from simbridge.robot.body import Body
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors
 from simbridge.robot.ray_caster import faces_of
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LOOKS = (
@@ -54,7 +54,7 @@ _ThresholdsT = TypeVar(
 )
 
 
-def build_laws(robot: RobotSettings, one: SimulatedRobot, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
+def build_laws(robot: RobotSettings, one: SimulatedKurt2, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
     """Return the numbers that all robots of a batch share; `one` of them."""
     cycle_s = robot.can.cycle_s
     return Laws(
@@ -173,7 +173,7 @@ def _thresholds(policy: object, kind: type[_ThresholdsT]) -> _ThresholdsT:
 
 
 def build_robots(
-    robot: RobotSettings, simulated: Sequence[SimulatedRobot], minds: Sequence[Mind], knowledge_of: Sequence[int]
+    robot: RobotSettings, simulated: Sequence[SimulatedKurt2], minds: Sequence[Mind], knowledge_of: Sequence[int]
 ) -> tuple[Robots, World]:
     """Return the records of all robots, copied from the simulated ones, and their worlds.
 
@@ -232,7 +232,7 @@ def _copy_sensors(record: np.record, infrared: InfraredSensors) -> None:
     record["rays"][:, : rays.shape[1]] = rays
 
 
-def _world(simulated: Sequence[SimulatedRobot]) -> tuple[World, list[int]]:
+def _world(simulated: Sequence[SimulatedKurt2]) -> tuple[World, list[int]]:
     """Return the worlds of the robots, each world once, and the world of each robot."""
     worlds: dict[str, tuple[int, WorldSettings]] = {}
     of = []
