@@ -13,7 +13,7 @@ from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import WorldPlan
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.simulated_world import Kurt2World, plan_of
+from simbridge.simulated_world import RealtimeWorld, plan_of
 from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.survey.drawing import draw_robot, draw_world
 from simbridge.wire.line import NO_WIRE, require_wire
@@ -113,7 +113,7 @@ class Kurt2SimulationFactory:
 @contextmanager
 def simulated_robot(
     settings: Kurt2Settings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
-) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
+) -> Iterator[tuple[Kurt2Simulation, RealtimeWorld]]:
     """Yield a simulation that runs in real time, its watchdog running, and its world for a teacher.
 
     A stall of this program does not keep the robot stopped: its wheels stalled with it. `tap` sees the frames at the
@@ -126,7 +126,7 @@ def simulated_robot(
         with simulation.live() as realtime:
             yield (
                 simulation,
-                Kurt2World(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
+                RealtimeWorld(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
             )
             # While the simulation still runs, so that the last frame finds a listener.
             simulation.robot.emergency_stop(GuardReason.RUN_OVER)

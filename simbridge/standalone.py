@@ -10,7 +10,7 @@ from hal.codec import load_codec
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.controller.reconnecting_bus import ReconnectingBus
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LISTEN_S = 0.1
@@ -33,7 +33,7 @@ class StandaloneRobot:
         self._bus = bus
         self.bus = ReconnectingBus(bus)
         chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
-        self.robot = SimulatedRobot(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
+        self.robot = SimulatedKurt2(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
         starts = [each.pose for each in world.start_poses]
         self.robot.place(chance.choice(starts) if start is None else starts[start - 1])
         self.simulation = RealtimeSimulation(self.robot, settings.cycle_s)

@@ -89,7 +89,7 @@ def sim(options: _Options) -> None:
 def _simulate(options: _Options, settings: RobotSettings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
-    from simbridge.simulated_world import Kurt2World
+    from simbridge.simulated_world import RealtimeWorld
     from simbridge.standalone import StandaloneRobot
     from simbridge.worlds.world_loading import load_world
 
@@ -114,7 +114,7 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         stack.enter_context(short_switch_interval())
         stack.enter_context(standalone)
         simulation = standalone.simulation
-        world = Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation)
+        world = RealtimeWorld(standalone.robot, ground_plan, settings.geometry, simulation)
         console, keyboard = SimConsole(standalone, ground_plan, world), TypedLines(sys.stdin)
         news, line = News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if options.seconds is None else time.monotonic() + options.seconds

@@ -32,7 +32,8 @@ from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
 from simbridge.batch.tally import restart_window
 from simbridge.robot.bumpers import CollisionCounter
-from simbridge.simulated_robot import SimulatedRobot, hash_state
+from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import hash_state
 
 _REASONS = {
     STAYS: "",
@@ -65,7 +66,7 @@ class RobotBatch:
     def __init__(
         self,
         robot: Kurt2Settings,
-        simulated: Sequence[SimulatedRobot],
+        simulated: Sequence[SimulatedKurt2],
         minds: Sequence[Mind],
         settings: DriveSettings,
     ) -> None:

@@ -33,7 +33,7 @@ from simbridge.robot.body import Body
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors
 from simbridge.robot.ray_caster import faces_of
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LOOKS = (
@@ -55,7 +55,7 @@ _ThresholdsT = TypeVar(
 )
 
 
-def build_laws(robot: Kurt2Settings, one: SimulatedRobot, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
+def build_laws(robot: Kurt2Settings, one: SimulatedKurt2, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
     """Return the numbers that all robots of a batch share; `one` of them."""
     cycle_s = robot.cycle_s
     return Laws(
@@ -174,7 +174,7 @@ def _thresholds(policy: object, kind: type[_ThresholdsT]) -> _ThresholdsT:
 
 
 def build_robots(
-    robot: Kurt2Settings, simulated: Sequence[SimulatedRobot], minds: Sequence[Mind], knowledge_of: Sequence[int]
+    robot: Kurt2Settings, simulated: Sequence[SimulatedKurt2], minds: Sequence[Mind], knowledge_of: Sequence[int]
 ) -> tuple[Robots, World]:
     """Return the records of all robots, copied from the simulated ones, and their worlds.
 
@@ -233,7 +233,7 @@ def _copy_sensors(record: np.record, infrared: InfraredSensors) -> None:
     record["rays"][:, : rays.shape[1]] = rays
 
 
-def _world(simulated: Sequence[SimulatedRobot]) -> tuple[World, list[int]]:
+def _world(simulated: Sequence[SimulatedKurt2]) -> tuple[World, list[int]]:
     """Return the worlds of the robots, each world once, and the world of each robot."""
     worlds: dict[str, tuple[int, WorldSettings]] = {}
     of = []

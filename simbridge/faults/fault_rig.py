@@ -21,7 +21,7 @@ from simbridge.faults.frame_link import Deliver, FrameLink, IdealLink
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.timed_fault import Kind, TimedFault
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 
 _LENGTH_M, _WIDTH_M = 10.0, 4.0
@@ -64,7 +64,7 @@ class SimulatedFaultRig:
         self._notebooks_end: FaultyInterface | None = None
         self._robots_end: FaultyInterface | None = None
         self._robots_bus = CanBus(self._spec, self._open_robots_end)
-        self.simulation = SimulatedRobot(
+        self.simulation = SimulatedKurt2(
             settings, CORRIDOR_WORLD, self._robots_bus, chance.getrandbits(32), wheels=self._wheels()
         )
         self.robot = self._driver()

@@ -22,7 +22,7 @@ from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.switchable_interface import Links, NumberedFrame, SwitchableInterface
 from simbridge.faults.timed_fault import Kind, TimedFault
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
@@ -61,7 +61,7 @@ class LongRunRig:
         world_settings = load_world(world, settings)
         self._starts = [start.pose for start in world_settings.start_poses]
         self._wheels = FaultyWheels(settings)
-        self.simulation = SimulatedRobot(
+        self.simulation = SimulatedKurt2(
             settings,
             world_settings,
             self._robots_bus,

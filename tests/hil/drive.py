@@ -11,7 +11,7 @@ from hal.kurt2 import Kurt2
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import room
 
 FORWARD = WheelSpeeds(0.3, 0.3)
@@ -28,7 +28,7 @@ class Drive:
         self._cycle_s = settings.cycle_s
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
-        self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
+        self.simulated = SimulatedKurt2(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
         self.readings = SensorReadings(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
         self.grant = GuardResult(FORWARD, (), False)
 

@@ -26,7 +26,7 @@ from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.patient_shutdown import extend_deadlines
@@ -57,7 +57,7 @@ class Rig:
     far_end: CanBus
     ear: CanBus
     simulation: RealtimeSimulation
-    simulated: SimulatedRobot
+    simulated: SimulatedKurt2
     records: list[TickRecord] = field(default_factory=list)
     questions: list[Question | MidQuestion] = field(default_factory=list)
     statuses: list[ProgramStatus] = field(default_factory=list)
@@ -101,7 +101,7 @@ def settings_for(knowledge: Path) -> ServiceSettings:
 def rig(seed: int = 1) -> Iterator[Rig]:
     spec = f"virtual:{uuid.uuid4()}"
     far_end, robot_bus, ear = open_bus(spec), open_bus(spec), open_bus(spec)
-    simulated = SimulatedRobot(SETTINGS, load_world("a"), far_end, seed)
+    simulated = SimulatedKurt2(SETTINGS, load_world("a"), far_end, seed)
     robot = StallTolerantKurt2(SETTINGS, robot_bus)
     simulation = RealtimeSimulation(simulated)
     simulation.start()

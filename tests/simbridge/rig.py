@@ -15,7 +15,7 @@ from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.geometry import Point
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.worlds.world_loading import load_world
@@ -74,7 +74,7 @@ class Rig:
         name = f"virtual:simbridge-test-{next(_numbers)}"
         self.robot_end, self.notebook = open_bus(name), open_bus(name)
         self._control_port = self.notebook.control_port()
-        self.robot = SimulatedRobot(robot, world or room(), self.robot_end, seed, robot_seed=robot_seed)
+        self.robot = SimulatedKurt2(robot, world or room(), self.robot_end, seed, robot_seed=robot_seed)
         self.heard: dict[str, tuple[int, ...]] = {}
         self.frames = 0
         self.ticks = [0, 0]

@@ -15,7 +15,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Watch
 from kurt2rt.service.bus_names import SIMULATED
 from kurt2rt.service.open_robot import open_robot
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.core.test_tick import Corridor
@@ -33,7 +33,7 @@ class Scene:
         spec = f"virtual:{uuid.uuid4()}"
         self.far_end = open_bus(spec)
         self.now_s = 0.0
-        self.simulated = SimulatedRobot(ROBOT, load_world("a"), self.far_end, 1)
+        self.simulated = SimulatedKurt2(ROBOT, load_world("a"), self.far_end, 1)
         self.robot = driver(ROBOT, open_bus(spec), lambda: self.now_s)
 
     def tick(self, wanted: WheelSpeeds = TURN) -> GuardResult:

@@ -10,11 +10,11 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from hal.robot_settings import SpeedMode, load_robot
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import facing_wall, room
 
 _numbers = itertools.count()
-Pair = tuple[Kurt2, SimulatedRobot]
+Pair = tuple[Kurt2, SimulatedKurt2]
 
 
 @pytest.fixture(params=list(SpeedMode))
@@ -25,7 +25,7 @@ def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
     name = f"virtual:simbridge-driver-{next(_numbers)}"
     far_end = open_bus(name)
     kurt2 = Kurt2(settings, open_bus(name))
-    yield kurt2, SimulatedRobot(settings, room(), far_end, seed=3)
+    yield kurt2, SimulatedKurt2(settings, room(), far_end, seed=3)
     kurt2.close()
     far_end.shutdown()
 

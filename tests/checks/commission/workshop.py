@@ -21,7 +21,7 @@ from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels_off_ground_step import WORDS
 from kurt2rt.platform.clock import LockstepClock
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.obstacle_settings import RoundObstacleSettings
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.checks.commission.wired_end import WiredEnd, Wiring
@@ -54,7 +54,7 @@ class Workshop:
         self.robot_end = (
             open_bus(spec) if spec else CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
         )
-        self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
+        self.robot = SimulatedKurt2(true, _room(hand_radius_m), self.robot_end, seed)
         self.stranger: CanBus | None = None
         """Another node, which sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
         self.stranger_waits_s = 0.0

@@ -24,11 +24,11 @@ from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
 
-def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
+def _standing_in(world: str) -> tuple[SimulatedKurt2, Any, World]:
     """Return a simulated robot, its record in a batch, and the batch's worlds."""
     simulation = FACTORY.open(world, 1, "exam")
     simulation.close()
