@@ -12,8 +12,8 @@ from typing import NamedTuple
 from hal.bus import CONTROL_ID
 from hal.codec import InvalidFrameError
 from hal.frame import Frame
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2MotorSettings, SpeedMode
+from hal.robot import WheelSpeeds
 
 FULL_DRIVE = 1024
 """PWM period: drive = 1024 - PWM, for PWM on the wire is inverted (0 is full drive)."""

@@ -22,7 +22,7 @@ REOPEN_PERIOD_S = 1.0
 
 
 class Arrivals:
-    """What one call of `sense` received."""
+    """Counters of the messages that one call of `sense` reads."""
 
     __slots__ = ("bus_off", "encoder_frames", "foreign_control", "infrared_changed", "left_ticks", "right_ticks")
 
@@ -54,8 +54,8 @@ class NoCanController:
 class GuardedRobot(ABC):
     """Driver (hal.robot.Robot) that owns the guard of its wheels, the watchdog, and the watches that stop the robot.
 
-    A kind of robot adds how its readings arrive. It stores them in `_counts`, the times of arrival in `_times_s` (one
-    for each message that carries some) and so on; all times are of the runtime's clock, minus infinity before the first.
+    A kind of robot adds how its readings arrive. It stores them in `_counts`, and their times in `_times_s`, one for
+    each message that carries some. Times are of the runtime's clock, minus infinity before the first.
     """
 
     foreign_alarm = "another node sends CONTROL; find and end it"
@@ -115,8 +115,7 @@ class GuardedRobot(ABC):
 
         A message is as old as its time stamp says; where the link has no clock it arrived at `now_s`. One with junk in
         it, or from the future, changes nothing, not even its age: a sensor that stays broken becomes stale, and the
-        guard stands. A lost link raises nothing; the readings age. Faults that must stop the robot at once do so in this
-        call.
+        guard stands. A lost link raises nothing; the readings age. Faults that must stop the robot at once do so here.
         """
         paused = now_s - self._readings.time_s > self._pause_s
         if now_s < self._readings.time_s:

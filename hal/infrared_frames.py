@@ -9,7 +9,6 @@ from hal.guarded_robot import Arrivals
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS
 
-
 _BOARDS = {"ADC": "first controller (ADC*)", "BDC": "second controller (BDC*)"}
 
 

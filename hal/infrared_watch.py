@@ -49,5 +49,6 @@ class InfraredWatch:
             board.still_s += elapsed_s
         for board in self._boards.values():
             if board.still_s >= self._frozen_s:
-                return f"the distance sensors of the {board.name} repeated themselves for {self._frozen_s:g} s; switch the robot off and on"
+                sensors = f"the distance sensors of the {board.name}"
+                return f"{sensors} repeated themselves for {self._frozen_s:g} s; switch the robot off and on"
         return ""

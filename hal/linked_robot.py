@@ -118,7 +118,7 @@ class LinkedRobot(GuardedRobot):
         return True
 
     def _check_wheels(self, arrivals: Arrivals) -> str:
-        """Compare speeds where reports came; the bands go on with each tick, because set points may change in between."""
+        """Compare speeds where reports came. The bands go on with each tick: set points may change between reports."""
         self._wheel_watch.advance(self._cycle_s)
         if self._turned_s <= 0.0:
             return ""

@@ -1,4 +1,4 @@
-"""Kind of robot: the schema of its settings, its driver and its simulation, which a plug-in of `kurt2rt.robots` offers."""
+"""Kind of robot: schema of its settings, driver and simulation, which a plug-in of `kurt2rt.robots` offers."""
 
 from pathlib import Path
 from typing import Protocol, cast
@@ -31,10 +31,22 @@ class RobotKind(Protocol):
         ...
 
     def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        """Return what opens simulations of such a robot. Raises SettingsError for a wire that its link does not have."""
+        """Return what opens simulations of such a robot. Raises SettingsError for a wire that its link cannot have."""
         ...
 
 
 def kind_of(settings: RobotSettings) -> RobotKind:
     """Return the kind of a robot. Raises hal.settings.SettingsError if its plug-in is not installed."""
     return cast("RobotKind", find_robot_kind(settings.kind))
+
+
+NO_WIRE = "none"
+"""Name of ideal transport: messages arrive at once, none is lost."""
+
+
+def simulations_of(settings: RobotSettings, wire: str = NO_WIRE) -> SimulationFactory:
+    """Return what opens simulations of a robot, over a wire that its link knows. Raises SettingsError.
+
+    Raises ModuleNotFoundError where the simulator, which is an extra, is not installed.
+    """
+    return kind_of(settings).simulations(settings, wire)

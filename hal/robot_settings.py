@@ -1,7 +1,7 @@
 """Settings of a robot: geometry, limits, and the law and places of its range sensors."""
 
-from enum import StrEnum
 from collections.abc import Mapping
+from enum import StrEnum
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator

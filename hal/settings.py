@@ -217,8 +217,8 @@ def find_robot_kind(name: str) -> RobotParts:
 def find_config(kind: str, name_or_path: str) -> Path:
     """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
-    `<robot>/<name>` is a file of a robot's plug-in, and so is the name of its robot alone. A task may also be a plug-in.
-    Raises SettingsError that lists the names when there is no such file.
+    `<robot>/<name>` is a file of a robot's plug-in; its own settings go by `<robot>` alone. A task may also be a
+    plug-in. Raises SettingsError that lists the names when there is no such file.
     """
     kept = _KEPT.get()
     if kept is not None:

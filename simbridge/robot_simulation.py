@@ -41,7 +41,7 @@ class RobotSimulation:
         """Place the robot at a start pose by `chance`; the simulation closes driver and link."""
         self.simulated_robot = simulated
         self.robot = driver
-        self._settings = settings
+        self.settings = settings
         self._link = link
         self._cycle_s = settings.cycle_s
         self._starts = [start.pose for start in simulated.world.settings.start_poses]
@@ -70,7 +70,7 @@ class RobotSimulation:
 
     @cached_property
     def _free(self) -> FreePoses:
-        return FreePoses(self.simulated_robot.world, self._settings)
+        return FreePoses(self.simulated_robot.world, self.settings)
 
     @property
     def collisions(self) -> int:

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
-from hal.kurt2_settings import Kurt2Settings
+from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from simbridge.controller.controller import Controller
 from simbridge.robot.body import Body
@@ -33,7 +33,7 @@ def infrared_sensors(robot: RobotSettings, world: World, noise: Noise, build: No
 
     `noise` selects phases and readings, `build` gains and periods.
     """
-    return InfraredSensors(robot.infrared, world, robot.can.cycle_s, noise, build)
+    return InfraredSensors(robot.infrared, world, robot.cycle_s, noise, build)
 
 
 class _Put(NamedTuple):
@@ -47,7 +47,7 @@ class SimulatedRobot:
 
     def __init__(
         self,
-        robot: Kurt2Settings,
+        robot: RobotSettings,
         world: WorldSettings,
         make_controller: MakeController,
         seed: int,

@@ -1,20 +1,20 @@
 """The simulated half of the composition root: robot, world and bus, put together for experiments and for a run."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
-from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import WorldPlan
+from hal.simulation import LiveSimulation, WorldPlan
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.simulated_world import RealtimeWorld, plan_of
-from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
+from simbridge.live_simulation import run_live
+from simbridge.simulated_world import plan_of
+from simbridge.stall_tolerant import StallTolerantKurt2
 from simbridge.survey.drawing import draw_robot, draw_world
 from simbridge.wire.line import NO_WIRE, require_wire
 from simbridge.worlds.world_loading import load_world
@@ -102,33 +102,21 @@ class Kurt2SimulationFactory:
         """
         draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
 
+    def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
+        """Return a context in which a robot runs in real time (hal.simulation.SimulationFactory).
+
+        `tap`: sees the frames at the notebook's end of its bus. Raises SettingsError for an unknown world or wire.
+        """
+        loaded = load_world(world, self.settings)
+        simulation = Kurt2Simulation(
+            self.settings, world, seed, "run", self.wire, StallTolerantKurt2, loaded=loaded, bus=self.bus
+        )
+        simulation.attach_tap(tap)
+        return run_live(simulation, simulation.robot, loaded)
+
     def settings_of(self, world: str) -> str:
         """Return all settings of a world, and the wire, as a text.
 
         Raises hal.settings.SettingsError for an unknown world.
         """
         return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
-
-
-@contextmanager
-def simulated_robot(
-    settings: Kurt2Settings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
-) -> Iterator[tuple[Kurt2Simulation, RealtimeWorld]]:
-    """Yield a simulation that runs in real time, its watchdog running, and its world for a teacher.
-
-    A stall of this program does not keep the robot stopped: its wheels stalled with it. `tap` sees the frames at the
-    notebook's end of its bus. Raises SettingsError for an unknown world or wire, and on leaving the error that ended
-    the simulation.
-    """
-    simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
-    simulation.attach_tap(tap)
-    try:
-        with simulation.live() as realtime:
-            yield (
-                simulation,
-                RealtimeWorld(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
-            )
-            # While the simulation still runs, so that the last frame finds a listener.
-            simulation.robot.emergency_stop(GuardReason.RUN_OVER)
-    finally:
-        simulation.close()

@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 
 from hal.bus import open_bus
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
@@ -82,11 +82,11 @@ def sim(options: _Options) -> None:
         raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
     if options.bus.startswith("virtual:"):
         raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
-    settings = load_robot(options.robot)
+    settings = load_kurt2(options.robot)
     _simulate(options, settings)
 
 
-def _simulate(options: _Options, settings: RobotSettings) -> None:
+def _simulate(options: _Options, settings: Kurt2Settings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
     from simbridge.simulated_world import RealtimeWorld

@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -67,7 +67,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         Raises:
             hal.settings.SettingsError: for a task, world or option that cannot be used.
         """
-        self._settings = load_robot()
+        self._settings = load_kurt2()
         self._task = load_agent_task(task)
         self._factory = Kurt2SimulationFactory(self._settings)
         self._world = world or self._task.teaching.world

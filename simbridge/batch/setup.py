@@ -17,8 +17,8 @@ from behaviors.policies.distances import (
     RIGHT_FRONT_TO_BACK,
 )
 from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
-from hal.robot import HIGHEST_COUNTS
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import BumperEnd
 from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of

@@ -12,8 +12,8 @@ from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
 from hal.batch import AskedMind, CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
-from hal.robot import HIGHEST_COUNTS
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot import HIGHEST_COUNTS
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.matching import LANES
 from simbridge.batch.minds import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING

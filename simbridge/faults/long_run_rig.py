@@ -11,8 +11,8 @@ from hal.can_interface import CanInterface
 from hal.codec import load_codec
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot import WheelSpeeds
 from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S

@@ -12,7 +12,7 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command
@@ -27,11 +27,11 @@ from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
+from simbridge.stall_tolerant import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.patient_shutdown import extend_deadlines
 
-SETTINGS = load_robot()
+SETTINGS = load_kurt2()
 LONGEST_S = 60.0
 """Ends a test whose event never comes; none waits for it."""
 

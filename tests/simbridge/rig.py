@@ -10,7 +10,7 @@ import pytest
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
@@ -22,7 +22,7 @@ from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 
 CODEC: Codec = load_codec()
-ROBOT: RobotSettings = load_robot()
+ROBOT: Kurt2Settings = load_kurt2()
 STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
 BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
@@ -68,7 +68,7 @@ class Rig:
         self,
         world: WorldSettings | None = None,
         seed: int = 1,
-        robot: RobotSettings = ROBOT,
+        robot: Kurt2Settings = ROBOT,
         robot_seed: int | None = None,
     ) -> None:
         name = f"virtual:simbridge-test-{next(_numbers)}"
@@ -156,7 +156,7 @@ def facing_wall(distance_m: float, side_m: float = 4.0) -> Pose:
     return Pose(side_m - distance_m - ROBOT.geometry.outline_length_m / 2, side_m / 2, 0.0)
 
 
-def quiet_robot(**infrared: float) -> RobotSettings:
+def quiet_robot(**infrared: float) -> Kurt2Settings:
     """Return the shipped robot without sensor noise and spread; `infrared` changes other settings."""
     update = {"noise_share": 0.0, "noise_least_counts": 0.0, "gain_spread_share": 0.0, **infrared}
     return ROBOT.model_copy(update={"infrared": ROBOT.infrared.model_copy(update=update)})

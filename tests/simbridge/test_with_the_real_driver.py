@@ -8,8 +8,8 @@ import pytest
 from hal.bus import open_bus
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import SpeedMode, load_kurt2
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
-from hal.robot_settings import SpeedMode, load_robot
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import facing_wall, room
 
@@ -20,7 +20,7 @@ Pair = tuple[Kurt2, SimulatedKurt2]
 @pytest.fixture(params=list(SpeedMode))
 def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
     """Return driver and simulated robot on one bus, in each speed mode."""
-    settings = load_robot()
+    settings = load_kurt2()
     settings = settings.model_copy(update={"can": settings.can.model_copy(update={"speed_mode": request.param})})
     name = f"virtual:simbridge-driver-{next(_numbers)}"
     far_end = open_bus(name)

@@ -5,8 +5,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot import WheelSpeeds
 
 
 class EncoderFrame(NamedTuple):

@@ -1,7 +1,7 @@
 """Common parts of the steps that turn the wheels."""
 
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError, StepFault
 from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.findings import Findings

@@ -10,8 +10,8 @@ import numpy as np
 import yaml
 from pydantic import ValidationError
 
-from hal.kurt2_settings import Kurt2Settings, SpeedMode
-from hal.robot_settings import BumperSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
+from hal.robot_settings import BumperSettings
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress
@@ -81,7 +81,7 @@ def write_robot_file(
     """
     text = robot_file(base, progress, steps)
     write_durably(path, text)
-    return load_robot(str(path))
+    return load_kurt2(str(path))
 
 
 def _require_own_channels(base: Kurt2Settings, findings: Findings) -> None:

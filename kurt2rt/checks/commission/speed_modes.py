@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkippedError, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (

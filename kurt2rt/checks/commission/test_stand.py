@@ -10,8 +10,8 @@ from anyio.lowlevel import checkpoint
 
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
-from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone

@@ -1,7 +1,7 @@
 """Step that checks side and direction of motors and encoders."""
 
-from hal.robot import WheelSpeeds
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (

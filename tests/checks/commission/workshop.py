@@ -11,7 +11,7 @@ from hal.bus import CanBus, open_bus
 from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings, SensorSettings, load_robot
+from hal.kurt2_settings import Kurt2SensorSettings, Kurt2Settings, load_kurt2
 from kurt2rt.checks.commission.checklist import STEPS, Checklist, step_named
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.listener import Listener
@@ -26,7 +26,7 @@ from simbridge.worlds.obstacle_settings import RoundObstacleSettings
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.checks.commission.wired_end import WiredEnd, Wiring
 
-BASE = load_robot()
+BASE = load_kurt2()
 CODEC = load_codec()
 TODAY = "2026-11-21 15:00"
 _SIDE_M = 6.0
@@ -42,7 +42,7 @@ class Workshop:
 
     def __init__(
         self,
-        true: RobotSettings = BASE,
+        true: Kurt2Settings = BASE,
         wiring: Wiring | None = None,
         seed: int = 1,
         hand_radius_m: float = 0.05,
@@ -96,10 +96,10 @@ class Workshop:
         middle = {"x_m": (single_side.x_m + other.x_m) / 2, "y_m": (single_side.y_m + other.y_m) / 2}
         self._hold(single_side.model_copy(update=middle), distance_m)
 
-    def _place(self, sensor: str) -> SensorSettings:
+    def _place(self, sensor: str) -> Kurt2SensorSettings:
         return next(each for each in BASE.infrared.sensors if each.name == sensor)
 
-    def _hold(self, place: SensorSettings, distance_m: float) -> None:
+    def _hold(self, place: Kurt2SensorSettings, distance_m: float) -> None:
         pose = self.robot.pose
         heading_rad = pose.heading_rad + math.radians(place.heading_deg)
         cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
@@ -223,7 +223,7 @@ class Session:
         return self.progress.steps[step].measured
 
 
-def with_channels(**channels: str) -> RobotSettings:
+def with_channels(**channels: str) -> Kurt2Settings:
     """Return BASE with some sensors on other channels."""
     sensors = tuple(
         each.model_copy(update={"channel": channels.get(each.name, each.channel)}) for each in BASE.infrared.sensors

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import anyio
 
 from behaviors.metrics.task_metric import TaskMetric
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.simulation import Pose
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
@@ -17,7 +17,7 @@ from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.simulation import Kurt2SimulationFactory
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 FACTORY = Kurt2SimulationFactory(ROBOT)
 
 

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from hal.batch import PolicyMind, TabledPolicy
 from hal.bus import open_bus
-from hal.guard import Guard
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
 from hal.simulation import Pose
@@ -25,6 +24,7 @@ from simbridge.batch.sight import cast, gather, has_moved, may_touch
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_kurt2 import SimulatedKurt2
+from tests.hal.helpers import guard_on
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
 
@@ -82,7 +82,7 @@ def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: fl
     law = GuardLaw(ROBOT.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
     bus = open_bus(f"virtual:{uuid.uuid4()}")
     try:
-        guard = Guard(ROBOT, bus)
+        guard = guard_on(ROBOT, bus)
         assert slewed(from_m_s, to_m_s, elapsed_s, law) == guard._slewed(from_m_s, to_m_s, elapsed_s)
     finally:
         bus.shutdown()

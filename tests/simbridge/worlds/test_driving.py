@@ -6,14 +6,14 @@ import math
 import pytest
 
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, half_turn, post, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
 
 
-def robot_with_track(track_m: float) -> RobotSettings:
+def robot_with_track(track_m: float) -> Kurt2Settings:
     return ROBOT.model_copy(update={"geometry": ROBOT.geometry.model_copy(update={"effective_track_m": track_m})})
 
 
