@@ -76,7 +76,7 @@ def test_sector_fleeing_turns_away(
     infrared: InfraredSettings, unit_m: float, distances: dict[str, float], action: str
 ) -> None:
     numbers: dict[str, Any] = {"front_m": 8 * unit_m, "edge_m": 5 * unit_m, "wary_m": 10 * unit_m}
-    sectors = {"front": sector(AHEAD), "left": sector(LEFT), "right": sector(RIGHT)}
+    sectors: dict[str, Any] = {"front": sector(AHEAD), "left": sector(LEFT), "right": sector(RIGHT)}
     policy = SectorFleeingSettings(kind="sector_fleeing", **sectors, **numbers).build(infrared)
     assert policy.choose(seen(infrared, **{each: d * unit_m for each, d in distances.items()}), "") == action
 

@@ -1,7 +1,5 @@
 """Simulated school robots: on a line in memory in simulated time, and on a pseudo-terminal in real time."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Self
 
@@ -23,7 +21,6 @@ class MemoryRig:
 
     def __init__(self, driver_settings: RobotSettings = SETTINGS) -> None:
         self.line = MemoryLine(driver_settings)
-        self.electronics: SchoolElectronics | None = None
         self.simulated = SimulatedRobot(
             SETTINGS, load_world("school/a", SETTINGS), lambda *_: SchoolElectronics(SETTINGS, self.line._robot_port), 1
         )
@@ -63,9 +60,3 @@ class PtyRobot:
         """Switch the robot off, and close its end."""
         self.thread.stop()
         self.port.close()
-
-
-@contextmanager
-def pty_robot(device: Path) -> Iterator[PtyRobot]:
-    with PtyRobot(device) as robot:
-        yield robot
