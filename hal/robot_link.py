@@ -57,8 +57,11 @@ class RobotLink(Protocol):
     """Name in messages, such as `serial port /dev/ttyACM0`."""
     remedy: str
     """Advice for messages that are not carried, such as `check the cable`."""
-    junk: int
-    """Messages so far that could not be read."""
+
+    @property
+    def junk(self) -> int:
+        """Messages so far that could not be read."""
+        ...
 
     @property
     def unconfirmed(self) -> int:

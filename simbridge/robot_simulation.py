@@ -4,27 +4,16 @@ import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
-from typing import Protocol
 
-from hal.robot import Robot
+from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Position, WorldPlan
-from hal.watchdog import Watchdog
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_link import SimulatedLink
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.simulated_world import plan_of
 from simbridge.survey.clearance import Clearance
 from simbridge.survey.free_poses import FreePoses
-
-
-class WatchedRobot(Robot, Protocol):
-    """Driver with a watchdog (hal.watchdog)."""
-
-    @property
-    def watchdog(self) -> Watchdog:
-        """Watchdog, which the real-time loop starts."""
-        ...
 
 
 class RobotSimulation:
@@ -34,7 +23,7 @@ class RobotSimulation:
         self,
         settings: RobotSettings,
         simulated: SimulatedRobot,
-        driver: WatchedRobot,
+        driver: GuardedRobot,
         link: SimulatedLink,
         chance: random.Random,
     ) -> None:

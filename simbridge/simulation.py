@@ -3,29 +3,24 @@
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import LiveSimulation, WorldPlan
+from hal.simulation import LiveSimulation
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.live_simulation import run_live
-from simbridge.simulated_world import plan_of
+from simbridge.robot_worlds import RobotWorlds
 from simbridge.stall_tolerant import StallTolerantKurt2
-from simbridge.survey.drawing import draw_robot, draw_world
-from simbridge.wire.line import NO_WIRE, require_wire
+from simbridge.wire.line import NO_WIRE
 from simbridge.worlds.world_loading import load_world
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True)
-class Kurt2SimulationFactory:
-    """Opens simulated simulations (hal.simulation.SimulationFactory); can be sent to another process."""
+class Kurt2SimulationFactory(RobotWorlds):
+    """Opens simulations of KURT2 (hal.simulation.SimulationFactory); can be sent to another process."""
 
     settings: Kurt2Settings
     wire: str = NO_WIRE
@@ -81,27 +76,6 @@ class Kurt2SimulationFactory:
             raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
         return LessonSimulation(self.settings, world, seed, purpose, settings)
 
-    def require_worlds(self, *worlds: str) -> None:
-        """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
-        require_wire(self.wire)
-        for world in worlds:
-            load_world(world, self.settings)
-
-    def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
-        return plan_of(load_world(world, self.settings))
-
-    def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
-        draw_world(axes, load_world(world, self.settings))
-
-    def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at the first start pose of a world, on axes in m.
-
-        Raises hal.settings.SettingsError for an unknown world.
-        """
-        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
-
     def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
         """Return a context in which a robot runs in real time (hal.simulation.SimulationFactory).
 
@@ -113,10 +87,3 @@ class Kurt2SimulationFactory:
         )
         simulation.attach_tap(tap)
         return run_live(simulation, simulation.robot, loaded)
-
-    def settings_of(self, world: str) -> str:
-        """Return all settings of a world, and the wire, as a text.
-
-        Raises hal.settings.SettingsError for an unknown world.
-        """
-        return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
