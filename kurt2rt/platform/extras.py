@@ -16,6 +16,7 @@ EXTRAS = {
     "river": "rivals",
     "scipy": "studies",
     "shapely": "simulation",
+    "serial": "serial",
     "sklearn": "rivals",
     "starlette": "page",
     "uvicorn": "page",
