@@ -12,6 +12,7 @@ EXTRAS = {
     "networkx": "simulation",
     "optuna": "search",
     "PIL": "simulation",
+    "pyarrow": "export",
     "pymunk": "simulation",
     "river": "rivals",
     "scipy": "studies",
