@@ -21,6 +21,7 @@ ROOMS: dict[str, frozenset[str]] = {
         "simbridge.batch": "* behaviors simbridge",
         "kurt2rt": "hal.errors",
         "kurt2rt.platform": "",
+        "kurt2rt.ros": "hal",
         "kurt2rt.core": "hal behaviors kurt2rt.platform",
         "kurt2rt.knowledge": "hal behaviors kurt2rt.platform kurt2rt.core",
         "kurt2rt.runtime": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge",

@@ -14,12 +14,14 @@ EXTRAS = {
     "PIL": "simulation",
     "pymunk": "simulation",
     "river": "rivals",
+    "rosbags": "ros",
     "scipy": "studies",
     "shapely": "simulation",
     "sklearn": "rivals",
     "starlette": "page",
     "uvicorn": "page",
     "websockets": "page",
+    "zenoh": "ros",
     "zstandard": "recording",
 }
 """Packages that a robot can do without, by their importable names, and the extra that brings each."""
