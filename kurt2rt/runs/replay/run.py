@@ -160,7 +160,7 @@ class Run:
         if first is None or first.number == 1:
             self._require(KNOWLEDGE)
             return
-        minutes = (first.number - 1) * self.robot.can.cycle_s / 60
+        minutes = (first.number - 1) * self.robot.cycle_s / 60
         raise RecordingError(
             f"is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make room "
             "for later ones, and with them what was known at the start, so it can neither be replayed nor "
@@ -204,7 +204,7 @@ class Run:
             self._gap = f"{self._gap}; {told}" if self._gap else told
 
     def _beginning_gone(self, ticks: int) -> str:
-        minutes = ticks * self.robot.can.cycle_s / 60
+        minutes = ticks * self.robot.cycle_s / 60
         return (
             f"the first {ticks} ticks of the run ({minutes:.1f} min) are gone, which made room for later ones; times "
             "are those from the first tick that is there"
