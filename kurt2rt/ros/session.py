@@ -68,7 +68,7 @@ class ZenohSession:
         return ZenohPublisher(publisher, AttachmentSource() if self._announces else None)
 
     def subscribe(self, topic: Topic, on_payload: OnPayload) -> None:
-        """Call `on_payload` with each message of a topic from now on.
+        """Call `on_payload` with each message of a topic that another session sends from now on.
 
         Raises RosConnectionError if the session is closed.
         """
@@ -77,9 +77,12 @@ class ZenohSession:
             on_payload(sample.payload.to_bytes())
 
         try:
-            self._declared.append(self._session.declare_subscriber(key_expression(topic, self._settings), on_sample))
+            subscriber = self._session.declare_subscriber(
+                key_expression(topic, self._settings), on_sample, allowed_origin=zenoh.Locality.REMOTE
+            )
         except zenoh.ZError as error:
             raise self._failed(error) from error
+        self._declared.append(subscriber)
         self._announce(topic, "MS")
 
     def serve(self, service: Topic, on_request: "Callable[[TriggerRequest], None]") -> None:
