@@ -12,8 +12,8 @@ from typing import NamedTuple
 from hal.bus import CONTROL_ID
 from hal.codec import InvalidFrameError
 from hal.frame import Frame
+from hal.kurt2_settings import Kurt2MotorSettings, SpeedMode
 from hal.robot import WheelSpeeds
-from hal.robot_settings import MotorSettings, SpeedMode
 
 FULL_DRIVE = 1024
 """PWM period: drive = 1024 - PWM, for PWM on the wire is inverted (0 is full drive)."""
@@ -58,7 +58,7 @@ class RawControl(NamedTuple):
     right: RawSide
     mode: Mode = Mode.RAW
 
-    def wheel_speeds(self, motors: MotorSettings) -> WheelSpeeds:
+    def wheel_speeds(self, motors: Kurt2MotorSettings) -> WheelSpeeds:
         """Return the no-load speeds in m/s by the robot's curve; 0 with the brake on."""
         return WheelSpeeds(_raw_speed_m_s(self.left, motors), _raw_speed_m_s(self.right, motors))
 
@@ -72,7 +72,7 @@ class SpeedControl(NamedTuple):
     yaw_rate_rad_s: float = 0.0
     keep: bool = True
 
-    def wheel_speeds(self, motors: MotorSettings) -> WheelSpeeds:
+    def wheel_speeds(self, motors: Kurt2MotorSettings) -> WheelSpeeds:
         """Return the set points in m/s."""
         if self.mode == Mode.SPEED_CM:
             return WheelSpeeds(self.left / 100.0, self.right / 100.0)
@@ -91,7 +91,7 @@ Control = RawControl | SpeedControl | SystemControl
 _BRAKE_BOTH = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
 
-def set_point(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings) -> RawControl | SpeedControl:
+def set_point(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: Kurt2MotorSettings) -> RawControl | SpeedControl:
     """Return the set point of finite wheel speeds, truncated toward zero and limited to full percent or drive."""
     left_m_s, right_m_s = wheel_speeds
     if mode is SpeedMode.SPEED_CM:
@@ -111,7 +111,7 @@ def control_frame(control: Control) -> Frame:
         raise ValueError(f"CONTROL cannot carry {control}: {error}") from error
 
 
-def encode_control(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: MotorSettings) -> Frame:
+def encode_control(mode: SpeedMode, wheel_speeds: WheelSpeeds, motors: Kurt2MotorSettings) -> Frame:
     """Return the CONTROL frame of finite wheel speeds; yaw 0 and keep 1 always (docs/the-robot.md#yaw-and-keep).
 
     Raises ValueError for a speed in SPEED_CM that does not fit its field.
@@ -175,7 +175,7 @@ def _raw_side_of(flags: int, pwm: int) -> RawSide:
     return RawSide(drive, bool(flags & _BACKWARD), bool(flags & _BRAKE))
 
 
-def _raw_side(speed_m_s: float, motors: MotorSettings) -> RawSide:
+def _raw_side(speed_m_s: float, motors: Kurt2MotorSettings) -> RawSide:
     """Invert the no-load curve: return the least drive that gives the speed, interpolated, at most the curve's end."""
     speeds, drives = motors.raw_speed_m_s, motors.raw_drive
     wanted_m_s = min(abs(speed_m_s), speeds[-1])
@@ -187,7 +187,7 @@ def _raw_side(speed_m_s: float, motors: MotorSettings) -> RawSide:
     return RawSide(_truncated(drives[lower] + share * (drives[upper] - drives[lower])), speed_m_s < 0.0)
 
 
-def _raw_speed_m_s(side: RawSide, motors: MotorSettings) -> float:
+def _raw_speed_m_s(side: RawSide, motors: Kurt2MotorSettings) -> float:
     speeds, drives = motors.raw_speed_m_s, motors.raw_drive
     if side.brake or side.drive <= drives[0]:
         speed_m_s = 0.0 if side.brake else speeds[0]

@@ -1,29 +1,18 @@
-"""Guard: the only sender of CONTROL. It applies what is safe of each request, from any source."""
+"""Guard: the only sender of set points. It applies what is safe of each request, from any source."""
 
 import math
 from threading import RLock
-from typing import NamedTuple
 
-from hal.bus import BusError, CanBus
-from hal.control import control_frame, encode_brake, set_point
-from hal.frame import Frame
+from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import BumperEnd, RobotSettings
+from hal.wheel_port import WheelPort
 
 _UNCONFIRMED = 2
-"""Own CONTROL frames not yet carried by the bus. A set point behind two of them reaches the motors after 20 ms or more.
+"""Own messages not yet carried by the link. A set point behind two of them reaches the motors after 20 ms or more.
 A brake is never too old."""
 _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set point
-
-
-class _CachedCommand(NamedTuple):
-    """Set points in m/s, their CONTROL frame, and the speeds in it; cached because most ticks repeat it."""
-
-    left_m_s: float
-    right_m_s: float
-    frame: Frame
-    applied: WheelSpeeds
 
 
 class Guard:
@@ -32,13 +21,10 @@ class Guard:
     Every rule demands proof that driving is safe, so a NaN in any input stops the robot.
     """
 
-    def __init__(self, robot: RobotSettings, bus: CanBus) -> None:
-        """Take the bus's CONTROL port. Raises hal.bus.BusError if another guard has it."""
+    def __init__(self, robot: RobotSettings, port: WheelPort) -> None:
+        """Send through `port`, which belongs to this guard alone from now on."""
         limits = robot.guard
-        self._port = bus.control_port()
-        self._bus_name = bus.name
-        self._speed_mode = robot.can.speed_mode
-        self._motors = robot.motors
+        self._port = port
         self._maximum_speed_m_s = limits.maximum_speed_m_s
         self._acceleration_m_s2 = limits.acceleration_m_s2
         self._braking_m_s2 = limits.braking_m_s2
@@ -47,15 +33,16 @@ class Guard:
         self._stale_encoder_s = limits.stale_encoder_s
         # A robot without bumpers need not report them.
         self._stale_bumper_s = limits.stale_bumper_s if robot.bumpers else math.inf
-        self._cycle_s = robot.can.cycle_s
+        self._cycle_s = robot.cycle_s
         self._front_bits = _bumper_bits(robot, BumperEnd.FRONT)
         self._rear_bits = _bumper_bits(robot, BumperEnd.REAR)
-        self._brake = encode_brake()
         # Reentrant, because a signal handler may stop the robot during the same thread's drive().
         self._lock = RLock()
         self._latched: GuardReason | None = None
         self._left_m_s = self._right_m_s = 0.0
-        self._last_command = self._build_command(0.0, 0.0)
+        # Most ticks repeat the last command.
+        self._last_wanted = STANDSTILL
+        self._last_command = port.command(STANDSTILL)
         self._driven_at_s = -math.inf
         self._send_failures = 0
         self._bus_trouble = ""
@@ -67,7 +54,7 @@ class Guard:
 
     @property
     def send_failures(self) -> int:
-        """CONTROL frames that the bus did not take."""
+        """Messages that the link did not take."""
         return self._send_failures
 
     @property
@@ -76,17 +63,15 @@ class Guard:
         return self._bus_trouble
 
     def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
+        """Send one message with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
-        Returns the applied speeds, which are those in the frame, truncated to its resolution, and the reasons for other
-        differences. No set point is queued after frames that the bus has not carried yet; a brake is. A bus that fails
-        raises nothing: the guard brakes and stays stopped.
+        Returns the applied speeds, which are those in the message, truncated to its resolution, and the reasons for
+        other differences. No set point is queued after messages that the link has not carried yet; a brake is. A link
+        that fails raises nothing: the guard brakes and stays stopped.
         """
         with self._lock:
             if self._latched is None and self._port.unconfirmed >= _UNCONFIRMED:
-                self._bus_trouble = (
-                    f"bus {self._bus_name}: frames are not carried; switch the robot on, check cable and bit rate"
-                )
+                self._bus_trouble = f"{self._port.name}: frames are not carried; {self._port.remedy}"
                 self._latch(GuardReason.BUS_BLOCKED)
             if self._latched is not None:
                 return self._stay_stopped(self._latched)
@@ -99,15 +84,16 @@ class Guard:
                 self._left_m_s = self._right_m_s = 0.0
             if math.isfinite(now_s):
                 self._driven_at_s = now_s
+            if self._last_wanted.left_m_s != self._left_m_s or self._last_wanted.right_m_s != self._right_m_s:
+                self._last_wanted = WheelSpeeds(self._left_m_s, self._right_m_s)
+                self._last_command = self._port.command(self._last_wanted)
             command = self._last_command
-            if command.left_m_s != self._left_m_s or command.right_m_s != self._right_m_s:
-                command = self._last_command = self._build_command(self._left_m_s, self._right_m_s)
             try:
-                self._port.send(command.frame)
+                self._port.send(command.message)
             except BusError as error:
                 self._note(error)
                 self._latch(GuardReason.BUS_LOST)
-            if self._latched is not None:  # by the bus, or by a signal handler while this frame was made
+            if self._latched is not None:  # by the bus, or by a signal handler while this message was sent
                 return self._stay_stopped(self._latched)
             return GuardResult(command.applied, reasons, latched=False)
 
@@ -186,10 +172,6 @@ class Guard:
             return min(to_m_s, from_m_s + step_m_s)
         return max(to_m_s, from_m_s - step_m_s)
 
-    def _build_command(self, left_m_s: float, right_m_s: float) -> _CachedCommand:
-        point = set_point(self._speed_mode, WheelSpeeds(left_m_s, right_m_s), self._motors)
-        return _CachedCommand(left_m_s, right_m_s, control_frame(point), point.wheel_speeds(self._motors))
-
     def _latch(self, reason: GuardReason) -> None:
         if self._latched is None:
             self._latched = reason
@@ -202,7 +184,7 @@ class Guard:
 
     def _send_brake(self) -> None:
         try:
-            self._port.send(self._brake)
+            self._port.send(self._port.brake)
         except BusError as error:
             self._note(error)
 

@@ -1,35 +1,31 @@
-"""CAN frames that carry distance sensors, and the counters of one batch of frames."""
+"""CAN frames of KURT2 that carry distance sensors."""
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 from hal.codec import Codec, InvalidFrameError, MessageCodec
+from hal.guarded_robot import Arrivals
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS
 
-
-class FrameBatch:
-    """Counters of the frames that one call of `sense` reads."""
-
-    __slots__ = ("bus_off", "encoder_frames", "foreign_control", "infrared_changed", "left_ticks", "right_ticks")
-
-    def __init__(self) -> None:
-        self.left_ticks = self.right_ticks = self.encoder_frames = self.foreign_control = 0
-        self.infrared_changed = self.bus_off = False
+_BOARDS = {"ADC": "first controller (ADC*)", "BDC": "second controller (BDC*)"}
 
 
-class InfraredCounts:
+def board_of(channel: str) -> str:
+    """Return the name of the board of an analog channel, such as ADC00 (docs/the-robot.md#messages)."""
+    return _BOARDS[channel[:3]]
+
+
+class InfraredCounts(NamedTuple):
     """Newest count of each distance sensor, and arrival time of each frame that carries some."""
 
-    __slots__ = ("counts", "times_s")
-
-    def __init__(self, sensors: int) -> None:
-        self.counts = [0] * sensors
-        self.times_s: list[float] = []
-        """One per frame; minus infinity before its first."""
+    counts: list[int]
+    times_s: list[float]
+    """One per frame, in s; minus infinity before its first."""
 
 
-FrameReader = Callable[[bytes | bytearray, float, FrameBatch], None]
+FrameReader = Callable[[bytes | bytearray, float, Arrivals], None]
 """Store the values of one frame that arrived at that time, in s. Raises InvalidFrameError, changing nothing."""
 
 
@@ -49,8 +45,8 @@ class InfraredFrame:
         self.board = board
         self.last_payload: bytes | bytearray = b""
 
-    def read(self, data: bytes | bytearray, at_s: float, batch: FrameBatch) -> None:
-        """Store the counts and the time `at_s`, in s, of a frame's distance channels; note changes in `batch`.
+    def read(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
+        """Store the counts and the time `at_s`, in s, of a frame's distance channels; note changes in `arrivals`.
 
         Raises InvalidFrameError, changing nothing, for a payload that is too short or a count above the range.
         """
@@ -67,7 +63,7 @@ class InfraredFrame:
                     changed = True
             if changed:
                 self.board.still_s = 0.0
-                batch.infrared_changed = True
+                arrivals.infrared_changed = True
             self.last_payload = data
         self.times_s[self.row] = at_s
 
@@ -87,5 +83,5 @@ def infrared_frames(
     for message in codec.by_id.values():
         places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)
         if places:
-            frames.append(InfraredFrame(message, places, watch.board_of(channels[places[0][1]]), newest))
+            frames.append(InfraredFrame(message, places, watch.board(board_of(channels[places[0][1]])), newest))
     return tuple(frames)

@@ -1,44 +1,40 @@
 """Detection of frozen infra-red readings: a board that hangs may repeat them bit for bit in fresh frames."""
 
 import math
-
-_NAMES = {"ADC": "first", "BDC": "second"}
+from collections.abc import Iterable
 
 
 class Board:
-    """Distance channels of one controller, by the first letters of their names (docs/the-robot.md#messages)."""
+    """Electronics that reads some of the distance sensors."""
 
-    __slots__ = ("letters", "still_s")
+    __slots__ = ("name", "still_s")
 
-    def __init__(self, letters: str) -> None:
-        self.letters = letters
+    def __init__(self, name: str) -> None:
+        self.name = name
         self.still_s = 0.0
-        """Time in s that the robot has driven since a distance channel changed."""
-
-    def __str__(self) -> str:
-        return f"distance sensors of the {_NAMES[self.letters]} controller ({self.letters}*)"
+        """Time in s that the robot has driven since one of its readings changed."""
 
 
 class InfraredWatch:
-    """Detector of a board whose distance channels all stay the same for `frozen_infrared_s` while the robot drives.
+    """Detector of a board whose readings all stay the same for `frozen_infrared_s` while the robot drives.
 
     Each real sensor measures about 26 times a second and flickers, also with nothing in view: eight of them do not
     repeat themselves for a second (docs/the-robot.md#noise-and-timing). A robot that stands may have a board that
     hangs. Only a changed reading shows that the board works: neither a stop nor a resume clears the time.
     """
 
-    def __init__(self, channels: tuple[str, ...], frozen_infrared_s: float) -> None:
-        """Watch `channels`, such as ADC00, that have a distance sensor."""
+    def __init__(self, boards: Iterable[str], frozen_infrared_s: float) -> None:
+        """Watch the boards of these names, each of which reads a distance sensor."""
         self._frozen_s = frozen_infrared_s
         self._looked_at_s = math.inf
-        self._boards = {letters: Board(letters) for letters in sorted({channel[:3] for channel in channels})}
+        self._boards = {name: Board(name) for name in sorted(set(boards))}
 
-    def board_of(self, channel: str) -> Board:
-        """Return the board of a channel, such as ADC00. Raises KeyError for a board without sensors.
+    def board(self, name: str) -> Board:
+        """Return the board of a name. Raises KeyError for one that is not watched.
 
-        The reader of the channel sets `still_s` of the board to 0 after a change.
+        The reader of its sensors sets `still_s` of the board to 0 after a change.
         """
-        return self._boards[channel[:3]]
+        return self._boards[name]
 
     def check_frozen(self, now_s: float, *, driving: bool) -> str:
         """Return one line about a frozen board; empty while all boards work. Call it in each tick.
@@ -53,5 +49,6 @@ class InfraredWatch:
             board.still_s += elapsed_s
         for board in self._boards.values():
             if board.still_s >= self._frozen_s:
-                return f"the {board} repeated themselves for {self._frozen_s:g} s; switch the robot off and on"
+                sensors = f"the distance sensors of the {board.name}"
+                return f"{sensors} repeated themselves for {self._frozen_s:g} s; switch the robot off and on"
         return ""

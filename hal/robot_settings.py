@@ -1,14 +1,15 @@
-"""Schema of `config/robots/*.yaml`: the channel table, geometry, limits and the infra-red law of one robot."""
+"""Settings of a robot: geometry, limits, and the law and places of its range sensors."""
 
-import re
+import json
+from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
 from hal.infrared_law import InfraredLawNumbers, counts_at
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, SettingsError, content_of, find_config, find_robot_kind, settings_of
 
 Metres = Annotated[float, Field(gt=0, le=5)]
 MetresPerSecond = Annotated[float, Field(gt=0, le=3)]
@@ -16,23 +17,6 @@ MetresPerSecondSquared = Annotated[float, Field(gt=0, le=20)]
 Seconds = Annotated[float, Field(gt=0, le=10)]
 Counts = Annotated[int, Field(ge=0, le=1023)]
 Coordinate = Annotated[float, Field(ge=-1, le=1)]
-
-
-class SpeedMode(StrEnum):
-    """Mode in which CONTROL carries set points; the numbers are the firmware's."""
-
-    RAW = "RAW"
-    SPEED = "SPEED"
-    SPEED_CM = "SPEED_CM"
-
-
-class CanSettings(Settings):
-    """Bus of the robot's controller."""
-
-    database: str
-    bit_rate_bit_s: Annotated[int, Field(gt=0, le=1_000_000)]
-    cycle_s: Seconds
-    speed_mode: SpeedMode
 
 
 class GeometrySettings(Settings):
@@ -48,26 +32,14 @@ class GeometrySettings(Settings):
 
 
 class MotorSettings(Settings):
-    """Motors with the speed loop of the micro-controller."""
+    """Motors with their speed loop."""
 
     maximum_speed_m_s: MetresPerSecond
-    full_speed_m_s: MetresPerSecond
     acceleration_m_s2: MetresPerSecondSquared
     braking_m_s2: MetresPerSecondSquared
     speed_loop_time_s: Seconds
     controller_watchdog_s: Seconds
-    raw_drive: Annotated[tuple[Annotated[int, Field(ge=0, le=1024)], ...], Field(min_length=2)]
-    raw_speed_m_s: Annotated[tuple[Annotated[float, Field(ge=0, le=3)], ...], Field(min_length=2)]
-
-    @model_validator(mode="after")
-    def _curve_is_a_curve(self) -> Self:
-        if len(self.raw_drive) != len(self.raw_speed_m_s):
-            raise ValueError("raw_drive and raw_speed_m_s must be of the same length")
-        if list(self.raw_drive) != sorted(set(self.raw_drive)) or list(self.raw_speed_m_s) != sorted(
-            self.raw_speed_m_s
-        ):
-            raise ValueError("raw_drive must rise and raw_speed_m_s must not fall")
-        return self
+    """Time without a command after which the robot itself brakes."""
 
 
 class GuardSettings(Settings):
@@ -87,35 +59,21 @@ class GuardSettings(Settings):
     frozen_infrared_s: Annotated[float, Field(gt=0, le=3600)]
 
 
-DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
-"""Names of the analog channels that may carry a distance sensor."""
-
-_CURRENT_CHANNELS = ("ADC12", "ADC13")
-"""Analog channels of the motor currents (docs/the-robot.md, frame 0x08)."""
-
-
 class SensorSettings(Settings):
-    """One infra-red distance sensor: where it sits and the analog channel that carries it."""
+    """One distance sensor, or one sector of a scanner: its name and where it sits."""
 
     name: str
     label: str
-    channel: str
     x_m: Coordinate
     y_m: Coordinate
     heading_deg: Annotated[float, Field(ge=-180, le=180)]
 
-    @field_validator("channel")
-    @classmethod
-    def _carries_distances(cls, channel: str) -> str:
-        if channel in _CURRENT_CHANNELS:
-            raise ValueError(f"channel {channel} carries a motor current; use another one")
-        if not DISTANCE_CHANNEL.fullmatch(channel):
-            raise ValueError("channel must be ADC00 to ADC11, ADC14 or BDC00 to BDC15")
-        return channel
-
 
 class InfraredSettings(Settings):
-    """Law of the sensors (GP2D12 class) and their table."""
+    """Range sensors: law from distance to counts, and their table.
+
+    A reading is a whole number of counts from 0 to 1023, the higher the nearer.
+    """
 
     numerator_counts_m: Annotated[float, Field(gt=0)]
     offset_m: Metres
@@ -137,14 +95,17 @@ class InfraredSettings(Settings):
 
     @model_validator(mode="after")
     def _table_is_consistent(self) -> Self:
-        for what in ("name", "channel"):
-            values = [getattr(sensor, what) for sensor in self.sensors]
-            twice = sorted({value for value in values if values.count(value) > 1})
-            if twice:
-                raise ValueError(f"two sensors share the {what} {', '.join(twice)}")
+        self.require_different("name")
         if not self.fold_back_to_m < self.fold_back_from_m <= self.near_m < self.far_m:
             raise ValueError("must hold: fold_back_to_m < fold_back_from_m <= near_m < far_m")
         return self
+
+    def require_different(self, what: str) -> None:
+        """Check that no two sensors share a value, such as the name. Raises ValueError."""
+        values = [getattr(sensor, what) for sensor in self.sensors]
+        twice = sorted({value for value in values if values.count(value) > 1})
+        if twice:
+            raise ValueError(f"two sensors share the {what} {', '.join(twice)}")
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -193,15 +154,23 @@ class BumperSettings(Settings):
 
 
 class RobotSettings(Settings):
-    """All settings of one robot."""
+    """Settings that every robot has; a kind of robot may add its own (hal.robot_kind)."""
 
+    kind: str
+    """Name of the kind of robot."""
     name: str
-    can: CanSettings
+    cycle_s: Seconds
+    """Period of the runtime's tick; a simulated robot advances by it."""
     geometry: GeometrySettings
     motors: MotorSettings
     guard: GuardSettings
     infrared: InfraredSettings
     bumpers: Annotated[tuple[BumperSettings, ...], Field(max_length=8)]
+
+    @classmethod
+    def read_earlier(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the content of a file, which may be of an earlier version, by the present schema."""
+        return content
 
     @model_validator(mode="after")
     def _guard_within_motors(self) -> Self:
@@ -213,6 +182,41 @@ class RobotSettings(Settings):
         return self
 
 
+DEFAULT_KIND = "kurt2"
+"""Kind of a settings file that names none: files of before there were kinds."""
+
+
 def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
-    """Load the settings of a shipped robot by name, or of a file by path. Raises hal.settings.SettingsError."""
-    return load_settings(Path(find_config("robots", name_or_path)), RobotSettings)
+    """Load the settings of a robot: shipped or of a plug-in by name, or a file by path.
+
+    The file's `kind` names the plug-in that knows its schema. Raises hal.settings.SettingsError.
+    """
+    path = find_config("robots", name_or_path)
+    return robot_of_content(content_of(path), path)
+
+
+def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:
+    """Return the settings of a robot from JSON, as recordings and packages keep it.
+
+    Raises hal.settings.SettingsError that names `where`, also for a kind that is not installed.
+    """
+    try:
+        content = json.loads(text)
+    except ValueError as error:
+        raise SettingsError(f"not valid JSON: {error}", where=where) from error
+    return robot_of_content(content, where)
+
+
+def robot_of_content(content: Any, where: Path | str) -> RobotSettings:
+    """Return the settings of a robot from the content of its file, in the types of JSON.
+
+    Raises hal.settings.SettingsError that names `where` and the key, also for a kind that is not installed.
+    """
+    kind = content.get("kind", DEFAULT_KIND) if isinstance(content, dict) else DEFAULT_KIND
+    if not isinstance(kind, str):
+        raise SettingsError(f"kind: Input should be a valid string (found {kind!r})", where=where)
+    try:
+        schema: type[RobotSettings] = find_robot_kind(kind).settings
+    except SettingsError as error:
+        raise SettingsError(f"kind: {error.what} (found {kind!r})", where=where, do=error.do) from error
+    return settings_of(schema.read_earlier(content) if isinstance(content, dict) else content, schema, where)

@@ -51,8 +51,8 @@ class SensorWatch:
         self._odometry = WheelOdometry(robot.geometry)
         self._left_ticks = self._right_ticks = 0
         # No wheel turns farther between two looks: another node forged such encoder frames.
-        self._farthest_m = 2 * robot.motors.maximum_speed_m_s * LOOK_TICKS * robot.can.cycle_s
-        stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s)
+        self._farthest_m = 2 * robot.motors.maximum_speed_m_s * LOOK_TICKS * robot.cycle_s
+        stuck_ticks = round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s)
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
         self._states = [

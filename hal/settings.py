@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from difflib import get_close_matches
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
-from typing import Any, Final, TypeVar, get_args
+from typing import Any, Final, Protocol, TypeVar, cast, get_args
 
 import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
@@ -176,10 +176,49 @@ WORLDS = PluginKind(
 )
 
 
+class RobotParts(Protocol):
+    """Settings of a kind of robot (hal.robot_kind.RobotKind has the rest)."""
+
+    @property
+    def settings(self) -> type[Any]:
+        """Schema of the settings of such a robot, a subclass of hal.robot_settings.RobotSettings."""
+        ...
+
+    @property
+    def folder(self) -> Path:
+        """Folder of its YAML files, with the folders of `config`: robots, situations, tasks, ...."""
+        ...
+
+
+_ROBOT_PARTS = ("settings", "folder", "open", "simulations")
+ROBOTS = PluginKind(
+    "robots",
+    "robot",
+    f"an object with {', '.join(_ROBOT_PARTS[:-1])} and {_ROBOT_PARTS[-1]} (hal.robot_kind.RobotKind)",
+    lambda found: all(hasattr(found, part) for part in _ROBOT_PARTS),
+    tuple,
+)
+"""Kinds of robots. All are plug-ins, also those of the project."""
+
+
+@cache
+def _robot_kind(name: str) -> RobotParts:
+    return cast("RobotParts", ROBOTS.find(name))
+
+
+def find_robot_kind(name: str) -> RobotParts:
+    """Return a kind of robot by its name, or by `module:Name`. Raises SettingsError."""
+    try:
+        return _robot_kind(name)
+    except PluginError as error:
+        raise SettingsError(error.what, where=error.where, do=error.do) from error
+
+
 def find_config(kind: str, name_or_path: str) -> Path:
     """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
-    A task may also be a plug-in. Raises SettingsError that lists the names when there is no such file.
+    `<robot>/<name>` is a file of a robot's plug-in; its own settings go by `<robot>` alone. A task may also be a
+    plug-in. Raises SettingsError that lists the names when there is no such file.
     """
     kept = _KEPT.get()
     if kept is not None:
@@ -193,7 +232,12 @@ def find_config(kind: str, name_or_path: str) -> Path:
     shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
     if shipped.is_file():
         return shipped
+    of_robot = _file_of_robot(kind, name_or_path)
+    if of_robot is not None:
+        return of_robot
     names, plugins = shipped_names(kind), ""
+    if kind == ROBOTS.group:
+        names += (each.name for each in ROBOTS.installed() if each.name not in names)
     if kind == TASKS.group:
         try:
             return plugin_file(str(TASKS.find(name_or_path)), name_or_path)
@@ -208,6 +252,23 @@ def find_config(kind: str, name_or_path: str) -> Path:
         where=name_or_path,
         do=f"give {plugins}a path to a .yaml file or one of: {', '.join(names)}{meant}",
     )
+
+
+def _file_of_robot(kind: str, name: str) -> Path | None:
+    """Return the file that the plug-in of a robot has for `<robot>/<name>`; None for a name of another form.
+
+    A robot's own settings go by the name of its kind alone, too. Raises SettingsError if the plug-in has no such file.
+    """
+    robot, _, rest = name.partition("/")
+    if not rest and kind == ROBOTS.group:
+        rest = robot
+    if not rest.isidentifier() or robot not in {each.name for each in ROBOTS.installed()}:
+        return None
+    folder = find_robot_kind(robot).folder / kind
+    if not (folder / f"{rest}.yaml").is_file():
+        names = ", ".join(f"{robot}/{path.stem}" for path in sorted(folder.glob("*.yaml"))) or "none"
+        raise SettingsError(f"the robot {robot} has no such file in {kind}", where=name, do=f"it has: {names}")
+    return folder / f"{rest}.yaml"
 
 
 def plugin_file(path: str, name: str) -> Path:
@@ -269,7 +330,7 @@ def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str
     return _validated(told, schema, path, changes or {})
 
 
-def settings_of(content: Mapping[str, Any], schema: type[SettingsT], where: str) -> SettingsT:
+def settings_of(content: Mapping[str, Any], schema: type[SettingsT], where: Path | str) -> SettingsT:
     """Return settings of a content in the types of JSON. Raises SettingsError that names `where` and the key."""
     try:
         told = json.dumps(content)

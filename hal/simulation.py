@@ -10,7 +10,9 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from hal.guarded_robot import GuardedRobot
 from hal.robot import Robot
+from hal.tap import Tap
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -180,6 +182,15 @@ class SimulationFactory(Protocol):
         """Check that each world can be used. Raises hal.settings.SettingsError."""
         ...
 
+    def live(self, world: str, seed: int, tap: Tap | None = None) -> "AbstractContextManager[LiveSimulation]":
+        """Return a context in which a simulation runs in real time, with the watchdog of its driver.
+
+        A stall of this program does not keep the robot stopped: its wheels stalled with it. Leaving stops the robot,
+        and raises the error that ended the simulation. `tap` sees the CAN frames; a robot without CAN refuses one.
+        Raises hal.settings.SettingsError for an unknown world.
+        """
+        ...
+
     def settings_of(self, world: str) -> str:
         """Return all settings of a world as a text, which tells its versions apart.
 
@@ -235,3 +246,42 @@ class SimulatedWorld(WorldView, Protocol):
     def put_robot_back(self) -> None:
         """Put the robot where the run began. Raises WorldRefusedError if it does not fit there now."""
         ...
+
+
+class HeldThread(Protocol):
+    """Thread that steps a simulation in real time, unless it is held and its owner steps."""
+
+    def hold(self) -> None:
+        """Stop the thread from stepping, until `go_on`."""
+        ...
+
+    def step(self) -> None:
+        """Step one cycle while the thread is held, in the caller's thread."""
+        ...
+
+    def go_on(self) -> None:
+        """Let the thread step again, after `hold`."""
+        ...
+
+
+class RunningWorld(SimulatedWorld, Protocol):
+    """The world of a simulation that runs in real time, and its thread."""
+
+    @property
+    def held_world(self) -> HeldThread:
+        """Thread that steps the simulation."""
+        ...
+
+    @property
+    def lives(self) -> bool:
+        """Return whether the simulation runs; False after an error has ended it."""
+        ...
+
+
+class LiveSimulation(NamedTuple):
+    """Simulation that runs in real time."""
+
+    simulation: Simulation
+    robot: GuardedRobot
+    """Driver of the simulated robot."""
+    world: RunningWorld

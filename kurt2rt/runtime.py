@@ -167,7 +167,7 @@ class _Assembly:
     ) -> None:
         """Load the settings that the task names and build the levels with the knowledge of `events`."""
         self._settings, self._task, self._events, self._options = settings, task, events, options
-        self._period_s = settings.can.cycle_s
+        self._period_s = settings.cycle_s
         self.definition = load_situation(task.situation, settings.infrared.names)
         self.critic = load_critic(task.critic)
         mid_settings = None if task.mid is None else load_mid_level(task.mid)
@@ -315,7 +315,7 @@ def build_runtime(
         statistics=mind.statistics,
         expectations=mind.expectations,
         timer=parts.timer,
-        progress=ProgressMeter(settings.can.cycle_s),
+        progress=ProgressMeter(settings.cycle_s),
         tick=tick,
-        scheduler=Scheduler(clock, tick.run, settings.can.cycle_s, parts.timer),
+        scheduler=Scheduler(clock, tick.run, settings.cycle_s, parts.timer),
     )

@@ -2,7 +2,7 @@
 
 from hal.areas import Borders
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from simbridge.batch.lesson import CompiledLesson
 from simbridge.kurt2_simulation import Kurt2Simulation
@@ -12,7 +12,7 @@ class LessonSimulation(Kurt2Simulation):
     """Simulation whose robot drives in compiled stretches; bus and world stay behind, and its pose follows."""
 
     def __init__(
-        self, settings: RobotSettings, world: str, seed: int, purpose: str, lesson: LessonDriveSettings
+        self, settings: Kurt2Settings, world: str, seed: int, purpose: str, lesson: LessonDriveSettings
     ) -> None:
         """Open the simulation of `seed` and `purpose`. Raises BatchRefusedError for what the batch does not know."""
         super().__init__(settings, world, seed, purpose)

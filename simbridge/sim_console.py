@@ -9,7 +9,7 @@ from typing import TextIO
 
 from hal.simulation import Pose
 from hal.world_refusal import WorldRefusedError
-from simbridge.simulated_world import Kurt2World
+from simbridge.simulated_world import RealtimeWorld
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_settings import WorldSettings
 
@@ -24,7 +24,7 @@ help                  this"""
 class SimConsole:
     """Executor of typed commands."""
 
-    def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: Kurt2World) -> None:
+    def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: RealtimeWorld) -> None:
         self._standalone = standalone
         self._starts = [each.pose for each in world.start_poses]
         self._ground = ground

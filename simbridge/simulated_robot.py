@@ -1,27 +1,39 @@
-"""Simulated KURT2: body, sensors and micro-controller at one end of a CAN bus."""
+"""Simulated robot of any kind: body, wheels, sensors, bumpers, and its electronics at one end of a link."""
 
 import hashlib
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
-from simbridge.controller.controller_bus import ControllerBus
-from simbridge.controller.microcontroller import MicroController
+from simbridge.controller.controller import Controller
 from simbridge.robot.body import Body
 from simbridge.robot.bumpers import Bumpers, CollisionCounter
 from simbridge.robot.infrared import InfraredSensors
-from simbridge.robot.instruments import Instruments
 from simbridge.robot.noise import Noise
+from simbridge.robot.range_sensors import RangeSensors
 from simbridge.robot.wheels import Wheels
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
 from simbridge.worlds.world_settings import WorldSettings
 
 _LAPS_EVERY_CYCLES = 10
+
+MakeController = Callable[[Body, Wheels], Controller]
+"""Make the controller of a robot with this body and these wheels."""
+MakeSensors = Callable[[RobotSettings, World, Noise, Noise], RangeSensors]
+"""Make the range sensors of a robot in a world; the first noise selects the run, the second one the robot."""
+
+
+def infrared_sensors(robot: RobotSettings, world: World, noise: Noise, build: Noise) -> InfraredSensors:
+    """Return the infra-red sensors of a robot's table.
+
+    `noise` selects phases and readings, `build` gains and periods.
+    """
+    return InfraredSensors(robot.infrared, world, robot.cycle_s, noise, build)
 
 
 class _Put(NamedTuple):
@@ -31,24 +43,25 @@ class _Put(NamedTuple):
 
 
 class SimulatedRobot:
-    """Robot whose time advances only by `step`; equal seeds and frames give equal runs."""
+    """Robot whose time advances only by `step`; equal seeds and commands give equal runs."""
 
     def __init__(
         self,
         robot: RobotSettings,
         world: WorldSettings,
-        bus: ControllerBus,
+        make_controller: MakeController,
         seed: int,
         *,
         robot_seed: int | None = None,
         wheels: Wheels | None = None,
+        make_sensors: MakeSensors = infrared_sensors,
     ) -> None:
-        """Place the robot at the world's first start pose; the caller shuts `bus` down.
+        """Place the robot at the world's first start pose; the caller closes the controller's link.
 
         Args: `seed` selects the run: noise, phases, slip. `robot_seed` (default: `seed`) selects the robot: gains and
         periods of its sensors, so that an exam can use the robot that was taught. `wheels` replaces the sound ones.
         """
-        cycle_s = robot.can.cycle_s
+        cycle_s = robot.cycle_s
         self.world = World(world)
         self._cycle_s = cycle_s
         self._cycles = 0
@@ -57,7 +70,7 @@ class SimulatedRobot:
         self.wheels = wheels or Wheels(robot)
         self.body = Body(self.world, robot.geometry, cycle_s, self.slip_noise)
         build = Noise(seed if robot_seed is None else robot_seed, "robot")
-        self.infrared = InfraredSensors(robot.infrared, self.world, cycle_s, self.infrared_noise, build)
+        self.infrared = make_sensors(robot, self.world, self.infrared_noise, build)
         self.bumpers = Bumpers(robot.bumpers, robot.geometry)
         self._collisions = CollisionCounter(cycle_s)
         self._placed: Pose = world.start_poses[0].pose
@@ -69,11 +82,11 @@ class SimulatedRobot:
         self._pressed = 0
         self.lifted = False
         """Whether the robot stands on a block: its wheels turn in the air and the body rests."""
-        self.controller = MicroController(robot, bus, Instruments(robot, self.body, self.wheels))
+        self.controller = make_controller(self.body, self.wheels)
         self.place(world.start_poses[0].pose)
 
     def step(self) -> None:
-        """Simulate 10 ms: CONTROL in, motors, physics, sensors, telemetry out. Raises hal.bus.BusError."""
+        """Simulate one cycle: set points in, motors, physics, sensors, reports out. Raises hal.bus.BusError."""
         self._cycles += 1
         controller, wheels, body = self.controller, self.wheels, self.body
         controller.receive()

@@ -27,7 +27,7 @@ def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
     )
 
 
-class Kurt2World:
+class RealtimeWorld:
     """World of a running simulation; changes are made by the simulation's thread."""
 
     def __init__(

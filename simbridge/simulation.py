@@ -1,33 +1,28 @@
 """The simulated half of the composition root: robot, world and bus, put together for experiments and for a run."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
-from hal.guard_reason import GuardReason
-from hal.robot_settings import RobotSettings
-from hal.simulation import WorldPlan
+from hal.kurt2_settings import Kurt2Settings
+from hal.simulation import LiveSimulation
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.simulated_world import Kurt2World, plan_of
-from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
-from simbridge.survey.drawing import draw_robot, draw_world
-from simbridge.wire.line import NO_WIRE, require_wire
+from simbridge.live_simulation import run_live
+from simbridge.robot_worlds import RobotWorlds
+from simbridge.stall_tolerant import StallTolerantKurt2
+from simbridge.wire.line import NO_WIRE
 from simbridge.worlds.world_loading import load_world
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, slots=True)
-class Kurt2SimulationFactory:
-    """Opens simulated simulations (hal.simulation.SimulationFactory); can be sent to another process."""
+class Kurt2SimulationFactory(RobotWorlds):
+    """Opens simulations of KURT2 (hal.simulation.SimulationFactory); can be sent to another process."""
 
-    settings: RobotSettings
+    settings: Kurt2Settings
     wire: str = NO_WIRE
     bus: str | None = None
     """Bus that carries the frames of a robot without a wire, for one simulation at a time; None: one of its own."""
@@ -81,54 +76,14 @@ class Kurt2SimulationFactory:
             raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
         return LessonSimulation(self.settings, world, seed, purpose, settings)
 
-    def require_worlds(self, *worlds: str) -> None:
-        """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
-        require_wire(self.wire)
-        for world in worlds:
-            load_world(world, self.settings)
+    def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
+        """Return a context in which a robot runs in real time (hal.simulation.SimulationFactory).
 
-    def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
-        return plan_of(load_world(world, self.settings))
-
-    def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
-        draw_world(axes, load_world(world, self.settings))
-
-    def draw_robot(self, axes: "Axes", world: str) -> None:
-        """Draw the robot at the first start pose of a world, on axes in m.
-
-        Raises hal.settings.SettingsError for an unknown world.
+        `tap`: sees the frames at the notebook's end of its bus. Raises SettingsError for an unknown world or wire.
         """
-        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
-
-    def settings_of(self, world: str) -> str:
-        """Return all settings of a world, and the wire, as a text.
-
-        Raises hal.settings.SettingsError for an unknown world.
-        """
-        return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
-
-
-@contextmanager
-def simulated_robot(
-    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
-) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
-    """Yield a simulation that runs in real time, its watchdog running, and its world for a teacher.
-
-    A stall of this program does not keep the robot stopped: its wheels stalled with it. `tap` sees the frames at the
-    notebook's end of its bus. Raises SettingsError for an unknown world or wire, and on leaving the error that ended
-    the simulation.
-    """
-    simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
-    simulation.attach_tap(tap)
-    try:
-        with simulation.live() as realtime:
-            yield (
-                simulation,
-                Kurt2World(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
-            )
-            # While the simulation still runs, so that the last frame finds a listener.
-            simulation.robot.emergency_stop(GuardReason.RUN_OVER)
-    finally:
-        simulation.close()
+        loaded = load_world(world, self.settings)
+        simulation = Kurt2Simulation(
+            self.settings, world, seed, "run", self.wire, StallTolerantKurt2, loaded=loaded, bus=self.bus
+        )
+        simulation.attach_tap(tap)
+        return run_live(simulation, simulation.robot, loaded)

@@ -7,10 +7,10 @@ from typing import Self
 
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.codec import load_codec
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from simbridge.controller.reconnecting_bus import ReconnectingBus
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LISTEN_S = 0.1
@@ -21,7 +21,7 @@ class StandaloneRobot:
     """Running robot and the bus it owns; it survives the loss of the bus."""
 
     def __init__(
-        self, settings: RobotSettings, world: WorldSettings, bus: CanBus, seed: int, *, start: int | None = None
+        self, settings: Kurt2Settings, world: WorldSettings, bus: CanBus, seed: int, *, start: int | None = None
     ) -> None:
         """Place a robot in a world.
 
@@ -33,10 +33,10 @@ class StandaloneRobot:
         self._bus = bus
         self.bus = ReconnectingBus(bus)
         chance = random.Random(f"on a bus in world {world.name}, seed {seed}")
-        self.robot = SimulatedRobot(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
+        self.robot = SimulatedKurt2(settings, world, self.bus, chance.getrandbits(32), robot_seed=seed)
         starts = [each.pose for each in world.start_poses]
         self.robot.place(chance.choice(starts) if start is None else starts[start - 1])
-        self.simulation = RealtimeSimulation(self.robot, settings.can.cycle_s)
+        self.simulation = RealtimeSimulation(self.robot, settings.cycle_s)
 
     def __enter__(self) -> Self:
         self.simulation.start()
@@ -51,7 +51,7 @@ class StandaloneRobot:
             self._bus.shutdown()
 
 
-def require_free_bus(settings: RobotSettings, bus: CanBus) -> None:
+def require_free_bus(settings: Kurt2Settings, bus: CanBus) -> None:
     """Listen for 0.1 s. If a robot sends on the bus, shut this end down and raise BusError.
 
     Two robots would both execute CONTROL, and their telemetry would mix.

@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 
 import anyio
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.curriculum import run_exams, run_lesson
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
@@ -21,7 +21,7 @@ _TASKS = ("wall_following", "streets")
 
 async def compile_batch() -> None:
     """Give a lesson of two seconds and examine it, in each of the tasks."""
-    robot = load_robot()
+    robot = load_kurt2()
     factory = Kurt2SimulationFactory(robot)
     for name in _TASKS:
         task = taught_by_named(load_task(name, changes=_SHORT), "ordinary")

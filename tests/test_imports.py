@@ -21,6 +21,8 @@ ROOMS: dict[str, frozenset[str]] = {
         "simbridge.batch": "* behaviors simbridge",
         "kurt2rt": "hal.errors",
         "kurt2rt.platform": "",
+        "kurt2rt.ros": "hal",
+        "kurt2rt.robots": "config hal behaviors simbridge kurt2rt.platform kurt2rt.ros",
         "kurt2rt.core": "hal behaviors kurt2rt.platform",
         "kurt2rt.knowledge": "hal behaviors kurt2rt.platform kurt2rt.core",
         "kurt2rt.runtime": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge",
@@ -31,7 +33,6 @@ ROOMS: dict[str, frozenset[str]] = {
         " kurt2rt.channel.protocol kurt2rt.channel.security",
         "kurt2rt.service": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
         " kurt2rt.channel",
-        "kurt2rt.service.open_robot": "* kurt2rt.service simbridge",
         "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.teacher.scripted",
         "kurt2rt.gym": "hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"

@@ -16,7 +16,7 @@ from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
-from hal.robot_settings import RobotSettings, SpeedMode, load_robot
+from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.settings import Settings, SettingsError, content_of, find_config, load_settings
 from hal.settings_by_kind import find_kind
 from kurt2rt.checks.faults.table import FaultTable
@@ -32,7 +32,7 @@ from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 
 SCHEMAS: dict[str, type[Settings]] = {
-    "robots": RobotSettings,
+    "robots": Kurt2Settings,
     "tasks": TaskSettings,
     "teachers": TeacherProfile,
     "situations": SituationDefinition,
@@ -71,7 +71,7 @@ def test_every_shipped_file_loads(kind: str) -> None:
 
 
 def test_shipped_files_are_found_by_name_and_fit_together() -> None:
-    robot = load_robot("kurt2")
+    robot = load_kurt2("kurt2")
     task = load_task("wall_following")
     assert robot.can.speed_mode is SpeedMode.SPEED_CM
     assert load_situation(task.situation, robot.infrared.names).dimensions == 72
@@ -82,7 +82,7 @@ def test_shipped_files_are_found_by_name_and_fit_together() -> None:
 def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     mine.write_text(ROBOT.replace("kurt2-indoor", "mine", 1))
-    assert load_robot(str(mine)).name == "mine"
+    assert load_kurt2(str(mine)).name == "mine"
     for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
         with pytest.raises(
             SettingsError,
@@ -190,13 +190,13 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("cycle_s: 0.01 ", "cycle_s: .nan ", r"^can\.cycle_s: .*nan\)"),
-        ("cycle_s: 0.01 ", "cycle_s: .inf ", r"^can\.cycle_s: .*inf\)"),
-        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", r"^can\.cycle_s: .*'10 ms'\)"),
-        ("cycle_s: 0.01 ", "cycle_s: '0.01' ", r"^can\.cycle_s: .*'0.01'\)"),
-        ("cycle_s: 0.01 ", "cycle_s: true ", r"^can\.cycle_s: .*True\)"),
-        ("cycle_s: 0.01 ", "cycle_s: 10.1 ", r"^can\.cycle_s: .*10\.1\)"),
-        ("cycle_s: 0.01 ", "cycle_s: 0 ", r"^can\.cycle_s: .*0\)"),
+        ("cycle_s: 0.01 ", "cycle_s: .nan ", r"^cycle_s: .*nan\)"),
+        ("cycle_s: 0.01 ", "cycle_s: .inf ", r"^cycle_s: .*inf\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10 ms ", r"^cycle_s: .*'10 ms'\)"),
+        ("cycle_s: 0.01 ", "cycle_s: '0.01' ", r"^cycle_s: .*'0.01'\)"),
+        ("cycle_s: 0.01 ", "cycle_s: true ", r"^cycle_s: .*True\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 10.1 ", r"^cycle_s: .*10\.1\)"),
+        ("cycle_s: 0.01 ", "cycle_s: 0 ", r"^cycle_s: .*0\)"),
         (
             "floor_counts: 70",
             "floor_counts: 70.5",
@@ -238,14 +238,14 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
             r"^bumpers\.0: .*'front left'",
         ),
         ("end: front}", "end: side}", r"^bumpers\.0\.end: .*'front' .*'rear' .*'side'"),
-        ("  cycle_s: 0.01 ", "  #", r"^can\.cycle_s: "),
+        ("cycle_s: 0.01 ", "  #", r"^cycle_s: "),
     ],
 )
 def test_a_wrong_value_is_named_with_its_key_and_what_is_allowed(old: str, new: str, told: str, tmp_path: Path) -> None:
     assert old in ROBOT
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace(old, new, 1))
-    assert re.search(told, refusal(path, RobotSettings))
+    assert re.search(told, refusal(path, Kurt2Settings))
 
 
 @pytest.mark.parametrize(
@@ -474,7 +474,7 @@ def test_a_value_from_elsewhere_is_checked_as_the_file_s_own(key: str, value: st
 def test_several_mistakes_are_counted(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_text(ROBOT.replace("cycle_s: 0.01 ", "cycle_s: x ").replace("far_m: 0.60", "far_m: x"))
-    assert refusal(path, RobotSettings).endswith(" 1 more)")
+    assert refusal(path, Kurt2Settings).endswith(" 1 more)")
 
 
 # Whole files
@@ -483,9 +483,9 @@ def test_several_mistakes_are_counted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "told"),
     [
-        (b"", "NoneType.*: name, can, geometry"),
-        (b"- 1\n- 2\n", "list.*: name, can, geometry"),
-        (b"hello\n", "str.*: name, can, geometry"),
+        (b"", "NoneType.*: kind, name, cycle_s, geometry"),
+        (b"- 1\n- 2\n", "list.*: kind, name, cycle_s, geometry"),
+        (b"hello\n", "str.*: kind, name, cycle_s, geometry"),
         (b"a: 1\nb: 2\na: 3\n", "YAML: key 'a' "),
         (b"b: {a: 1, c: {d: 1, d: 1}}\n", "YAML: key 'd' "),
         (b"1: x\n", "YAML: key 1 "),
@@ -515,16 +515,16 @@ def test_several_mistakes_are_counted(tmp_path: Path) -> None:
 def test_a_file_that_holds_something_else_is_refused_in_one_line(content: bytes, told: str, tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_bytes(content)
-    assert re.search(told, refusal(path, RobotSettings))
+    assert re.search(told, refusal(path, Kurt2Settings))
 
 
 def test_a_file_that_cannot_be_read_is_refused_in_one_line(tmp_path: Path) -> None:
-    assert os.strerror(errno.EISDIR) in refusal(tmp_path, RobotSettings)
-    assert os.strerror(errno.ENOENT) in refusal(tmp_path / "gone.yaml", RobotSettings)
+    assert os.strerror(errno.EISDIR) in refusal(tmp_path, Kurt2Settings)
+    assert os.strerror(errno.ENOENT) in refusal(tmp_path / "gone.yaml", Kurt2Settings)
 
 
 def test_settings_are_frozen() -> None:
-    robot = load_robot()
+    robot = load_kurt2()
     with pytest.raises(ValueError, match="frozen"):
         robot.name = "other"
 
@@ -536,14 +536,14 @@ def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> N
     bomb = tmp_path / "bomb.yaml"
     nine = "".join(f"a{n}: &a{n} [{','.join([f'*a{n - 1}'] * 9)}]\n" for n in range(1, 10))
     bomb.write_text(f"a0: &a0 [x,x,x,x,x,x,x,x,x]\n{nine}", encoding="utf-8")
-    assert "100000" in refusal(bomb, RobotSettings)
+    assert "100000" in refusal(bomb, Kurt2Settings)
 
 
 @pytest.mark.parametrize("long", ["x" * 10_000, "{" + "k" * 1000 + ": 1}"], ids=["text", "key"])
 def test_text_that_aliases_repeat_is_refused_before_expansion(tmp_path: Path, long: str) -> None:
     bomb = tmp_path / "bomb.yaml"
     bomb.write_text(f"a0: &a0 {long}\na1: &a1 [{'*a0,' * 100}]\na2: [{'*a1,' * 100}]\n", encoding="utf-8")
-    assert "100000" in refusal(bomb, RobotSettings)
+    assert "100000" in refusal(bomb, Kurt2Settings)
 
 
 def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
@@ -557,17 +557,17 @@ def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
 def test_an_asterisk_that_is_no_alias_is_read(tmp_path: Path) -> None:
     path = tmp_path / "my_robot.yaml"
     path.write_text(f"# 2 * 3 *x\n{ROBOT}", encoding="utf-8")
-    assert load_settings(path, RobotSettings) == load_robot("kurt2")
+    assert load_settings(path, Kurt2Settings) == load_kurt2("kurt2")
 
 
 def test_a_fifo_given_as_settings_is_refused(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo.yaml"
     os.mkfifo(fifo)
-    assert "pipe" in refusal(fifo, RobotSettings)
+    assert "pipe" in refusal(fifo, Kurt2Settings)
 
 
 def test_a_settings_file_too_large_is_refused_unread(tmp_path: Path) -> None:
     large = tmp_path / "large.yaml"
     with large.open("wb") as file:
         file.truncate(10**12)
-    assert re.findall(r"\d{7,}", refusal(large, RobotSettings)) == ["1000000000000", "1000000"]
+    assert re.findall(r"\d{7,}", refusal(large, Kurt2Settings)) == ["1000000000000", "1000000"]

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.bench.report import as_json, measure_machine, print_report
 from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress
@@ -83,7 +83,7 @@ def _measure(
         import kurt2rt.runs.recording.recorder  # noqa: F401 # told before the measurements, not after minutes
     from simbridge.simulation import Kurt2SimulationFactory
 
-    settings = load_robot()
+    settings = load_kurt2()
     factory = Kurt2SimulationFactory(settings)
     fixture = BenchFixture(
         settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose), batches=factory

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -89,9 +90,6 @@ def broken(options: _Options) -> None:
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was.
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     robot, task, results = load_robot(options.robot_settings), load_task(options.task), Results(options.out)
     worlds = tuple(options.world or task.exam.worlds)
     sensors = chosen_sensors(robot.infrared.names, options.sensor)
@@ -106,7 +104,7 @@ def broken(options: _Options) -> None:
         after_s=options.after,
         healthy_s=options.healthy,
     )
-    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     plan, command = (
         make_plan(task, drives, parts),
         typed_command("broken", options, {"task": options.task, "seeds": options.seeds}),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.text import Text
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -139,10 +140,9 @@ def _certify(options: _Options) -> None:
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
-    from simbridge.simulation import Kurt2SimulationFactory
 
     robot, task, results = load_robot(options.robot_settings), _task(options), Results(options.out)
-    factory = Kurt2SimulationFactory(robot)
+    factory = simulations_of(robot)
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
     parts = JobParts(factory=factory, robot=robot, results=results)
     one = Run(options.first, places[0])

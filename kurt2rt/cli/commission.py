@@ -18,7 +18,7 @@ from hal.bus import open_bus
 from hal.codec import load_codec
 from hal.errors import ExitCode
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import (
     STEPS,
@@ -141,7 +141,7 @@ def _session(options: _Options) -> "_Session":
     """Return what the options ask for. Raises typer.BadParameter, SettingsError."""
     requested, skipped = _named(options.only, "--only"), _named(options.skip, "--skip")
     operator = _require_one_line(options.who or _user())
-    base = load_robot(options.robot_settings)
+    base = load_kurt2(options.robot_settings)
     path = Path("var", "commission", f"{options.name}.json")
     fresh = Progress(name=options.name, base=options.robot_settings, bus=options.bus)
     progress = _progress(path, fresh, options.start_over)
@@ -172,7 +172,7 @@ def _tell_earlier(console: Console, progress: Progress, chosen: Sequence[Commiss
 class _Session(NamedTuple):
     """Steps of one session, and the progress that they continue."""
 
-    base: RobotSettings
+    base: Kurt2Settings
     progress: Progress
     path: Path
     """Progress file."""
@@ -217,7 +217,7 @@ async def _cancel_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.
             scope.cancel()
 
 
-def _conclude(console: Console, progress: Progress, base: RobotSettings, target: Path) -> None:
+def _conclude(console: Console, progress: Progress, base: Kurt2Settings, target: Path) -> None:
     """Write the settings file, or print why it cannot be written."""
     blocking = blocking_failures(progress)
     missing = open_steps(progress)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import anyio
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -67,12 +68,11 @@ def demo(options: _Options) -> None:
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
-    from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(options.robot_settings)
     task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
     taught = taught_by_named(task, options.teacher)
-    stage = Kurt2SimulationFactory(settings, options.wire)
+    stage = simulations_of(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)

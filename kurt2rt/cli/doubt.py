@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -68,11 +69,9 @@ def doubt(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
 
-    from simbridge.simulation import Kurt2SimulationFactory
-
     settings = load_robot(options.robot_settings)
     task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
-    factory = Kurt2SimulationFactory(settings)
+    factory = simulations_of(settings)
     worlds = options.world or list(task.exam.worlds)
     seeds = parse_seeds(options.seeds)
     factory.require_worlds(*(world.replace("SEED", str(seed)) for world in worlds for seed in seeds))

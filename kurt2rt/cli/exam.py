@@ -8,6 +8,7 @@ import anyio
 import typer
 
 from behaviors.metrics.route import RouteSettings
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -66,9 +67,6 @@ def exam(options: _Options) -> None:
         kurt2rt exam results/demo/wall_following-0.knowledge
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     settings = load_robot(options.robot_settings)
     other = changes_of(options.changes)
     taught = load_task(options.task or task_of_file(options.knowledge), plain=options.plain, changes=other)
@@ -77,7 +75,7 @@ def exam(options: _Options) -> None:
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
         taught = with_route(taught, options.seed)
     worlds = tuple(options.world) if options.world else taught.exam.worlds
-    stage = Kurt2SimulationFactory(settings, options.wire)
+    stage = simulations_of(settings, options.wire)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
     events = read_lessons(options.knowledge, settings, taught)

@@ -13,6 +13,7 @@ import anyio
 
 from behaviors.metrics.route import RouteSettings
 from hal.errors import ExitCode
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
@@ -24,7 +25,6 @@ from kurt2rt.experiments.lockstep.report import label_of, not_judged, verdict_of
 from kurt2rt.experiments.route.lesson import with_route
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from simbridge.simulation import Kurt2SimulationFactory
 
 NICENESS = 10
 """The robot's loop, and the page, come first."""
@@ -51,7 +51,7 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
     if isinstance(task.course, RouteSettings) and task.course.seed is None:
         task = with_route(task, seed)
     worlds = task.exam.worlds
-    stage = Kurt2SimulationFactory(robot)
+    stage = simulations_of(robot)
     stage.require_worlds(*worlds)
     require_course(stage, task, worlds)
     events = read_lessons(knowledge, robot, task)

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.errors import ExitCode
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.faults.table import KINDS, TARGETS, FaultCase, FaultTable, Kind, Target, cases_of, load_faults
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.tables import console_of
@@ -84,7 +84,7 @@ def _try(table: FaultTable, cases: Sequence[FaultCase], seeds: int) -> "list[Fau
     from kurt2rt.checks.faults.suite import try_cases
     from simbridge.faults.fault_rig import FaultRigFactory
 
-    settings, task = load_robot(table.robot), load_task(table.task)
+    settings, task = load_kurt2(table.robot), load_task(table.task)
     with Progress(console=Console(stderr=True)) as progress:
         bar = progress.add_task("faults", total=len(cases) * seeds)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import anyio
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
@@ -111,14 +112,11 @@ def _task_name(options: LessonOptions) -> str:
 
 
 def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     robot = load_robot(options.robot_settings)
     task = load_task(task_name, plain=options.plain, changes=changes_of(options.changes))
     taught = taught_by(task, load_teacher(options.teacher))
     command = typed_command("lesson", options, {"task": task_name, "task_word": None})
-    return LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, taught, command)
+    return LessonSetup(simulations_of(robot, options.wire), robot, taught, command)
 
 
 def _lesson(setup: LessonSetup, options: LessonOptions) -> None:

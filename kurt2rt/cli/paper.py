@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -101,11 +102,10 @@ def _run_study(options: _Options) -> None:
     from kurt2rt.experiments.paper.tables import all_tables
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
-    from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
     robot = load_robot()
-    stage = Kurt2SimulationFactory(robot)
+    stage = simulations_of(robot)
     results = Results(options.out or (_QUICK_FOLDER if options.quick else _FOLDER))
     readings: tuple[Reading, ...] = ("shipped", "plain") if options.plain else ("shipped",)
     extent = QUICK if options.quick else WHOLE

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -112,12 +113,11 @@ def _plan(options: _Options) -> "tuple[PhasesPlan, Results]":
     from kurt2rt.experiments.phases.plan import make_plan
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
-    from simbridge.simulation import Kurt2SimulationFactory
 
     profile = load_teacher(options.teacher)
     robot, task = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
     results = Results(options.out or _FOLDER / (task.name + ("-quick" if options.quick else "")))
-    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     loops = requested_loops(options.lessons, options.exams)
     plan = make_plan(task, parse_seeds(_seeds(options)), parts, quick=options.quick, loops=loops)
     return plan, results

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -86,10 +87,9 @@ def check(
     subjects = find_subjects(name, kind)
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
     from kurt2rt.checks.plugins.check import PluginCheck
-    from simbridge.simulation import Kurt2SimulationFactory
 
     robot = load_robot(robot_settings)
-    checks = PluginCheck(robot, Kurt2SimulationFactory(robot))
+    checks = PluginCheck(robot, simulations_of(robot))
     found = [(each, checks.broken_promises(each)) for each in subjects]
     if as_json:
         print_json({"plugins": [{"kind": each.group, "name": each.name, "broken": broken} for each, broken in found]})

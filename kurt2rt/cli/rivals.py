@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -130,10 +131,9 @@ def rivals(options: _Options) -> None:
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
-    from simbridge.simulation import Kurt2SimulationFactory
 
     results = Results(options.out)
-    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     after = sorted(set(options.after or _AFTER))
     tuned = None if options.tuned == _NOT_TUNED else load_tuned(options.tuned)
     plan = make_plan(

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption, open_executor
@@ -75,12 +76,11 @@ def search(options: _Options) -> None:
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
-    from simbridge.simulation import Kurt2SimulationFactory
 
     settings, robot = load_search(options.search), load_robot()
     trials = options.trials or settings.trials
     results = Results(options.out or _FOLDER / settings.name)
-    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
     command = typed_command("search", options)
     require_unchecked(plan, trials)

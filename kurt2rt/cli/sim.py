@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 
 from hal.bus import open_bus
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
@@ -82,14 +82,14 @@ def sim(options: _Options) -> None:
         raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
     if options.bus.startswith("virtual:"):
         raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
-    settings = load_robot(options.robot)
+    settings = load_kurt2(options.robot)
     _simulate(options, settings)
 
 
-def _simulate(options: _Options, settings: RobotSettings) -> None:
+def _simulate(options: _Options, settings: Kurt2Settings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
-    from simbridge.simulated_world import Kurt2World
+    from simbridge.simulated_world import RealtimeWorld
     from simbridge.standalone import StandaloneRobot
     from simbridge.worlds.world_loading import load_world
 
@@ -114,7 +114,7 @@ def _simulate(options: _Options, settings: RobotSettings) -> None:
         stack.enter_context(short_switch_interval())
         stack.enter_context(standalone)
         simulation = standalone.simulation
-        world = Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation)
+        world = RealtimeWorld(standalone.robot, ground_plan, settings.geometry, simulation)
         console, keyboard = SimConsole(standalone, ground_plan, world), TypedLines(sys.stdin)
         news, line = News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if options.seconds is None else time.monotonic() + options.seconds

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.errors import ExitCode
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.faults.table import load_faults
 from kurt2rt.checks.soak.settings import SoakSettings, load_soak
 from kurt2rt.cli.json_output import AsJson
@@ -105,7 +105,7 @@ def _run_day(settings: SoakSettings, out: Path, hours: float, seed: int, *, by_m
     _make_room(out)
     pin_mmap_threshold()  # as the robot's program does
     table, task = load_faults(settings.faults), load_task(settings.task)
-    robot = load_robot(table.robot)
+    robot = load_kurt2(table.robot)
     service = load_service().model_copy(
         update={"knowledge": str(out / _KNOWLEDGE), "checkpoint_period_s": settings.checkpoint_period_s}
     )

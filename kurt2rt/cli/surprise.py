@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -54,12 +55,9 @@ def surprise(options: _Options) -> None:
         kurt2rt lesson --task streets --seeds 0-9
         kurt2rt surprise results/lesson
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     settings = load_robot(options.robot_settings)
     what = load_task(options.task)
-    stage = Kurt2SimulationFactory(settings)
+    stage = simulations_of(settings)
     work = [
         SurpriseJob(
             stage,

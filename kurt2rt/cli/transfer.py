@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
@@ -125,7 +126,6 @@ def transfer(options: _Options) -> None:
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.transfer.figures import draw_curves
-    from simbridge.simulation import Kurt2SimulationFactory
 
     robot = load_robot(options.robot_settings)
     task = taught_by(load_task(options.task, changes=changes_of(options.changes)), load_teacher(options.teacher))
@@ -135,7 +135,7 @@ def transfer(options: _Options) -> None:
         NewWorlds(_places(task.name, options.world), _after(options.after), options.seconds),
         parse_seeds(options.seeds),
         (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
-        JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
+        JobParts(factory=simulations_of(robot), robot=robot, results=results),
         loops=requested_loops(options.lessons, options.exams),
     )
     figure, command = (

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption, open_executor
@@ -73,11 +74,10 @@ def tune(options: _Options) -> None:
     from kurt2rt.experiments.tuning.settings import load_tuning
     from kurt2rt.experiments.tuning.tuned_file import write_tuned
     from kurt2rt.experiments.tuning.tuning import plan_tuning, tuning_table
-    from simbridge.simulation import Kurt2SimulationFactory
 
     settings, robot = load_tuning(options.league), load_robot()
     out, trials = options.out or _FOLDER / settings.name, options.trials or settings.trials
-    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=Results(out))
+    parts = JobParts(factory=simulations_of(robot), robot=robot, results=Results(out))
     plans = [
         plan_tuning(settings, task, rival, parts, trials, changes_of(options.changes))
         for task in dict.fromkeys(options.task or settings.worlds)

@@ -50,7 +50,7 @@ class BatchDrive:
         elif task.exam.start == "in_sight":
             simulation.reposition(chance, in_sight=True)
         self._metric.reset(simulation.pose)
-        self._stuck = StuckDetector(task.exam.stuck_after_s, settings.can.cycle_s, least_m=task.exam.stuck_within_m)
+        self._stuck = StuckDetector(task.exam.stuck_after_s, settings.cycle_s, least_m=task.exam.stuck_within_m)
         self._perception = Perception(definition, settings.infrared.names)
         self._appraisal = AppraisalPerception(load_critic(task.critic), settings)
         self._batch = factory.open_batch([simulation], [CommandedMind()], drive_settings)

@@ -8,7 +8,7 @@ import numpy as np
 from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -67,7 +67,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         Raises:
             hal.settings.SettingsError: for a task, world or option that cannot be used.
         """
-        self._settings = load_robot()
+        self._settings = load_kurt2()
         self._task = load_agent_task(task)
         self._factory = Kurt2SimulationFactory(self._settings)
         self._world = world or self._task.teaching.world
@@ -78,7 +78,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         self.loop = read_loop(loop)
         """Loop that drives the robot."""
         self._policy = self._task.policy.build(self._settings.infrared)
-        cycle_s = self._settings.can.cycle_s
+        cycle_s = self._settings.cycle_s
         self._decision_ticks = round(_DECISION_S / cycle_s)
         self._episode_ticks = round(self._checked_duration_s(duration_s) / cycle_s)
         definition = load_situation(self._task.situation, self._settings.infrared.names)
@@ -189,6 +189,6 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             "pose": np.array(now.pose),
             "collisions": now.collisions,
             "progress": now.progress,
-            "time_s": now.ticks * self._settings.can.cycle_s,
+            "time_s": now.ticks * self._settings.cycle_s,
             "ending": "" if now.ending is None else now.ending.value,
         }

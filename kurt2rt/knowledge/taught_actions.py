@@ -43,7 +43,7 @@ def build_taught_system(
         UnknownActionError: an RLA has an action that the repertoire lacks.
         UnknownBehaviourError: an RLA has a behaviour that the task lacks.
     """
-    sensors, period_s = robot.infrared.names, robot.can.cycle_s
+    sensors, period_s = robot.infrared.names, robot.cycle_s
     definition = load_situation(task.situation, sensors)
     learning = task.learning
     changed = ((each.features, each.weight) for each in learning.weights)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from hal.bus import open_bus
 from hal.errors import UserError
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 
 NET_FOLDER = Path("/sys/class/net")
 _ARPHRD_CAN = "280"
@@ -16,7 +16,7 @@ class NoVcanError(UserError):
     """The kernel has no such interface, or it is down."""
 
 
-def require_bus(name: str, settings: RobotSettings, net: Path = NET_FOLDER) -> None:
+def require_bus(name: str, settings: Kurt2Settings, net: Path = NET_FOLDER) -> None:
     """Check a bus for a simulated robot; listens to it for 0.1 s. `net`: folder of the kernel's interfaces.
 
     Raises NoVcanError if there is no such interface or it is down, UserError if it is real or a robot sends on it.

@@ -15,12 +15,14 @@ EXTRAS = {
     "pyarrow": "export",
     "pymunk": "simulation",
     "river": "rivals",
+    "rosbags": "ros",
     "scipy": "studies",
     "shapely": "simulation",
     "sklearn": "rivals",
     "starlette": "page",
     "uvicorn": "page",
     "websockets": "page",
+    "zenoh": "ros",
     "zstandard": "recording",
 }
 """Packages that a robot can do without, by their importable names, and the extra that brings each."""

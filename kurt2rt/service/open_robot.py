@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from typing import NamedTuple, Protocol
 
-from hal.bus import open_bus
-from hal.kurt2 import Kurt2
+from hal.guarded_robot import GuardedRobot
+from hal.robot_kind import kind_of
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld, Simulation
 from hal.tap import Tap
@@ -16,7 +16,7 @@ from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 class OpenedRobot(NamedTuple):
     """Robot, with its world if it is simulated."""
 
-    robot: Kurt2
+    robot: GuardedRobot
     simulated_world: SimulatedWorld | None
     is_alive: Callable[[], bool]
     """Returns whether the simulator still runs; always true for a real robot."""
@@ -47,19 +47,22 @@ def open_robot(
     `world`, `seed` and `wire` (config/wires) are the simulated robot's. `tap` sees each frame at the runtime's end of
     the bus. Raises BusError, CodecError and SettingsError, and at the end the error that ended the simulation.
     """
+    kind = kind_of(settings)
     if bus == SIMULATED:
-        # Here, because a robot carries no simulator: the packages it needs are an extra.
-        from simbridge.simulation import Kurt2SimulationFactory, simulated_robot
-
-        with simulated_robot(settings, world, seed, wire, tap) as (simulation, ground):
+        simulations = kind.simulations(settings, wire)
+        with simulations.live(world, seed, tap) as live:
             # A wire has a time of its own, in real time.
-            held_world = ground.held_world if wire == NO_WIRE else None
-            require_world = Kurt2SimulationFactory(settings, wire).require_worlds
-            yield OpenedRobot(simulation.robot, ground, lambda: ground.lives, held_world, simulation, require_world)
+            held_world = live.world.held_world if wire == NO_WIRE else None
+            yield OpenedRobot(
+                live.robot,
+                live.world,
+                lambda: live.world.lives,
+                held_world,
+                live.simulation,
+                simulations.require_worlds,
+            )
         return
-    end = open_bus(bus)
-    end.tap = tap
-    robot = Kurt2(settings, end)
+    robot = kind.open(settings, bus, tap)
     try:
         with robot.watchdog:
             yield OpenedRobot(robot, None, lambda: True)

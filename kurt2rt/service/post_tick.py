@@ -79,7 +79,7 @@ class PostTick:
         self._health = health
         self._recorder = recorder
         self._words = words_for(runtime.robot.infrared)
-        self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
+        self._ticks_per_second = round(1 / runtime.robot.cycle_s)
         self._set_periods(service.settings)
         self._unsaved: dict[str, str] = {}
         """Texts of lessons that are not durable yet, by command id."""
@@ -141,7 +141,7 @@ class PostTick:
         self._writer.submit_statistics(self._runtime.snapshot())
 
     def _set_periods(self, settings: ServiceSettings) -> None:
-        period_s = self._runtime.robot.can.cycle_s
+        period_s = self._runtime.robot.cycle_s
         self._checkpoint_ticks = round(settings.checkpoint_period_s / period_s)
         self._status_ticks = round(settings.status_period_s / period_s)
 

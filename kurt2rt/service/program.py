@@ -203,7 +203,7 @@ class RobotProgram:
             first_commands=() if run is None else run.first_commands,
         )
         goes_on = run is not None and run.teacher is not None
-        left_s = max(self._ends_at_s - time.monotonic(), self._robot.can.cycle_s)
+        left_s = max(self._ends_at_s - time.monotonic(), self._robot.cycle_s)
         return ServeOptions(
             channel=channel if options.attended else None,
             duration_s=left_s if math.isfinite(left_s) else None,
@@ -322,7 +322,7 @@ class RobotProgram:
     def _no_simulator(self, health: Health, tick: int) -> str:
         """Return which command is missing on a shared bus on which nothing was ever heard; empty where it is there."""
         bus = self._options.bus
-        if not bus.startswith(SHARED) or health.frames or tick * self._robot.can.cycle_s < _SIMULATOR_S:
+        if not bus.startswith(SHARED) or health.frames or tick * self._robot.cycle_s < _SIMULATOR_S:
             return ""
         return f"no simulator on {bus}; start one in another terminal: kurt2rt sim --bus {bus}"
 

@@ -200,7 +200,7 @@ class _Run:
             )
             self._health.add_listener(lambda report: recorder.on_health(plain_of(report)))
         liveness = {"knowledge journal": lambda: writer.is_alive, **context.liveness}
-        period_s = service.runtime.robot.can.cycle_s
+        period_s = service.runtime.robot.cycle_s
         self._heartbeat = WatchdogNotifier(context.notifier, period_s, liveness, context.log)
 
     async def serve(self, console: ProgramConsole, speed: Speed | None) -> ProgramStatus | None:
@@ -234,7 +234,7 @@ class _Run:
                 measure.on_tick(record)
             self._heartbeat.on_tick(record.now_s)
 
-        ticks = None if options.duration_s is None else round(options.duration_s / runtime.robot.can.cycle_s)
+        ticks = None if options.duration_s is None else round(options.duration_s / runtime.robot.cycle_s)
         # The wheels first, also if the loop hangs.
         stop_wheels = partial(self._robot.emergency_stop, GuardReason.SERVICE_ENDS)
         callbacks = (stop_wheels, runtime.scheduler.end, context.notifier.stopping)

@@ -29,7 +29,7 @@ def format_timed_activity(status: ProgramStatus) -> str:
 
 
 def _clock_s(status: ProgramStatus) -> float:
-    return status.record.tick * status.runtime.robot.can.cycle_s
+    return status.record.tick * status.runtime.robot.cycle_s
 
 
 def format_activity(status: ProgramStatus) -> str:

@@ -10,7 +10,7 @@ from hal.areas import Borders
 from hal.batch import STANDS, TRACED_TICKS, AskedMind, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
 from hal.batch_refusal import BatchRefusedError
 from hal.guard_reason import GuardReason
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from simbridge.batch.asking import PythonMind
 from simbridge.batch.borders import area_of
@@ -32,7 +32,8 @@ from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
 from simbridge.batch.tally import restart_window
 from simbridge.robot.bumpers import CollisionCounter
-from simbridge.simulated_robot import SimulatedRobot, hash_state
+from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_robot import hash_state
 
 _REASONS = {
     STAYS: "",
@@ -64,8 +65,8 @@ class RobotBatch:
 
     def __init__(
         self,
-        robot: RobotSettings,
-        simulated: Sequence[SimulatedRobot],
+        robot: Kurt2Settings,
+        simulated: Sequence[SimulatedKurt2],
         minds: Sequence[Mind],
         settings: DriveSettings,
     ) -> None:
@@ -98,7 +99,7 @@ class RobotBatch:
         """Those of the earlier stretches that each body in the engine lags behind."""
         self._caught_up = np.zeros(len(simulated), dtype=np.int64)
         """Ticks of the present stretch that it has driven."""
-        self._gap_cycles = CollisionCounter(robot.can.cycle_s).gap_cycles
+        self._gap_cycles = CollisionCounter(robot.cycle_s).gap_cycles
         self._drawn = [[slip.drawn - SLIP_AHEAD, noise.drawn - NOISE_AHEAD] for slip, noise in self._streams]
         """Numbers that each robot had drawn before those that lie ahead: of slip, of its sensors."""
         self._robots["slip_used"], self._robots["noise_used"] = SLIP_AHEAD, NOISE_AHEAD

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from hal.batch_refusal import BatchRefusedError
 from hal.simulation import Pose
 from simbridge.robot.body import BodyState
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 
 REMEMBERED_TICKS = 5
 """Ticks without a touch after which the engine has forgotten a contact; it keeps one for three steps."""
@@ -21,7 +21,7 @@ class ContactBody:
     behind with the set points of then, and agrees with the free motion of the compiled loop to the last bit.
     """
 
-    def __init__(self, simulated: SimulatedRobot) -> None:
+    def __init__(self, simulated: SimulatedKurt2) -> None:
         """Take the body, the wheels and the bumpers of a simulated robot that has not driven yet."""
         self._body, self._wheels, self._bumpers = simulated.body, simulated.wheels, simulated.bumpers
 

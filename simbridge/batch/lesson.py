@@ -8,7 +8,7 @@ from hal.areas import Borders
 from hal.batch import STANDS, DriveSettings, PolicyMind
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.batch_refusal import BatchRefusedError
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick
@@ -16,7 +16,7 @@ from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
 from simbridge.batch.tables import build_features, padded_width, require_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 
 MOST_TICKS = STRETCH // 2
 """Most ticks after a `keep`: half of the random numbers that lie ahead are used up at most before more are drawn."""
@@ -28,7 +28,7 @@ _ALONE = np.array([0])
 class CompiledLesson(RobotBatch):
     """Robot that is taught: its state, its course and its RLAs in arrays."""
 
-    def __init__(self, robot: RobotSettings, simulated: SimulatedRobot, settings: LessonDriveSettings) -> None:
+    def __init__(self, robot: Kurt2Settings, simulated: SimulatedKurt2, settings: LessonDriveSettings) -> None:
         """Copy the state of a simulated robot that has not driven yet, which follows this robot from then on.
 
         Raises BatchRefusedError for what the batch does not know.

@@ -17,8 +17,9 @@ from behaviors.policies.distances import (
     RIGHT_FRONT_TO_BACK,
 )
 from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import HIGHEST_COUNTS
-from hal.robot_settings import BumperEnd, RobotSettings
+from hal.robot_settings import BumperEnd
 from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
@@ -32,7 +33,7 @@ from simbridge.robot.body import Body
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors
 from simbridge.robot.ray_caster import faces_of
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import WorldSettings
 
 _LOOKS = (
@@ -54,9 +55,9 @@ _ThresholdsT = TypeVar(
 )
 
 
-def build_laws(robot: RobotSettings, one: SimulatedRobot, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
+def build_laws(robot: Kurt2Settings, one: SimulatedKurt2, minds: Sequence[Mind], settings: DriveSettings) -> Laws:
     """Return the numbers that all robots of a batch share; `one` of them."""
-    cycle_s = robot.can.cycle_s
+    cycle_s = robot.cycle_s
     return Laws(
         body=build_body_law(robot, one.body),
         side=one.wheels.law,
@@ -83,16 +84,16 @@ def build_laws(robot: RobotSettings, one: SimulatedRobot, minds: Sequence[Mind],
     )
 
 
-def bumper_bits(robot: RobotSettings, end: BumperEnd) -> int:
+def bumper_bits(robot: Kurt2Settings, end: BumperEnd) -> int:
     """Return the bits of the bumpers at one end of a robot."""
     return sum(1 << bit for bit, bumper in enumerate(robot.bumpers) if bumper.end is end)
 
 
-def build_body_law(robot: RobotSettings, body: Body) -> BodyLaw:
+def build_body_law(robot: Kurt2Settings, body: Body) -> BodyLaw:
     """Return the numbers of the robot's body."""
     geometry = robot.geometry
     return BodyLaw(
-        cycle_s=robot.can.cycle_s,
+        cycle_s=robot.cycle_s,
         track_m=geometry.effective_track_m,
         mass_kg=geometry.mass_kg,
         inertia_kg_m2=geometry.yaw_inertia_kg_m2,
@@ -107,13 +108,13 @@ def build_body_law(robot: RobotSettings, body: Body) -> BodyLaw:
     )
 
 
-def build_watch_law(robot: RobotSettings) -> WatchLaw:
+def build_watch_law(robot: Kurt2Settings) -> WatchLaw:
     """Return the limits of the watches of sensors."""
     beams = [beam_of(robot.infrared, place) for place in range(len(robot.infrared.sensors))]
     return WatchLaw(
         lowest=robot.infrared.floor_counts * LOWEST,
         highest=robot.infrared.plateau_counts * HIGHEST,
-        stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.can.cycle_s),
+        stuck_ticks=round(STUCK_TIMES * robot.guard.frozen_infrared_s / robot.cycle_s),
         frozen_s=robot.guard.frozen_infrared_s,
         dark_counts=beams[0].dark_counts,
         beams=np.array([(each.sine, each.cosine, each.along_m, each.aside_m) for each in beams]),
@@ -125,7 +126,7 @@ def build_watch_law(robot: RobotSettings) -> WatchLaw:
     )
 
 
-def _mind_law(robot: RobotSettings, minds: Sequence[Mind], settings: DriveSettings) -> MindLaw:
+def _mind_law(robot: Kurt2Settings, minds: Sequence[Mind], settings: DriveSettings) -> MindLaw:
     names = list(settings.actions)
     policies = [mind.policy for mind in minds if isinstance(mind, PolicyMind)]
     policy = policies[0] if policies else None
@@ -173,13 +174,13 @@ def _thresholds(policy: object, kind: type[_ThresholdsT]) -> _ThresholdsT:
 
 
 def build_robots(
-    robot: RobotSettings, simulated: Sequence[SimulatedRobot], minds: Sequence[Mind], knowledge_of: Sequence[int]
+    robot: Kurt2Settings, simulated: Sequence[SimulatedKurt2], minds: Sequence[Mind], knowledge_of: Sequence[int]
 ) -> tuple[Robots, World]:
     """Return the records of all robots, copied from the simulated ones, and their worlds.
 
     `knowledge_of`: first table of RLAs of each robot; -1 for a policy.
     """
-    sensors, cycle_s = robot.infrared.sensors, robot.can.cycle_s
+    sensors, cycle_s = robot.infrared.sensors, robot.cycle_s
     boards = sorted({sensor.channel[:3] for sensor in sensors})
     longest_s = max(cycle_s, robot.infrared.period_s + robot.infrared.period_spread_s)
     robots = empty_robots(len(simulated), Sizes(len(sensors), math.ceil(longest_s / cycle_s) + 2, len(boards)))
@@ -232,7 +233,7 @@ def _copy_sensors(record: np.record, infrared: InfraredSensors) -> None:
     record["rays"][:, : rays.shape[1]] = rays
 
 
-def _world(simulated: Sequence[SimulatedRobot]) -> tuple[World, list[int]]:
+def _world(simulated: Sequence[SimulatedKurt2]) -> tuple[World, list[int]]:
     """Return the worlds of the robots, each world once, and the world of each robot."""
     worlds: dict[str, tuple[int, WorldSettings]] = {}
     of = []

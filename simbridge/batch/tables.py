@@ -12,13 +12,13 @@ from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
 from hal.batch import AskedMind, CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
 from hal.batch_refusal import BatchRefusedError
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import HIGHEST_COUNTS
-from hal.robot_settings import RobotSettings, SpeedMode
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.matching import LANES
 from simbridge.batch.minds import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
 from simbridge.batch.record import MOST_KEPT, MOST_VALUES
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}
 _MOST_NEIGHBOURS = 128
@@ -41,7 +41,7 @@ def kind_of(mind: Mind) -> int:
 
 
 def require_known(
-    robot: RobotSettings, simulated: Sequence[SimulatedRobot], minds: Sequence[Mind], settings: DriveSettings
+    robot: Kurt2Settings, simulated: Sequence[SimulatedKurt2], minds: Sequence[Mind], settings: DriveSettings
 ) -> None:
     """Check that the batch knows all that decides a drive. Raises BatchRefusedError."""
     if len(simulated) != len(minds) or not minds:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from hal.codec import Codec
 from hal.frame import Frame
-from hal.robot_settings import InfraredSettings
+from hal.kurt2_settings import Kurt2InfraredSettings
 from hal.settings import SettingsError
 
 _MESSAGES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15")
@@ -14,7 +14,7 @@ _MESSAGES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07", "BDC08_
 class AnalogFrames:
     """Newest frame of each analog message; channels without a sensor are grounded and read 0."""
 
-    def __init__(self, infrared: InfraredSettings, codec: Codec) -> None:
+    def __init__(self, infrared: Kurt2InfraredSettings, codec: Codec) -> None:
         """Find each sensor's frame and position. Raises SettingsError for a sensor on another channel."""
         self._messages = [codec.message(name) for name in _MESSAGES]
         self._values = [[0] * len(message.signals) for message in self._messages]

@@ -1,12 +1,12 @@
 """Micro-controllers of the robot as a CAN node: CONTROL in, motor commands, telemetry out, every 10 ms."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from hal.bus import CONTROL_ID
 from hal.codec import InvalidFrameError, load_codec
 from hal.control import Mode, RawControl, SystemControl, decode_control
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
+from simbridge.controller.controller import MOTORS_BRAKED, MOTORS_OFF, MotorCommands
 from simbridge.controller.controller_bus import ControllerBus
 from simbridge.controller.telemetry import Telemetry
 from simbridge.robot.instruments import Instruments
@@ -16,19 +16,6 @@ CRASH_STEP_M_S = 0.45
 (docs/the-robot.md#yaw-and-keep); half of the full 0.9 m/s is our choice."""
 
 
-class MotorCommands(NamedTuple):
-    """Commands for the two motors in one cycle."""
-
-    left_m_s: float
-    right_m_s: float
-    left_brake: bool = False
-    right_brake: bool = False
-
-
-_OFF = MotorCommands(0.0, 0.0)
-_BRAKED = MotorCommands(0.0, 0.0, left_brake=True, right_brake=True)
-
-
 class MicroController:
     """Both controllers of the robot; the newest CONTROL of a cycle wins, invalid ones are only counted.
 
@@ -36,18 +23,18 @@ class MicroController:
     controller: motors off and no telemetry until MC_RESET. A side is ramped down before it reverses.
     """
 
-    def __init__(self, robot: RobotSettings, bus: ControllerBus, instruments: Instruments) -> None:
+    def __init__(self, robot: Kurt2Settings, bus: ControllerBus, instruments: Instruments) -> None:
         self._bus = bus
         self._motors = robot.motors
         self._instruments = instruments
         self._telemetry = Telemetry(robot, load_codec(robot.can.database), bus.telemetry_port(), instruments)
-        self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.can.cycle_s)
+        self._watchdog_cycles = round(robot.motors.controller_watchdog_s / robot.cycle_s)
         self._silent_cycles = self._watchdog_cycles
         self._actuators_on = True
         self._last_payload: bytes | bytearray | None = None
         self._last_system_command: SystemControl | None = None
-        self._last_commands = _BRAKED
-        self.commands = _BRAKED
+        self._last_commands = MOTORS_BRAKED
+        self.commands = MOTORS_BRAKED
         self.crashed = False
         """Whether the controller crashed and waits for MC_RESET."""
         self.control_frames = 0
@@ -82,13 +69,13 @@ class MicroController:
             if newest is not self.commands:
                 self._apply(newest)
         elif self.watchdog_expired:
-            self.commands = _BRAKED
+            self.commands = MOTORS_BRAKED
 
     def power_cycle(self) -> None:
         """Switch off and on: clears a crash, and brakes until the next CONTROL."""
         self.crashed = False
         self._actuators_on = True
-        self.commands = _BRAKED
+        self.commands = MOTORS_BRAKED
         self._silent_cycles = self._watchdog_cycles
 
     @property
@@ -135,7 +122,7 @@ class MicroController:
             or _speed_up_m_s(old.right_m_s, wanted.right_m_s) > CRASH_STEP_M_S
         ):
             self.crashed = True
-            self.commands = _OFF
+            self.commands = MOTORS_OFF
             return
         self.commands = wanted
 
@@ -144,7 +131,7 @@ class MicroController:
         if command.mode is Mode.MC_RESET:
             self.crashed = False
             self._actuators_on = True
-            self.commands = _OFF
+            self.commands = MOTORS_OFF
             self._instruments.reset()
             return None
         if self.crashed:
@@ -153,7 +140,7 @@ class MicroController:
             self._actuators_on = True
         elif command.mode is Mode.ACTUATOR_OFF:
             self._actuators_on = False
-            self.commands = _OFF
+            self.commands = MOTORS_OFF
             return None
         elif command.mode is Mode.CALIBRATE_GYRO:
             self._instruments.calibrate_gyro()

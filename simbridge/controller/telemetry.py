@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from hal.codec import Codec, MessageCodec
 from hal.identity import SIMULATED_HARDWARE_ID
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from simbridge.controller.analog_frames import AnalogFrames
 from simbridge.controller.controller_bus import SendingPort
 from simbridge.robot.instruments import Instruments
@@ -21,7 +21,7 @@ class Telemetry:
     The slow frames are spread over the ten cycles, so that none carries a burst.
     """
 
-    def __init__(self, robot: RobotSettings, codec: Codec, port: SendingPort, instruments: Instruments) -> None:
+    def __init__(self, robot: Kurt2Settings, codec: Codec, port: SendingPort, instruments: Instruments) -> None:
         self._port = port
         self._instruments = instruments
         self._analog = AnalogFrames(robot.infrared, codec)

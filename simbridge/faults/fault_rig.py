@@ -12,7 +12,7 @@ from hal.codec import load_codec
 from hal.guard_reason import GuardReason
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.tap import Tap
 from hal.watchdog import POLL_S
 from simbridge.faults.event_scheduler import EventScheduler
@@ -21,7 +21,7 @@ from simbridge.faults.frame_link import Deliver, FrameLink, IdealLink
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.timed_fault import Kind, TimedFault
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 
 _LENGTH_M, _WIDTH_M = 10.0, 4.0
@@ -46,7 +46,7 @@ class SimulatedFaultRig:
     """
 
     def __init__(
-        self, settings: RobotSettings, part: Part | None, disturbance: TimedFault, chance: random.Random
+        self, settings: Kurt2Settings, part: Part | None, disturbance: TimedFault, chance: random.Random
     ) -> None:
         """Place the robot in the corridor; `part` has the fault, None if it is not on this side of the driver."""
         self.time = EventScheduler()
@@ -64,11 +64,11 @@ class SimulatedFaultRig:
         self._notebooks_end: FaultyInterface | None = None
         self._robots_end: FaultyInterface | None = None
         self._robots_bus = CanBus(self._spec, self._open_robots_end)
-        self.simulation = SimulatedRobot(
+        self.simulation = SimulatedKurt2(
             settings, CORRIDOR_WORLD, self._robots_bus, chance.getrandbits(32), wheels=self._wheels()
         )
         self.robot = self._driver()
-        self.time.every(settings.can.cycle_s, 0.0, self.simulation.step)
+        self.time.every(settings.cycle_s, 0.0, self.simulation.step)
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def restart_driver(self) -> Kurt2:
@@ -155,7 +155,7 @@ class SimulatedFaultRig:
 class FaultRigFactory:
     """Factory of robots in a corridor with one fault; picklable."""
 
-    settings: RobotSettings
+    settings: Kurt2Settings
 
     def open(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float, seed: int
@@ -166,7 +166,7 @@ class FaultRigFactory:
         s; `period_s` and `delay_s` are those of the fault's kind.
         """
         chance = random.Random(f"{target} {kind} {seed}")
-        phase_s = chance.uniform(0.0, self.settings.can.cycle_s)
+        phase_s = chance.uniform(0.0, self.settings.cycle_s)
         disturbance = TimedFault(kind, begin_s + phase_s, end_s + phase_s, period_s, delay_s)
         return SimulatedFaultRig(self.settings, part_of(target), disturbance, chance)
 

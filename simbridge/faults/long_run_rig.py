@@ -11,8 +11,8 @@ from hal.can_interface import CanInterface
 from hal.codec import load_codec
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S
@@ -22,7 +22,7 @@ from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.switchable_interface import Links, NumberedFrame, SwitchableInterface
 from simbridge.faults.timed_fault import Kind, TimedFault
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
@@ -37,7 +37,7 @@ class LongRunRig:
     watchdog's thread.
     """
 
-    def __init__(self, settings: RobotSettings, world: str, seed: int) -> None:
+    def __init__(self, settings: Kurt2Settings, world: str, seed: int) -> None:
         """Place the robot at a random start pose of the world, without a driver. Raises UserError."""
         self._chance = random.Random(f"lasting place in {world}, seed {seed}")
         self.time = EventScheduler()
@@ -51,7 +51,7 @@ class LongRunRig:
         """Number of crashes of the micro-controller, each followed by a power cycle."""
         self._settings = settings
         self._codec = load_codec(settings.can.database)
-        self._cycle_s = settings.can.cycle_s
+        self._cycle_s = settings.cycle_s
         self._numbers = 0
         self._robots_links, self._notebooks_links = Links(), Links()
         self._join: Callable[[str], CanInterface]
@@ -61,7 +61,7 @@ class LongRunRig:
         world_settings = load_world(world, settings)
         self._starts = [start.pose for start in world_settings.start_poses]
         self._wheels = FaultyWheels(settings)
-        self.simulation = SimulatedRobot(
+        self.simulation = SimulatedKurt2(
             settings,
             world_settings,
             self._robots_bus,

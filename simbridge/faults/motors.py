@@ -4,7 +4,7 @@ import random
 from collections import deque
 from typing import NamedTuple
 
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.timed_fault import TimedFault
 from simbridge.robot.wheels import Wheels
@@ -70,9 +70,9 @@ class FaultyMotor:
 class FaultyWheels(Wheels):
     """Wheels with at most one faulty motor."""
 
-    def __init__(self, robot: RobotSettings) -> None:
+    def __init__(self, robot: Kurt2Settings) -> None:
         super().__init__(robot)
-        self._cycle_s = robot.can.cycle_s
+        self._cycle_s = robot.cycle_s
         self._disturbed: dict[str, FaultyMotor] = {}
         """Faulty motor by part; other sides are sound."""
 

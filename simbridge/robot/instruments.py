@@ -29,7 +29,7 @@ class Instruments:
     def __init__(self, robot: RobotSettings, body: Body, wheels: Wheels) -> None:
         self._body = body
         self._wheels = wheels
-        self._cycle_s = robot.can.cycle_s
+        self._cycle_s = robot.cycle_s
         self._metres_per_tick = robot.geometry.metres_per_tick
         self._track_m = robot.geometry.effective_track_m
         self.reset()

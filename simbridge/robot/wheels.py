@@ -40,7 +40,7 @@ class Wheels:
     """
 
     def __init__(self, robot: RobotSettings) -> None:
-        motors, cycle_s = robot.motors, robot.can.cycle_s
+        motors, cycle_s = robot.motors, robot.cycle_s
         self.law = SideLaw(
             loop_gain=1.0 - math.exp(-cycle_s / motors.speed_loop_time_s),
             speed_up_m_s=motors.acceleration_m_s2 * cycle_s,

@@ -10,11 +10,11 @@ from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 
 _CLEARANCE_M = 0.1
-"""Least wall clearance of a robot that is to turn on the spot."""
+"""Wall clearance that is enough for a robot to turn on the spot; less is enough for a small one."""
 _CLOSE_M = 0.015
 """Least wall clearance of a pose close to things; a smaller one may start with a collision."""
 _IN_SIGHT_M = 0.45
-"""Distance at which a sensor hardly detects an object."""
+"""Distance at which a sensor that sees as far hardly detects an object."""
 _ON_A_POST_M = 0.001
 _TRIES = 100_000
 """Limit of tries; a single small post in a large room needs some thousands."""
@@ -27,15 +27,18 @@ class FreePoses:
         self._world = world
         self._geometry = robot.geometry
         self._sensors = robot.infrared.sensors
-        reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + _IN_SIGHT_M
+        half_m = robot.geometry.outline_length_m / 2, robot.geometry.outline_width_m / 2
+        self._clearance_m = min(_CLEARANCE_M, math.hypot(*half_m) - min(half_m))
+        self._in_sight_m = min(_IN_SIGHT_M, robot.infrared.far_m)
+        reach_m = max(math.hypot(each.x_m, each.y_m) for each in self._sensors) + self._in_sight_m
         self._sight = RayCaster(world, reach_m)
 
     def draw(self, chance: random.Random, *, close: bool = False) -> Pose:
-        """Return a random pose with 0.1 m clearance, or 0.015 m if `close`.
+        """Return a random pose with 0.1 m clearance, less for a small robot, or 0.015 m if `close`.
 
         Raises hal.settings.SettingsError if none is found.
         """
-        clearance_m = _CLOSE_M if close else _CLEARANCE_M
+        clearance_m = _CLOSE_M if close else self._clearance_m
         world = self._world.settings
         width_m, height_m = world.size_m
         for _ in range(_TRIES):
@@ -58,9 +61,9 @@ class FreePoses:
             y_m = pose.y_m + sensor.x_m * sin + sensor.y_m * cos
             direction_rad = pose.heading_rad + math.radians(sensor.heading_deg)
             along_x, along_y = math.cos(direction_rad), math.sin(direction_rad)
-            away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, _IN_SIGHT_M)
+            away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, self._in_sight_m)
             at = (x_m + away_m * along_x, y_m + away_m * along_y)
-            if away_m < _IN_SIGHT_M and (
+            if away_m < self._in_sight_m and (
                 not posts or any(math.dist(at, (post.x_m, post.y_m)) <= post.radius_m + _ON_A_POST_M for post in posts)
             ):
                 return True

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.settings import SettingsError
+from simbridge.simulated_link import SimulatedLink
 from simbridge.wire.settings import WireSettings, load_wire
 from simbridge.wire.wire import Wire
 from simbridge.wire.wire_interface import WireInterface
@@ -19,19 +20,11 @@ _KERNEL_DELIVERY_S = 0.001
 """Pause in which the kernel's own thread delivers the frames of a cycle."""
 
 
-class Line(Protocol):
+class Line(SimulatedLink, Protocol):
     """Both ends of the bus, and the course of a simulated cycle on it."""
 
     robot_end: CanBus
     notebook_end: CanBus
-
-    def cycle(self, step_robot: Callable[[], None]) -> None:
-        """Simulate one cycle up to the notebook's tick; `step_robot` is called once within it."""
-        ...
-
-    def live(self) -> AbstractContextManager[None]:
-        """Return a context in which the line follows the wall clock."""
-        ...
 
 
 class DirectLine:
@@ -58,6 +51,10 @@ class DirectLine:
     def live(self) -> AbstractContextManager[None]:
         """Return an empty context: this line has no time."""
         return nullcontext()
+
+    def close(self) -> None:
+        """Shut the robot's end."""
+        self.robot_end.shutdown()
 
 
 class WiredLine:
@@ -98,6 +95,10 @@ class WiredLine:
             yield
         finally:
             self.wire.follow(None)
+
+    def close(self) -> None:
+        """Shut the robot's end."""
+        self.robot_end.shutdown()
 
 
 def open_line(wire: str, cycle_s: float, seed: int, bus: str | None = None) -> Line:

@@ -1,9 +1,9 @@
 """Sensor readings for tests; distances become counts by the infra-red law."""
 
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.robot import SensorReadings
-from hal.robot_settings import RobotSettings, load_robot
 
-ROBOT: RobotSettings = load_robot()
+ROBOT: Kurt2Settings = load_kurt2()
 SENSORS = ROBOT.infrared.names
 
 

@@ -25,7 +25,7 @@ from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 SETTINGS = load_robot()
-PERIOD_S = SETTINGS.can.cycle_s
+PERIOD_S = SETTINGS.cycle_s
 REACH_TICKS = 35
 """A robot whose teacher is gone stands so many ticks after the last message that he sent (350 ms)."""
 _LONGEST_S = 60.0

@@ -8,8 +8,8 @@ from pathlib import Path
 import anyio
 import pytest
 
+from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
-from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
@@ -32,7 +32,7 @@ from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
 from tests.knowledge.refusals import refused
 
-ROBOT, TASK = load_robot(), load_task("wall_following")
+ROBOT, TASK = load_kurt2(), load_task("wall_following")
 TEACHER = TeacherNow("phone", 2, "noon")
 
 

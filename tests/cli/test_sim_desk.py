@@ -12,7 +12,7 @@ from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
 from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
-from simbridge.simulated_world import Kurt2World
+from simbridge.simulated_world import RealtimeWorld
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import ROBOT
@@ -37,7 +37,7 @@ class Table:
         self.asked: list[object] = []
         simulation = self.standalone.simulation
         simulation.submit = lambda job: self.asked.append(job())  # type: ignore[method-assign]  # no thread runs here
-        self.desk = SimConsole(self.standalone, WORLD, Kurt2World(self.robot, WORLD, ROBOT.geometry, simulation))
+        self.desk = SimConsole(self.standalone, WORLD, RealtimeWorld(self.robot, WORLD, ROBOT.geometry, simulation))
         self.news = News(self.standalone)
 
     def cycles(self, count: int, told: SpeedControl | SystemControl | None = None) -> list[str]:

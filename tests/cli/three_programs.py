@@ -13,17 +13,17 @@ import can
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.codec import load_codec
 from hal.control import RawControl, decode_control
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.cli.helpers import Running, running
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 CODEC = load_codec()
 ENCODER = CODEC.message("ENCODER")
-WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
+WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.cycle_s)
 BRAKING_CYCLES = 30
 """Cycles that braking takes: 20 from the guard's limit of 0.6 m/s at 3 m/s², and some for the speed loop."""
 LONG_ENOUGH_S = 120.0

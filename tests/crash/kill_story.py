@@ -52,7 +52,7 @@ LONGEST_LIFE_S = 1.5
 MOST_LESSONS = 5
 REPLAYED_EVERY = 3
 MOST_FURTHER_S = 0.4
-CYCLE_S = load_robot().can.cycle_s
+CYCLE_S = load_robot().cycle_s
 _TOO_MANY_CYCLES = 10 * (WATCHDOG_CYCLES + BRAKING_CYCLES)
 _LOOK_S = 0.005
 

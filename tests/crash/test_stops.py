@@ -9,7 +9,7 @@ from tests.crash.stop_story import MOST_CYCLES_TO_REST, ROBOT, Stopped, a_robot_
 TICKS_CEASED_S = ROBOT.guard.ticks_ceased_s
 SLACK_S = 0.02
 """The watchdog looks every 10 ms, and a frame takes its time."""
-MOST_AT_ONCE = round(ROBOT.guard.command_age_s / ROBOT.can.cycle_s) + 2
+MOST_AT_ONCE = round(ROBOT.guard.command_age_s / ROBOT.cycle_s) + 2
 """CONTROL frames in the time that a command may be old: one per cycle, one that is late and one that comes at its time.
 What was decided before a halt and said after it would come on top."""
 SHORT_S = 0.08

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import anyio
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
@@ -16,7 +16,7 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from simbridge.simulation import Kurt2SimulationFactory
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 STAGE = Kurt2SimulationFactory(ROBOT)
 
 

@@ -68,7 +68,7 @@ class Service:
             if record.mid is not None and record.mid.event is not None:
                 self.runtime.scheduler.end()
 
-        await self.runtime.scheduler.run(round(seconds / ROBOT.can.cycle_s), after_tick)
+        await self.runtime.scheduler.run(round(seconds / ROBOT.cycle_s), after_tick)
         return self.record
 
     @property

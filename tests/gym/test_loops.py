@@ -12,7 +12,7 @@ from gymnasium.vector import SyncVectorEnv
 import kurt2rt.gym  # noqa: F401 - registers the environments
 from hal.batch import DriveSettings, FixedSpeeds
 from hal.batch_refusal import BatchRefusedError
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.gym.agent_task import load_agent_task
@@ -105,8 +105,8 @@ def test_episode_ends_stuck_in_the_batch_too() -> None:
 def test_robot_that_leaves_the_batch_goes_on_over_the_bus() -> None:
     # With such a short time any sensor repeats itself for too long at times, and the robot stops.
     guard = ROBOT.guard.model_copy(update={"frozen_infrared_s": 0.11})
-    setup = setup_of(ROBOT.model_copy(update={"guard": guard}))
-    factory = Kurt2SimulationFactory(setup.settings)
+    robot = ROBOT.model_copy(update={"guard": guard})
+    setup, factory = setup_of(robot), Kurt2SimulationFactory(robot)
     with (
         closing(BusDrive(factory.open("a", 3, PURPOSE), setup)) as bus,
         closing(BatchDrive(factory, setup)) as batch,
@@ -121,7 +121,7 @@ def test_robot_that_leaves_the_batch_goes_on_over_the_bus() -> None:
         assert one.ending is Ending.STOPPED
 
 
-def setup_of(settings: RobotSettings, task: str = "wall_following") -> EpisodeSetup:
+def setup_of(settings: Kurt2Settings, task: str = "wall_following") -> EpisodeSetup:
     """Return the setup of an episode in world A, seed 3, of at most 300 s."""
     return EpisodeSetup(settings, load_agent_task(task), "a", 3, start=None, ends_at=read_endings(()), ticks=30_000)
 

@@ -5,38 +5,55 @@ from collections.abc import Callable
 from typing import Any
 
 from hal.bus import CanBus
+from hal.can_wheel_port import CanWheelPort
 from hal.guard import Guard
 from hal.guard_reason import GuardReason
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_settings import BumperEnd, BumperSettings, RobotSettings, SpeedMode
+from hal.robot_settings import BumperEnd, BumperSettings
+from tests.hal.helpers import guard_on
 
-MakeGuard = Callable[[RobotSettings, CanBus], Guard]
+MakeGuard = Callable[[Kurt2Settings, CanBus], Guard]
 
 
 def with_limits(**factors: float) -> MakeGuard:
     """Believes its limits to be wider by these factors."""
 
-    def make(robot: RobotSettings, bus: CanBus) -> Guard:
+    def make(robot: Kurt2Settings, bus: CanBus) -> Guard:
         wider = {name: getattr(robot.guard, name) * factor for name, factor in factors.items()}
-        return Guard(robot.model_copy(update={"guard": robot.guard.model_copy(update=wider)}), bus)
+        return guard_on(robot.model_copy(update={"guard": robot.guard.model_copy(update=wider)}), bus)
 
     return make
 
 
-def with_can(**settings: Any) -> MakeGuard:
-    """Believes its bus to be another."""
+def with_settings(**settings: Any) -> MakeGuard:
+    """Believes other settings."""
 
-    def make(robot: RobotSettings, bus: CanBus) -> Guard:
-        return Guard(robot.model_copy(update={"can": robot.can.model_copy(update=settings)}), bus)
+    def make(robot: Kurt2Settings, bus: CanBus) -> Guard:
+        return guard_on(robot.model_copy(update=settings), bus)
 
     return make
+
+
+def with_mode(mode: SpeedMode) -> MakeGuard:
+    """Believes its controller to be in another mode."""
+
+    def make(robot: Kurt2Settings, bus: CanBus) -> Guard:
+        return guard_on(robot.model_copy(update={"can": robot.can.model_copy(update={"speed_mode": mode})}), bus)
+
+    return make
+
+
+def of_kind(kind: type[Guard]) -> MakeGuard:
+    """Return the maker of a careless guard on a bus."""
+    return lambda robot, bus: kind(robot, CanWheelPort(robot, bus))
 
 
 def with_bumpers(believed: Callable[[BumperSettings], BumperSettings]) -> MakeGuard:
     """Believes its bumpers to be elsewhere."""
 
-    def make(robot: RobotSettings, bus: CanBus) -> Guard:
-        return Guard(robot.model_copy(update={"bumpers": tuple(map(believed, robot.bumpers))}), bus)
+    def make(robot: Kurt2Settings, bus: CanBus) -> Guard:
+        return guard_on(robot.model_copy(update={"bumpers": tuple(map(believed, robot.bumpers))}), bus)
 
     return make
 
@@ -190,27 +207,27 @@ CARELESS: dict[str, tuple[MakeGuard, str]] = {
     "patient with bumpers": (with_limits(stale_bumper_s=1.0001), "drives on, but: bumper stale"),
     "patient with commands": (with_limits(command_age_s=1.0001), "drives on, but: command too old"),
     "far too patient with commands": (with_limits(command_age_s=3.0), "a command older than 20 ms"),
-    "jumps after a late tick": (with_can(cycle_s=0.1), "further than the slew limits let it"),
-    "in another mode": (with_can(speed_mode=SpeedMode.SPEED), "a frame is no set point of the robot's mode"),
+    "jumps after a late tick": (with_settings(cycle_s=0.1), "further than the slew limits let it"),
+    "in another mode": (with_mode(SpeedMode.SPEED), "a frame is no set point of the robot's mode"),
     "no bumper in front": (with_bumpers(at_the(BumperEnd.REAR)), "forward against a bumper"),
     "no bumper behind": (with_bumpers(at_the(BumperEnd.FRONT)), "backward against a bumper"),
-    "takes none for zero": (TakesNoneForZero, "drives on, but: not a number"),
-    "takes no time for fresh": (TakesNoTimeForFresh, "drives on, but: encoder stale"),
-    "takes any age below for fresh": (TakesAnyAgeBelowForFresh, "drives on, but: infra-red stale"),
-    "trusts the future": (TrustsTheFuture, "drives on, but: clock ran backwards"),
-    "never looks back": (NeverLooksBack, "drives on, but: clock ran backwards"),
-    "forgetful": (Forgetful, "latched, and no brake goes out"),
-    "believes the last": (BelievesTheLast, "it is latched for another reason"),
-    "stops at the next tick": (StopsAtTheNextTick, "a stop does not send a brake at once"),
-    "ignores the watchdog": (IgnoresTheWatchdog, "a stop does not send a brake at once"),
-    "gets over a lost bus": (ReleasesItself, "it is latched for another reason"),
-    "gets over a blocked bus": (OverlooksABlockedBus, "it is latched for another reason"),
-    "never releases": (NeverReleases, "it does not say that it is latched"),
-    "says it twice": (SaysTwice, "not one frame a tick"),
-    "says other than it does": (SaysOtherThanItDoes, "it grants something else than it sends"),
-    "gives no reasons": (GivesNoReasons, "it does otherwise and says not why"),
-    "never moves": (NeverMoves, "it holds back what it may grant"),
-    "drives the other way": (DrivesTheOtherWay, "away from what is wanted"),
-    "drives back before it rests": (DrivesBackBeforeItRests, "not one frame a tick"),
+    "takes none for zero": (of_kind(TakesNoneForZero), "drives on, but: not a number"),
+    "takes no time for fresh": (of_kind(TakesNoTimeForFresh), "drives on, but: encoder stale"),
+    "takes any age below for fresh": (of_kind(TakesAnyAgeBelowForFresh), "drives on, but: infra-red stale"),
+    "trusts the future": (of_kind(TrustsTheFuture), "drives on, but: clock ran backwards"),
+    "never looks back": (of_kind(NeverLooksBack), "drives on, but: clock ran backwards"),
+    "forgetful": (of_kind(Forgetful), "latched, and no brake goes out"),
+    "believes the last": (of_kind(BelievesTheLast), "it is latched for another reason"),
+    "stops at the next tick": (of_kind(StopsAtTheNextTick), "a stop does not send a brake at once"),
+    "ignores the watchdog": (of_kind(IgnoresTheWatchdog), "a stop does not send a brake at once"),
+    "gets over a lost bus": (of_kind(ReleasesItself), "it is latched for another reason"),
+    "gets over a blocked bus": (of_kind(OverlooksABlockedBus), "it is latched for another reason"),
+    "never releases": (of_kind(NeverReleases), "it does not say that it is latched"),
+    "says it twice": (of_kind(SaysTwice), "not one frame a tick"),
+    "says other than it does": (of_kind(SaysOtherThanItDoes), "it grants something else than it sends"),
+    "gives no reasons": (of_kind(GivesNoReasons), "it does otherwise and says not why"),
+    "never moves": (of_kind(NeverMoves), "it holds back what it may grant"),
+    "drives the other way": (of_kind(DrivesTheOtherWay), "away from what is wanted"),
+    "drives back before it rests": (of_kind(DrivesBackBeforeItRests), "not one frame a tick"),
 }
 """Fault of each careless guard, and a rule that it breaks."""

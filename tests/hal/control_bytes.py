@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot_settings import MotorSettings, RobotSettings, SpeedMode
+from hal.kurt2_settings import Kurt2MotorSettings, Kurt2Settings, SpeedMode
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -48,7 +48,7 @@ class ControlFrames(NamedTuple):
     right: Side
 
 
-def read_control(robot: RobotSettings, payloads: NDArray[np.uint8]) -> ControlFrames:
+def read_control(robot: Kurt2Settings, payloads: NDArray[np.uint8]) -> ControlFrames:
     """Frames of eight bytes each, (frames, 8)."""
     brakes = (payloads == BRAKE).all(axis=1)
     mode = payloads[:, 0].astype(np.int64) * 256 + payloads[:, 1]
@@ -74,7 +74,7 @@ def _unit_side(units: NDArray[np.int64], unit_m_s: float, most: float) -> Side:
     return _side((units * unit_m_s).astype(np.float64), magnitude, units < 0, units == 0, units == 0)
 
 
-def _raw_side(motors: MotorSettings, payloads: NDArray[np.uint8]) -> tuple[Side, Flags]:
+def _raw_side(motors: Kurt2MotorSettings, payloads: NDArray[np.uint8]) -> tuple[Side, Flags]:
     flags = payloads[:, 0]
     pwm = payloads[:, 1].astype(np.int64) * 256 + payloads[:, 2]
     brake, backward = (flags & 1) != 0, (flags & 2) != 0

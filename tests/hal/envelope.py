@@ -155,7 +155,7 @@ class _Rules:
         self._expect_brakes("latched, and no brake goes out", first, sent, np.where(tells, early, -1), tick)
         at = np.minimum(first + early, len(self._played.payloads) - 1)
         self._never("a frame is no set point of the robot's mode", tells & ~self._frames.set_points[at], tick)
-        longest_s = 2.0 * streams.robot.can.cycle_s
+        longest_s = 2.0 * streams.robot.cycle_s
         elapsed_s = np.nan_to_num(np.clip(now_s - self._last_s, 0.0, longest_s))
         front, rear = self._pressed(BumperEnd.FRONT, tick), self._pressed(BumperEnd.REAR, tick)
         moment = _Moment(tick, tells, stay, front, rear, elapsed_s, at)

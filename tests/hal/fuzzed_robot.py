@@ -20,7 +20,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import FuzzFrames
 from tests.hal.helpers import ROBOT, TICK_S
@@ -42,7 +42,7 @@ class FuzzedRobot:
         robot_bus = open_bus(spec)
         self.onlooker = robot_bus.tap = Onlooker()
         self.kurt2 = Kurt2(ROBOT, robot_bus)
-        self.simulation = SimulatedRobot(ROBOT, load_world("a", ROBOT), self._controller_bus, seed)
+        self.simulation = SimulatedKurt2(ROBOT, load_world("a", ROBOT), self._controller_bus, seed)
         self.bad_frames = 0
         self._spells = FuzzFrames(seed, fd=kind == "virtual").spells()
         self._chance = random.Random(seed)

@@ -6,17 +6,20 @@ from collections.abc import Iterable
 import can
 
 from hal.bus import CanBus, open_bus
+from hal.can_wheel_port import CanWheelPort
 from hal.codec import Codec, load_codec
 from hal.control import Control, decode_control
 from hal.frame import Frame
+from hal.guard import Guard
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.robot import SensorReadings
-from hal.robot_settings import GuardSettings, RobotSettings, load_robot
+from hal.robot_settings import GuardSettings
 
 CODEC: Codec = load_codec()
-ROBOT: RobotSettings = load_robot()
+ROBOT: Kurt2Settings = load_kurt2()
 SENSORS = ROBOT.infrared.sensors
 INFRARED_FRAMES = ("ADC00_03", "ADC04_07", "ADC08_11", "BDC00_03", "BDC04_07")
-TICK_S = ROBOT.can.cycle_s
+TICK_S = ROBOT.cycle_s
 
 _numbers = itertools.count()
 
@@ -25,6 +28,11 @@ def bus_pair() -> tuple[CanBus, CanBus]:
     """Both ends of an in-process bus of its own: the robot's, and that of the controller."""
     name = f"virtual:hal-test-{next(_numbers)}"
     return open_bus(name), open_bus(name)
+
+
+def guard_on(robot: Kurt2Settings, bus: CanBus) -> Guard:
+    """Return the guard of a robot on a bus."""
+    return Guard(robot, CanWheelPort(robot, bus))
 
 
 def cycle(counts: int = 200, left_ticks: int = 0, right_ticks: int = 0, bumpers: int = 0) -> list[Frame]:
@@ -68,7 +76,7 @@ def fresh(
     return SensorReadings(time_s, (200,) * len(SENSORS), infrared_age_s, 0, 0, encoder_age_s, bumpers, bumper_age_s)
 
 
-def robot_with(**limits: float) -> RobotSettings:
+def robot_with(**limits: float) -> Kurt2Settings:
     """Return the shipped robot with other guard settings."""
     guard = GuardSettings(**{**ROBOT.guard.model_dump(), **limits})
     return ROBOT.model_copy(update={"guard": guard})

@@ -12,15 +12,16 @@ from hal.bus import CanBus
 from hal.frame import Frame
 from hal.guard import Guard
 from hal.guard_reason import GuardReason
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_settings import RobotSettings
 from hal.watchdog import Watchdog
+from tests.hal.helpers import guard_on
 from tests.hal.streams import Bytes, Flags, Floats, Streams
 
 FIRST, AGAIN, SIGNAL = GuardReason.SERVICE_ENDS, GuardReason.RUN_OVER, GuardReason.PROGRAM_WAITS
 """Reasons of the stops in a stream."""
 
-MakeGuard = Callable[[RobotSettings, CanBus], Guard]
+MakeGuard = Callable[[Kurt2Settings, CanBus], Guard]
 
 
 class SlowBus:
@@ -133,7 +134,7 @@ _Noted = tuple[int, int, int, int, bool, str]
 """Frames of the tick (first, first of drive, end), waiting frames, early signal, and reason of the latched stop."""
 
 
-def play(streams: Streams, make_guard: MakeGuard = Guard) -> Played:
+def play(streams: Streams, make_guard: MakeGuard = guard_on) -> Played:
     """Let one guard for each stream live through it."""
     end = SlowBus(receives_own_frames=streams.receives_own_frames)
     grants: list[GuardResult] = []

@@ -4,13 +4,13 @@ import dataclasses
 
 import numpy as np
 
-from hal.guard import Guard
 from tests.hal.envelope import Violation, violations
+from tests.hal.helpers import guard_on
 from tests.hal.playing import MakeGuard, play
 from tests.hal.streams import Streams
 
 
-def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = Guard) -> Streams:
+def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = guard_on) -> Streams:
     """Return the stream of the violation without the ticks that are not needed to break the same rule."""
     ticks = np.arange(violation.tick + 1)
     size = len(ticks)
@@ -26,10 +26,10 @@ def shrunk(streams: Streams, violation: Violation, make_guard: MakeGuard = Guard
     return streams.only(violation.stream, ticks)
 
 
-def told(streams: Streams, make_guard: MakeGuard = Guard) -> str:
+def told(streams: Streams, make_guard: MakeGuard = guard_on) -> str:
     """Return the text of a short stream: settings, and inputs and outputs of each tick."""
     played = play(streams, make_guard)
-    lines = [f"{streams.robot.can.speed_mode}, {streams.robot.can.cycle_s} s, {streams.robot.guard}"]
+    lines = [f"{streams.robot.can.speed_mode}, {streams.robot.cycle_s} s, {streams.robot.guard}"]
     for tick in range(streams.shape[1]):
         comes_in = {
             field.name: value[0, tick]

@@ -7,7 +7,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.robot_settings import BumperEnd, BumperSettings, GuardSettings, RobotSettings, SpeedMode
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot_settings import BumperEnd, BumperSettings, GuardSettings
 from tests.hal.helpers import ROBOT
 
 Floats = NDArray[np.float64]
@@ -25,7 +26,7 @@ class Streams:
     that go out meanwhile.
     """
 
-    robot: RobotSettings
+    robot: Kurt2Settings
     receives_own_frames: bool
     """The bus tells when it has carried a frame."""
     left_m_s: Floats
@@ -75,8 +76,8 @@ def draw_streams(seed: int, streams: int, ticks: int = TICKS_PER_STREAM) -> Stre
     chance = _Chance(np.random.default_rng([seed, 4]), (streams, ticks))
     robot = _robot(chance.generator)
     limits = robot.guard
-    now_s, backwards = _times(chance, robot.can.cycle_s)
-    left_m_s, right_m_s = _wishes(chance, limits, robot.can.cycle_s)
+    now_s, backwards = _times(chance, robot.cycle_s)
+    left_m_s, right_m_s = _wishes(chance, limits, robot.cycle_s)
     stormy = chance.streams(0.2)
     receives_own_frames = bool(chance.generator.random() < 0.5)
     stalls = chance.spells(0.2, starts=0.05, ends=0.2)
@@ -163,7 +164,7 @@ class _Chance:
         return np.where(self.generator.random(self.shape) < 0.6, limit_s * (1.0 + hair), odd)
 
 
-def _robot(generator: np.random.Generator) -> RobotSettings:
+def _robot(generator: np.random.Generator) -> Kurt2Settings:
     """Return the shipped robot in one of its modes, or one with other limits, another cycle and other bumpers."""
     modes = list(SpeedMode)
     mode = modes[generator.integers(len(modes))]
@@ -187,7 +188,8 @@ def _robot(generator: np.random.Generator) -> RobotSettings:
     ends = [BumperEnd.FRONT if front else BumperEnd.REAR for front in generator.random(generator.integers(0, 9)) < 0.5]
     return ROBOT.model_copy(
         update={
-            "can": ROBOT.can.model_copy(update={"speed_mode": mode, "cycle_s": cycle_s}),
+            "cycle_s": cycle_s,
+            "can": ROBOT.can.model_copy(update={"speed_mode": mode}),
             "guard": GuardSettings(**{**ROBOT.guard.model_dump(), **drawn}),
             "bumpers": tuple(BumperSettings(name=f"bumper {at}", end=end) for at, end in enumerate(ends)),
         }

@@ -11,7 +11,7 @@ import pytest
 from hal.bus import CONTROL_ID, open_bus
 from hal.in_process_bus import InProcessBus
 from simbridge.controller.microcontroller import CRASH_STEP_M_S, MicroController
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import CONTROL_MODES, FuzzFrames
 from tests.hal.fuzzed_robot import FuzzedRobot
@@ -67,7 +67,7 @@ def tell_the_controller(seed: int, cycles: int) -> MicroController:
     name = f"control-fuzz-{next(_numbers)}"
     bus, stranger = open_bus(f"virtual:{name}"), InProcessBus(name)
     stranger.set_id_filter(frozenset())
-    robot = SimulatedRobot(ROBOT, load_world("a", ROBOT), bus, seed)
+    robot = SimulatedKurt2(ROBOT, load_world("a", ROBOT), bus, seed)
     controller = robot.controller
     frames = FuzzFrames(seed)
     understood = 0

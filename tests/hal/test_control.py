@@ -21,8 +21,8 @@ from hal.control import (
     encode_control,
     set_point,
 )
+from hal.kurt2_settings import SpeedMode
 from hal.robot import WheelSpeeds
-from hal.robot_settings import SpeedMode
 from tests.hal.helpers import ROBOT
 
 MOTORS = ROBOT.motors

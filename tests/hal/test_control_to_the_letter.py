@@ -3,11 +3,13 @@
 import pytest
 
 from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl, control_frame, decode_control, set_point
+from hal.kurt2_settings import Kurt2MotorSettings, SpeedMode
 from hal.robot import WheelSpeeds
-from hal.robot_settings import MotorSettings, SpeedMode
 from tests.hal.helpers import ROBOT
 
-STEEP = MotorSettings(**{**ROBOT.motors.model_dump(), "raw_drive": (100, 500, 1000), "raw_speed_m_s": (0.1, 0.3, 0.9)})
+STEEP = Kurt2MotorSettings(
+    **{**ROBOT.motors.model_dump(), "raw_drive": (100, 500, 1000), "raw_speed_m_s": (0.1, 0.3, 0.9)}
+)
 """A motor that turns as soon as it is driven, and ever faster up to the end."""
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hal.guard_reason import GuardReason
-from hal.robot_settings import SpeedMode
+from hal.kurt2_settings import SpeedMode
 from kurt2rt.platform.gc_control import gc_frozen
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations

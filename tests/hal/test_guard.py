@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from hal.bus import CanBus
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
-from hal.guard import Guard
 from hal.guard_reason import GuardReason
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_settings import BumperEnd, RobotSettings, SpeedMode
-from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, robot_with, send
+from hal.robot_settings import BumperEnd
+from tests.hal.helpers import ROBOT, TICK_S, bus_pair, controls, cycle, fresh, guard_on, robot_with, send
 
 Ends = tuple[CanBus, CanBus]
 BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
@@ -24,8 +24,8 @@ LIMITS = ROBOT.guard
 class Driver:
     """Driver of a guard tick by tick, with the receiving controller."""
 
-    def __init__(self, ends: Ends, robot: RobotSettings = ROBOT) -> None:
-        self.guard = Guard(robot, ends[0])
+    def __init__(self, ends: Ends, robot: Kurt2Settings = ROBOT) -> None:
+        self.guard = guard_on(robot, ends[0])
         self._far_end = ends[1]
         self.now_s = 50.0
 
@@ -310,9 +310,9 @@ def test_a_full_queue_on_the_way_out_is_a_lost_bus(driver: Driver, ends: Ends) -
 
 
 def test_one_bus_has_one_guard(ends: Ends) -> None:
-    Guard(ROBOT, ends[0])
+    guard_on(ROBOT, ends[0])
     with pytest.raises(OSError, match="CONTROL"):
-        Guard(ROBOT, ends[0])
+        guard_on(ROBOT, ends[0])
 
 
 @pytest.mark.parametrize(
@@ -354,7 +354,7 @@ def histories(draw: st.DrawFn) -> Iterator[tuple[float, float, int, float]]:
 def test_no_history_of_wishes_breaks_a_limit(history: Iterator[tuple[float, float, int, float]]) -> None:
     """Any requests, bumpers and time steps stay within speed, slew and bumper limits, and one frame a tick."""
     ends = bus_pair()
-    guard = Guard(ROBOT, ends[0])
+    guard = guard_on(ROBOT, ends[0])
     now_s, before = 0.0, STANDSTILL
     for left, right, bumpers, step_s in history:
         now_s += step_s if math.isfinite(step_s) and abs(step_s) < 1e6 else 0.0

@@ -7,11 +7,10 @@ import can
 import pytest
 
 from hal.bus import CanBus
-from hal.guard import Guard
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.watchdog import Watchdog
-from tests.hal.helpers import ROBOT, fresh
+from tests.hal.helpers import ROBOT, fresh, guard_on
 from tests.hal.playing import SlowBus
 from tests.hal.test_guard import FRONT, Driver
 
@@ -67,7 +66,7 @@ class RefusesOne(SlowBus):
 
 def test_refused_frame_is_reported_though_its_brake_was_sent() -> None:
     end = RefusesOne(receives_own_frames=False)
-    guard = Guard(ROBOT, CanBus("slow", lambda _: end))
+    guard = guard_on(ROBOT, CanBus("slow", lambda _: end))
     assert guard.drive(WheelSpeeds(0.1, 0.1), fresh(1.0), 1.0, 1.0).reasons == (GuardReason.BUS_LOST,)
     assert guard.send_failures == 1
     assert "sending failed" in guard.bus_trouble
@@ -75,7 +74,7 @@ def test_refused_frame_is_reported_though_its_brake_was_sent() -> None:
 
 def test_a_frame_is_made_only_when_it_says_something_new() -> None:
     end = SlowBus(receives_own_frames=False)
-    guard = Guard(ROBOT, CanBus("slow", lambda _: end))
+    guard = guard_on(ROBOT, CanBus("slow", lambda _: end))
     for tick, speeds in enumerate([(0.01, 0.0), (0.01, 0.0), (0.01, 0.01), (0.01, 0.01), (0.0, 0.01)]):
         guard.drive(WheelSpeeds(*speeds), fresh(tick * 0.01), tick * 0.01, tick * 0.01)
     first, second, third, fourth, fifth = end.attempts
@@ -84,14 +83,14 @@ def test_a_frame_is_made_only_when_it_says_something_new() -> None:
 
 
 def test_the_silence_that_is_allowed_is_allowed_to_its_end(ends: Ends) -> None:
-    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.125, lambda: 100.0)
+    watchdog = Watchdog(guard_on(ROBOT, ends[0]), 0.125, lambda: 100.0)
     watchdog.beat()
     assert not watchdog.check(100.125)
     assert watchdog.check(100.125 + 1e-9)
 
 
 def test_watchdog_thread_has_a_name_and_is_a_daemon(ends: Ends) -> None:
-    with Watchdog(Guard(ROBOT, ends[0]), 0.1) as watchdog:
+    with Watchdog(guard_on(ROBOT, ends[0]), 0.1) as watchdog:
         (thread,) = [thread for thread in threading.enumerate() if thread.name == "watchdog"]
         assert thread.daemon
         with pytest.raises(RuntimeError, match=r"^the watchdog"):

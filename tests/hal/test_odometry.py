@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from hal.kurt2_settings import load_kurt2
 from hal.odometry import PlanePose, WheelOdometry
-from hal.robot_settings import load_robot
 
-GEOMETRY = load_robot().geometry
+GEOMETRY = load_kurt2().geometry
 TRACK_M = GEOMETRY.effective_track_m
 
 

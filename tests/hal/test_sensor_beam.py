@@ -4,11 +4,11 @@ import math
 
 import pytest
 
+from hal.kurt2_settings import load_kurt2
 from hal.odometry import PlanePose, WheelMotion
-from hal.robot_settings import load_robot
 from hal.sensor_beam import beam_of
 
-INFRARED = load_robot().infrared
+INFRARED = load_kurt2().infrared
 
 
 @pytest.mark.parametrize("place", range(len(INFRARED.sensors)), ids=INFRARED.names)

@@ -2,10 +2,10 @@
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.sensor_ring import SubstituteReadings, neighbours_of
 
-INFRARED = load_robot().infrared
+INFRARED = load_kurt2().infrared
 PLACES = {name: place for place, name in enumerate(INFRARED.names)}
 
 

@@ -5,15 +5,15 @@ from collections.abc import Callable
 
 import pytest
 
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.robot import SensorReadings
-from hal.robot_settings import RobotSettings, load_robot
 from hal.sensor_signs import LOOK_TICKS, RANGE_TICKS, SEES_NOTHING_TICKS, STUCK_TIMES, SensorFault, SensorRules
 from hal.sensor_watch import BrokenSensor, SensorWatch
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 INFRARED = ROBOT.infrared
-STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.can.cycle_s)
-FORWARD_TICKS = round(0.3 * ROBOT.can.cycle_s / ROBOT.geometry.metres_per_tick)
+STUCK_TICKS = round(STUCK_TIMES * ROBOT.guard.frozen_infrared_s / ROBOT.cycle_s)
+FORWARD_TICKS = round(0.3 * ROBOT.cycle_s / ROBOT.geometry.metres_per_tick)
 """Encoder ticks of a tick at 0.3 m/s."""
 PLACES = {name: place for place, name in enumerate(INFRARED.names)}
 
@@ -24,7 +24,7 @@ Fault = Callable[[int], int]
 class Drive:
     """Readings of 18 noisy sensors, of which some see a wall that comes and goes, and a watch."""
 
-    def __init__(self, robot: RobotSettings = ROBOT, rules: SensorRules = SensorRules.MOTION) -> None:
+    def __init__(self, robot: Kurt2Settings = ROBOT, rules: SensorRules = SensorRules.MOTION) -> None:
         self.watch = SensorWatch(robot, rules)
         self.left_ticks = self.right_ticks = 0
         """Encoder ticks in each tick of driving; 0, as on a circle round what a sensor sees."""

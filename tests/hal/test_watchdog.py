@@ -6,10 +6,9 @@ import pytest
 
 from hal.bus import CanBus
 from hal.control import RawControl, RawSide
-from hal.guard import Guard
 from hal.guard_reason import GuardReason
 from hal.watchdog import Watchdog
-from tests.hal.helpers import ROBOT, controls
+from tests.hal.helpers import ROBOT, controls, guard_on
 
 Ends = tuple[CanBus, CanBus]
 
@@ -24,7 +23,7 @@ class VirtualClock:
 
 def test_watchdog_allows_the_silence_from_the_first_beat(ends: Ends) -> None:
     clock = VirtualClock()
-    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, clock)
+    watchdog = Watchdog(guard_on(ROBOT, ends[0]), 0.1, clock)
     assert not watchdog.check(1e9)
     watchdog.beat()
     assert not watchdog.check(100.1 - 1e-9)
@@ -37,7 +36,7 @@ def test_watchdog_allows_the_silence_from_the_first_beat(ends: Ends) -> None:
 
 def test_the_thread_brakes_again_and_again_while_no_tick_comes(ends: Ends) -> None:
     robot_end, far_end = ends
-    guard = Guard(ROBOT, robot_end)
+    guard = guard_on(ROBOT, robot_end)
     clock = VirtualClock()
     looks = threading.Semaphore(0)
 
@@ -60,7 +59,7 @@ def test_the_thread_brakes_again_and_again_while_no_tick_comes(ends: Ends) -> No
 
 
 def test_a_restart_waits_for_a_beat_again(ends: Ends) -> None:
-    guard = Guard(ROBOT, ends[0])
+    guard = guard_on(ROBOT, ends[0])
     watchdog = Watchdog(guard, 0.1)
     watchdog.beat()
     watchdog.start()
@@ -78,7 +77,7 @@ def _wait_for(looks: threading.Semaphore, count: int) -> None:
 
 
 def test_watchdog_exposes_its_thread_while_running(ends: Ends) -> None:
-    watchdog = Watchdog(Guard(ROBOT, ends[0]), 0.1, VirtualClock())
+    watchdog = Watchdog(guard_on(ROBOT, ends[0]), 0.1, VirtualClock())
     assert watchdog.thread is None
     with watchdog:
         assert watchdog.thread in threading.enumerate()

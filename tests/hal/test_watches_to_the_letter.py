@@ -4,9 +4,10 @@ from typing import Any
 
 import pytest
 
+from hal.infrared_frames import board_of
 from hal.infrared_watch import InfraredWatch
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
 from hal.wheel_watch import REVERSAL_SPEED_M_S, WheelWatch
 from tests.hal.helpers import robot_with
 
@@ -14,20 +15,20 @@ FINE = 0.0001
 """Speed in m/s of one tick a cycle."""
 
 
-def measured_finely(metres_per_tick: float = 1e-6, cycle_s: float = 0.01, **limits: Any) -> RobotSettings:
+def measured_finely(metres_per_tick: float = 1e-6, cycle_s: float = 0.01, **limits: Any) -> Kurt2Settings:
     """Shipped robot, watched without tolerance, with encoders of another resolution."""
     least = {"wheel_error_m_s": 0.004, "wheel_error_share": 0.0, "wheel_error_s": 0.001}
     robot = robot_with(**{**least, **limits})
     geometry = robot.geometry.model_copy(update={"metres_per_tick": metres_per_tick})
-    return robot.model_copy(update={"geometry": geometry, "can": robot.can.model_copy(update={"cycle_s": cycle_s})})
+    return robot.model_copy(update={"geometry": geometry, "cycle_s": cycle_s})
 
 
 class Watched:
     """Two sides that turn as the test says."""
 
-    def __init__(self, robot: RobotSettings, first_ticks: int) -> None:
+    def __init__(self, robot: Kurt2Settings, first_ticks: int) -> None:
         self._watch = WheelWatch(robot)
-        self._cycle_s = robot.can.cycle_s
+        self._cycle_s = robot.cycle_s
         self.now_s = 8.0
         assert self._watch.check(first_ticks, first_ticks, 1, self.now_s) == ""
 
@@ -90,18 +91,18 @@ def test_two_looks_at_the_same_time_forget_nothing() -> None:
 
 
 def test_board_is_frozen_exactly_at_the_limit() -> None:
-    watch = InfraredWatch(("ADC00", "BDC00"), 1.0)
+    watch = InfraredWatch(map(board_of, ("ADC00", "BDC00")), 1.0)
     assert watch.check_frozen(50.0, driving=False) == ""
     assert watch.check_frozen(50.5, driving=True) == ""
-    watch.board_of("BDC00").still_s = 0.0
+    watch.board(board_of("BDC00")).still_s = 0.0
     assert watch.check_frozen(51.0 - 2**-20, driving=True) == ""
     assert "ADC*" in watch.check_frozen(51.0, driving=True)
-    watch.board_of("ADC00").still_s = 0.0
+    watch.board(board_of("ADC00")).still_s = 0.0
     assert "BDC*" in watch.check_frozen(51.5, driving=True)
 
 
 def test_the_time_before_the_first_look_is_no_time_of_repeating() -> None:
-    watch = InfraredWatch(("ADC00",), 1.0)
+    watch = InfraredWatch((board_of("ADC00"),), 1.0)
     assert watch.check_frozen(50.0, driving=True) == ""
     assert watch.check_frozen(50.5, driving=True) == ""
     assert watch.check_frozen(51.0, driving=True) != ""

@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.control import set_point
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode
 from hal.wheel_watch import WheelWatch
 from simbridge.robot.wheels import Wheels
 from tests.examples import examples
@@ -36,7 +36,7 @@ def wheels_like(acceleration: float = 1.0, braking: float = 1.0, loop_time: floa
 class Trial:
     """Wheels, their set points, and the watch."""
 
-    def __init__(self, robot: RobotSettings = ROBOT, wheels: Wheels | None = None) -> None:
+    def __init__(self, robot: Kurt2Settings = ROBOT, wheels: Wheels | None = None) -> None:
         self.watch = WheelWatch(robot)
         self.wheels = wheels or Wheels(robot)
         self.now_s = 20.0

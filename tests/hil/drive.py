@@ -8,10 +8,10 @@ from typing import Self
 from hal.bus import open_bus
 from hal.health import Health
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import load_kurt2
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_settings import load_robot
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import room
 
 FORWARD = WheelSpeeds(0.3, 0.3)
@@ -24,11 +24,11 @@ class Drive:
     """Runtime and robot in lockstep, 10 ms a tick by their own clock; the kernel carries and stamps what they say."""
 
     def __init__(self, bus: str) -> None:
-        settings = load_robot()
-        self._cycle_s = settings.can.cycle_s
+        settings = load_kurt2()
+        self._cycle_s = settings.cycle_s
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
-        self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
+        self.simulated = SimulatedKurt2(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
         self.readings = SensorReadings(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
         self.grant = GuardResult(FORWARD, (), False)
 

@@ -6,7 +6,7 @@ import can
 import pytest
 
 import kurt2rt
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.library.named_bus import NoVcanError, require_bus
 
 
@@ -42,4 +42,4 @@ def test_named_bus_wrong_one_is_refused(
         (tmp_path / name).mkdir(exist_ok=True)
         (tmp_path / name / file).write_text(text)
     with pytest.raises(error, match=message):
-        require_bus(name, load_robot(), net=tmp_path)
+        require_bus(name, load_kurt2(), net=tmp_path)

@@ -12,7 +12,7 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command
@@ -26,12 +26,12 @@ from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_robot import SimulatedRobot
-from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
+from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.stall_tolerant import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.patient_shutdown import extend_deadlines
 
-SETTINGS = load_robot()
+SETTINGS = load_kurt2()
 LONGEST_S = 60.0
 """Ends a test whose event never comes; none waits for it."""
 
@@ -57,7 +57,7 @@ class Rig:
     far_end: CanBus
     ear: CanBus
     simulation: RealtimeSimulation
-    simulated: SimulatedRobot
+    simulated: SimulatedKurt2
     records: list[TickRecord] = field(default_factory=list)
     questions: list[Question | MidQuestion] = field(default_factory=list)
     statuses: list[ProgramStatus] = field(default_factory=list)
@@ -101,7 +101,7 @@ def settings_for(knowledge: Path) -> ServiceSettings:
 def rig(seed: int = 1) -> Iterator[Rig]:
     spec = f"virtual:{uuid.uuid4()}"
     far_end, robot_bus, ear = open_bus(spec), open_bus(spec), open_bus(spec)
-    simulated = SimulatedRobot(SETTINGS, load_world("a"), far_end, seed)
+    simulated = SimulatedKurt2(SETTINGS, load_world("a"), far_end, seed)
     robot = StallTolerantKurt2(SETTINGS, robot_bus)
     simulation = RealtimeSimulation(simulated)
     simulation.start()
@@ -122,7 +122,7 @@ def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickR
     task = task or eager_task()
     actions = tuple(load_repertoire(task.repertoire, SETTINGS))
     teacher = build_teacher(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
-    corrections_from = round(task.teaching.supervised_s / SETTINGS.can.cycle_s)
+    corrections_from = round(task.teaching.supervised_s / SETTINGS.cycle_s)
 
     def watch(record: TickRecord) -> Command | None:
         if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:

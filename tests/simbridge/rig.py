@@ -10,19 +10,19 @@ import pytest
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.geometry import Point
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 
 CODEC: Codec = load_codec()
-ROBOT: RobotSettings = load_robot()
+ROBOT: Kurt2Settings = load_kurt2()
 STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
 BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
@@ -68,13 +68,13 @@ class Rig:
         self,
         world: WorldSettings | None = None,
         seed: int = 1,
-        robot: RobotSettings = ROBOT,
+        robot: Kurt2Settings = ROBOT,
         robot_seed: int | None = None,
     ) -> None:
         name = f"virtual:simbridge-test-{next(_numbers)}"
         self.robot_end, self.notebook = open_bus(name), open_bus(name)
         self._control_port = self.notebook.control_port()
-        self.robot = SimulatedRobot(robot, world or room(), self.robot_end, seed, robot_seed=robot_seed)
+        self.robot = SimulatedKurt2(robot, world or room(), self.robot_end, seed, robot_seed=robot_seed)
         self.heard: dict[str, tuple[int, ...]] = {}
         self.frames = 0
         self.ticks = [0, 0]
@@ -125,7 +125,7 @@ class Rig:
     def speed_m_s(self) -> float:
         """Return the mean rim speed of both sides by the encoders."""
         left, right = self.heard["ENCODER"]
-        return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+        return (left + right) / 2 * ROBOT.geometry.metres_per_tick / ROBOT.cycle_s
 
     def reading(self, sensor: str) -> int:
         """Return the newest count of a sensor on the bus."""
@@ -156,7 +156,7 @@ def facing_wall(distance_m: float, side_m: float = 4.0) -> Pose:
     return Pose(side_m - distance_m - ROBOT.geometry.outline_length_m / 2, side_m / 2, 0.0)
 
 
-def quiet_robot(**infrared: float) -> RobotSettings:
+def quiet_robot(**infrared: float) -> Kurt2Settings:
     """Return the shipped robot without sensor noise and spread; `infrared` changes other settings."""
     update = {"noise_share": 0.0, "noise_least_counts": 0.0, "gain_spread_share": 0.0, **infrared}
     return ROBOT.model_copy(update={"infrared": ROBOT.infrared.model_copy(update=update)})

@@ -9,7 +9,7 @@ import pytest
 from hal.simulation import SimulatedPost, SimulatedWorld
 from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_world import Kurt2World
+from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from tests.simbridge.rig import ROBOT, Rig, facing_wall, room
 
@@ -27,7 +27,7 @@ class Yard:
     def __init__(self, rig: Rig, simulation: RealtimeSimulation) -> None:
         self.rig = rig
         self.simulation = simulation
-        self.ground: SimulatedWorld = Kurt2World(rig.robot, WORLD, ROBOT.geometry, simulation)
+        self.ground: SimulatedWorld = RealtimeWorld(rig.robot, WORLD, ROBOT.geometry, simulation)
 
     def step(self) -> None:
         """Wait until the thread has run all submitted calls."""

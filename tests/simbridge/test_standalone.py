@@ -39,7 +39,7 @@ def test_standalone_is_driven_by_a_runtime(name: str, notebook: CanBus) -> None:
     kurt2 = Kurt2(ROBOT, notebook)
     for tick in range(20):  # stepped here, so that the test waits for no clock
         robot.step()
-        now_s = tick * ROBOT.can.cycle_s
+        now_s = tick * ROBOT.cycle_s
         kurt2.sense(now_s)
         kurt2.drive(WheelSpeeds(0.2, 0.2), now_s, now_s)
     assert min(robot.wheel_speeds) > 0.0

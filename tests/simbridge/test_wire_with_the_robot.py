@@ -17,7 +17,7 @@ from tests.simbridge.rig import ROBOT
 from tests.simbridge.wires import changed
 
 TURN = WheelSpeeds(0.2, -0.2)
-TICK_S = ROBOT.can.cycle_s
+TICK_S = ROBOT.cycle_s
 
 
 class Drive:

@@ -8,24 +8,24 @@ import pytest
 from hal.bus import open_bus
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import SpeedMode, load_kurt2
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
-from hal.robot_settings import SpeedMode, load_robot
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import facing_wall, room
 
 _numbers = itertools.count()
-Pair = tuple[Kurt2, SimulatedRobot]
+Pair = tuple[Kurt2, SimulatedKurt2]
 
 
 @pytest.fixture(params=list(SpeedMode))
 def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
     """Return driver and simulated robot on one bus, in each speed mode."""
-    settings = load_robot()
+    settings = load_kurt2()
     settings = settings.model_copy(update={"can": settings.can.model_copy(update={"speed_mode": request.param})})
     name = f"virtual:simbridge-driver-{next(_numbers)}"
     far_end = open_bus(name)
     kurt2 = Kurt2(settings, open_bus(name))
-    yield kurt2, SimulatedRobot(settings, room(), far_end, seed=3)
+    yield kurt2, SimulatedKurt2(settings, room(), far_end, seed=3)
     kurt2.close()
     far_end.shutdown()
 

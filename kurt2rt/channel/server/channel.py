@@ -56,7 +56,7 @@ class Channel:
         self._pairing_trouble = pairing_trouble
         self._unsaved: dict[str, Outcome] = {}
         """Outcomes of lessons that are not durable yet, by command id."""
-        self._every_ticks = max(1, round(1 / (STATES_PER_S * runtime.robot.can.cycle_s)))
+        self._every_ticks = max(1, round(1 / (STATES_PER_S * runtime.robot.cycle_s)))
         self._speed = parts.speed
         self._ticks = 0
 
@@ -173,7 +173,7 @@ def describe_robot(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[st
         "robot": robot.name,
         "task": runtime.task.name,
         "radius": runtime.level.system.radius,
-        "period_s": robot.can.cycle_s,
+        "period_s": robot.cycle_s,
         "actions": list(runtime.level.repertoire),
         "behaviours": list(runtime.active_behaviour.behaviours),
         "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],

@@ -100,7 +100,7 @@ class StateBuilder:
             lessons=runtime.level.system.standing_lessons,
             unsaved=parts.journal.unsaved(),
             session=commands.session,
-            clock_s=commands.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
+            clock_s=commands.teaching_ticks(record.tick) * runtime.robot.cycle_s,
             guard=record.guard_result.reasons,
             trouble=parts.journal.saving_error() or parts.bus_trouble() or commands.updater.error or self._urgent(),
             late_p99_ms=self._late_p99_ms,

@@ -62,7 +62,7 @@ async def measure_batch(
         for done, exam in enumerate(exams[: lengths.on_bus]):
             begun_ns = time.perf_counter_ns()
             driven.append(await _drive_on_bus(fixture, factory, task, exam))
-            bus_ns.append((time.perf_counter_ns() - begun_ns) * fixture.settings.can.cycle_s / driven[-1].duration_s)
+            bus_ns.append((time.perf_counter_ns() - begun_ns) * fixture.settings.cycle_s / driven[-1].duration_s)
             on_progress((2 + lengths.batches + done) / steps)
     compared = [(one, other) for one, other in zip(finished, driven, strict=False) if one is not None]
     equal = sum(one == other for one, other in compared)
@@ -105,7 +105,7 @@ def _time_batch(fixture: BenchFixture, factory: BatchFactory, task: TaskSettings
     begun_ns = time.perf_counter_ns()
     results = examine_in_batch(factory, fixture.settings, task, exams)
     took_ns = time.perf_counter_ns() - begun_ns
-    ticks = sum(each.duration_s for each in results if each is not None) / fixture.settings.can.cycle_s
+    ticks = sum(each.duration_s for each in results if each is not None) / fixture.settings.cycle_s
     return took_ns / ticks
 
 

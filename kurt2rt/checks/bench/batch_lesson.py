@@ -53,7 +53,7 @@ async def measure_batch_lessons(
 
 
 async def _measure_teacher(fixture: BenchFixture, task: TaskSettings, lengths: BatchLessonLengths) -> BenchResult:
-    ticks = lengths.lesson_s / fixture.settings.can.cycle_s
+    ticks = lengths.lesson_s / fixture.settings.cycle_s
     in_batch: list[GivenLesson | None] = []
     batch_ns, bus_ns, equal, compared = [], [], 0, 0
     with on_one_core() as core:

@@ -88,7 +88,7 @@ async def measure_load(
         # The motion must not depend on the load.
         robot.runtime.handler.phase = Phase.AUTONOMOUS
         robot.runtime.handler.active_stop = None
-        period_s = robot.runtime.robot.can.cycle_s
+        period_s = robot.runtime.robot.cycle_s
         for number in range(shifts.rounds):
             robot.pace.shift(period_s / shifts.rounds)
             for load in Load:
@@ -108,7 +108,7 @@ async def _settle(robot: OpenRobot, load: Load) -> None:
     connected = load is not Load.ALONE
     await robot.gate.until(lambda: (robot.channel.observers > 0) is connected)
     robot.gate.open = connected
-    await robot.gate.run_ticks(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
+    await robot.gate.run_ticks(round(_SETTLING_S / robot.runtime.robot.cycle_s))
 
 
 async def _measure_phase(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:

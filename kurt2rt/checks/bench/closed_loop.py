@@ -24,7 +24,7 @@ async def measure_closed_loop(
     Timed by `blocks` of `seconds_per_block` whole simulated seconds. The journal goes to `folder`. Raises
     KnowledgeError.
     """
-    period_s = fixture.settings.can.cycle_s
+    period_s = fixture.settings.cycle_s
     ticks_per_block = round(seconds_per_block / period_s)
     # One second ahead of the first block, for all that is slow but once.
     task = with_duration(fixture.task, supervised_s=period_s, corrections_s=1 + blocks * seconds_per_block - period_s)

@@ -51,7 +51,7 @@ async def measure_lessons(
         if durable < lessons:
             why = writer.saving_error or f"{folder}: the disk did not answer within {patience_s:g} s"
             raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
-    return _lesson_result(times, fixture.settings.can.cycle_s)
+    return _lesson_result(times, fixture.settings.cycle_s)
 
 
 class _LessonTimes(NamedTuple):
@@ -77,7 +77,7 @@ class _LessonTimer:
 
     async def alternate(self, lessons: int, sync_ns: Callable[[], int], on_progress: OnProgress) -> _LessonTimes:
         """Measure a bare fsync and a lesson in turns; stop at the first lesson that does not become durable."""
-        period_s = self._runtime.robot.can.cycle_s
+        period_s = self._runtime.robot.cycle_s
         chance = random.Random(SEED)
         actions = tuple(self._runtime.level.repertoire)
         times = _LessonTimes([], [])

@@ -59,7 +59,7 @@ async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_prog
         # Only here: drawing a progress bar takes milliseconds of the loop.
         on_progress(len(made) / presses)
     waits = waits_ns(made, robot.observer.starts)
-    return press_result(what, waits, lost=presses - len(waits), period_s=robot.runtime.robot.can.cycle_s)
+    return press_result(what, waits, lost=presses - len(waits), period_s=robot.runtime.robot.cycle_s)
 
 
 def press_result(what: str, waits_ns: list[int], *, lost: int, period_s: float) -> BenchResult:

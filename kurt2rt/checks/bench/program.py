@@ -109,14 +109,14 @@ async def measure_program(
     Raises KnowledgeError, ChannelError, CredentialsError, HelperLostError, OSError without a timerfd.
     """
     drive = await drive_program(fixture, folder, turns, on_progress)
-    return program_results(drive, fixture.settings.can.cycle_s)
+    return program_results(drive, fixture.settings.cycle_s)
 
 
 async def drive_program(
     fixture: BenchFixture, folder: Path, turns: ProgramTurns, on_progress: OnProgress
 ) -> ProgramDrive:
     """Drive, alternating with an empty loop, and return all measurements (`measure_program`)."""
-    bus, period_s = f"shared:bench-{os.getpid()}", fixture.settings.can.cycle_s
+    bus, period_s = f"shared:bench-{os.getpid()}", fixture.settings.cycle_s
     local_pairing(folder / "teachers", folder / "devices")
     with open_writer(fixture, folder / "program.knowledge"):
         pass
@@ -181,7 +181,7 @@ async def _serve(robot: Kurt2, fixture: BenchFixture, folder: Path, meter: _Mete
     options = ServeOptions(
         on_tick=meter,
         channel=ChannelOptions(),
-        duration_s=(meter.last_tick + 1) * fixture.settings.can.cycle_s,
+        duration_s=(meter.last_tick + 1) * fixture.settings.cycle_s,
         probes=Probes(lambda: robot.health),
         recording=recording,
     )

@@ -54,7 +54,7 @@ async def run_in_real_time(
 
     Raises KnowledgeError, OSError without a timerfd.
     """
-    period_s = fixture.settings.can.cycle_s
+    period_s = fixture.settings.cycle_s
     asyncio_ledger = TickTimer()
     driving = 0
     with (

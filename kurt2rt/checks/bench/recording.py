@@ -69,7 +69,7 @@ async def drive_recorded(
     Raises KnowledgeError, OSError without a timerfd.
     """
     runs = folder / "runs"
-    settings, period_s = fixture.settings, fixture.settings.can.cycle_s
+    settings, period_s = fixture.settings, fixture.settings.cycle_s
     recording = Recording(runs, budget_of(_BUDGET_MB), "sim")
     recorder = recording.recorder(settings, fixture.task, None, RunContext("bench", "", attended=False))
     ledgers = {recorded: TickTimer(shifts.rounds * shifts.ticks) for recorded in (False, True)}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hal.batch import BatchFactory
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Simulation
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
@@ -27,7 +27,7 @@ SEED = 1
 class BenchFixture:
     """Robot, world and knowledge."""
 
-    settings: RobotSettings
+    settings: Kurt2Settings
     task: TaskSettings
     open_simulation: Callable[[str], Simulation]
     """Start the simulation in the task's teaching world, for a named purpose."""

@@ -108,7 +108,7 @@ async def run_suite(
         if BenchName.LATENESS in benches:
             results.append(lateness_result(run))
         if BenchName.TICK in benches:
-            results.extend(tick_results(run, fixture.settings.can.cycle_s))
+            results.extend(tick_results(run, fixture.settings.cycle_s))
     if BenchName.PROGRAM in benches:
         results.extend(
             await measure_program(fixture, folder / "program", lengths.program, start_job("running the program"))

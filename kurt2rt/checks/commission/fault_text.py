@@ -16,7 +16,7 @@ _TEXTS: Mapping[FaultCode, str] = {
     FaultCode.FRAME_MISSING_SECOND: "{frame} never came: check the frame's source of the second controller, "
     "or take its sensors out of the table",
     FaultCode.FRAME_PERIOD: "{frame}: every {period_ms:.1f} ms, the settings expect {expected_ms:.0f} ms; "
-    "frames are lost (see ip -s link), or can.cycle_s is another on this robot",
+    "frames are lost (see ip -s link), or cycle_s is another on this robot",
     FaultCode.JUNK: "{count} x {junk}: find who sends it, or the loose contact",
     FaultCode.FOREIGN_CONTROL: "{count} CONTROL frames from another program: find that program and end it",
     FaultCode.BRAKE_FAILS: "The wheels still turn after the brake: SWITCH THE MOTORS OFF, then look for the reason",

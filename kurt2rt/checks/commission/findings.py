@@ -5,7 +5,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.robot_settings import SpeedMode
+from hal.kurt2_settings import SpeedMode
 from hal.settings import Settings
 
 

@@ -5,8 +5,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
 
 
 class EncoderFrame(NamedTuple):
@@ -55,12 +55,12 @@ class FrameStatistics:
         counts = self.channels.get(channel)
         return statistics.median(counts) if counts else None
 
-    def wheel_speeds(self, robot: RobotSettings, last_frames: int) -> WheelSpeeds:
+    def wheel_speeds(self, robot: Kurt2Settings, last_frames: int) -> WheelSpeeds:
         """Return the mean speeds in m/s over the last ENCODER frames, one per controller cycle; 0 without frames."""
         frames = self.encoder[-last_frames:]
         if not frames:
             return WheelSpeeds(0.0, 0.0)
-        metres_s = robot.geometry.metres_per_tick / robot.can.cycle_s / len(frames)
+        metres_s = robot.geometry.metres_per_tick / robot.cycle_s / len(frames)
         return WheelSpeeds(sum(each.left for each in frames) * metres_s, sum(each.right for each in frames) * metres_s)
 
     def rest_began_s(self) -> float | None:

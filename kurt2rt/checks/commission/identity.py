@@ -26,7 +26,7 @@ class IdentityStep:
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Listen to the CAN bus for 2 s; judge the controller's identity, the frames' periods, and junk.
 
-        Periods are compared with `can.cycle_s` of the settings. Returns the findings with hardware id and firmware from
+        Periods are compared with `cycle_s` of the settings. Returns the findings with hardware id and firmware from
         INFO_1, and the faults. Silence is a fault and raises nothing; a lost bus raises BusError.
         """
         heard = await stand.listen(_LISTEN_S)
@@ -79,9 +79,9 @@ def _judge_periods(stand: TestStand, heard: FrameStatistics, result: StepResult)
         if period_s is None:
             second = frame_id >= _SECOND_CONTROLLER
             result.fail(FaultCode.FRAME_MISSING_SECOND if second else FaultCode.FRAME_MISSING, frame=frame)
-        elif abs(period_s / robot.can.cycle_s - 1.0) > _PERIOD_TOLERANCE:
+        elif abs(period_s / robot.cycle_s - 1.0) > _PERIOD_TOLERANCE:
             result.fail(
-                FaultCode.FRAME_PERIOD, frame=frame, period_ms=period_s * 1000, expected_ms=robot.can.cycle_s * 1000
+                FaultCode.FRAME_PERIOD, frame=frame, period_ms=period_s * 1000, expected_ms=robot.cycle_s * 1000
             )
     for period_ms, names in sorted(periods_ms.items()):
         result.note(f"every {period_ms} ms: {', '.join(names)}")

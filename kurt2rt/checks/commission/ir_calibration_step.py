@@ -2,7 +2,7 @@
 
 import statistics
 
-from hal.robot_settings import SensorSettings
+from hal.kurt2_settings import Kurt2SensorSettings
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError
 from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrLaw, IrReading, fit_law
@@ -80,12 +80,12 @@ class IrCalibrationStep:
         return result
 
 
-async def _read_all(stand: TestStand, sensors: tuple[SensorSettings, ...], findings: Findings) -> list[IrReading]:
+async def _read_all(stand: TestStand, sensors: tuple[Kurt2SensorSettings, ...], findings: Findings) -> list[IrReading]:
     readings = [await _read(stand, sensor, distance_m, findings) for sensor in sensors for distance_m in DISTANCES_M]
     return [each for each in readings if each is not None]
 
 
-async def _choose(stand: TestStand, findings: Findings) -> tuple[SensorSettings, ...]:
+async def _choose(stand: TestStand, findings: Findings) -> tuple[Kurt2SensorSettings, ...]:
     sensors = {sensor.name: sensor for sensor in stand.settings.infrared.sensors}
     usable = [name for name in sensors if name not in findings.dead_sensors]
     if not usable:
@@ -106,7 +106,7 @@ async def _choose(stand: TestStand, findings: Findings) -> tuple[SensorSettings,
 
 
 async def _read(
-    stand: TestStand, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
+    stand: TestStand, sensor: Kurt2SensorSettings, distance_m: float, findings: Findings, again: str = ""
 ) -> IrReading | None:
     question = OperatorQuestion(
         QuestionKind.BOARD,
@@ -130,7 +130,7 @@ async def _read(
 
 
 async def _fit_with_second_looks(
-    stand: TestStand, readings: list[IrReading], sensors: dict[str, SensorSettings], findings: Findings
+    stand: TestStand, readings: list[IrReading], sensors: dict[str, Kurt2SensorSettings], findings: Findings
 ) -> IrFit:
     """Fit, and repeat the measurement of a few outliers. Raises IrCalibrationError."""
     looked_twice: set[int] = set()
@@ -161,5 +161,5 @@ def _detection_limit_m(law: IrLaw, floor: float, farthest_m: float) -> float:
     return round(min(farthest_m, law.distance_m(floor)), 2)
 
 
-def _channel(sensor: SensorSettings, findings: Findings) -> str:
+def _channel(sensor: Kurt2SensorSettings, findings: Findings) -> str:
     return findings.channels.get(sensor.name, sensor.channel)

@@ -4,8 +4,8 @@ import can
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import Codec, InvalidFrameError, MessageCodec
+from hal.kurt2_settings import DISTANCE_CHANNEL
 from hal.robot import HIGHEST_COUNTS
-from hal.robot_settings import DISTANCE_CHANNEL
 from kurt2rt.checks.commission.frame_statistics import EncoderFrame, FrameStatistics, Identity
 
 

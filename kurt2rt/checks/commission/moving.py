@@ -1,7 +1,7 @@
 """Common parts of the steps that turn the wheels."""
 
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError, StepFault
 from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.findings import Findings
@@ -34,7 +34,7 @@ def required_speed_mode(findings: Findings) -> SpeedMode:
     return findings.speed_mode
 
 
-def steady_speeds(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
+def steady_speeds(drive: TestDrive, robot: Kurt2Settings) -> WheelSpeeds:
     """Return the mean wheel speeds that were measured before the brake of a test drive, in m/s."""
     return drive.heard.wheel_speeds(robot, STEADY_FRAMES)
 

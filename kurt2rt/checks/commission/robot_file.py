@@ -10,7 +10,8 @@ import numpy as np
 import yaml
 from pydantic import ValidationError
 
-from hal.robot_settings import BumperSettings, RobotSettings, SpeedMode, load_robot
+from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
+from hal.robot_settings import BumperSettings
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress
@@ -19,7 +20,7 @@ from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.platform.durable_files import write_durably
 
 
-def commissioned_settings(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
+def commissioned_settings(base: Kurt2Settings, name: str, findings: Findings) -> Kurt2Settings:
     """Return the settings of `base` under a new name, with all findings.
 
     Raises SettingsError for contradictory findings.
@@ -43,14 +44,14 @@ def commissioned_settings(base: RobotSettings, name: str, findings: Findings) ->
     content["bumpers"] = [each.model_dump(mode="json") for each in _bumpers(base.bumpers, findings)]
     try:
         # Through JSON, as the loader of settings does it.
-        return RobotSettings.model_validate_json(json.dumps(content))
+        return Kurt2Settings.model_validate_json(json.dumps(content))
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         key = ".".join(map(str, first["loc"]))
         raise SettingsError(f"what was found makes no robot: {key}: {first['msg']}", do="repeat that step") from error
 
 
-def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
+def robot_file(base: Kurt2Settings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
     """Return the text (YAML) of the robot's settings file, with the steps as comments.
 
     Raises SettingsError for contradictory findings.
@@ -72,18 +73,18 @@ def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Commissi
 
 
 def write_robot_file(
-    path: Path, base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]
-) -> RobotSettings:
+    path: Path, base: Kurt2Settings, progress: Progress, steps: Sequence[CommissionStep]
+) -> Kurt2Settings:
     """Write the robot's settings file and return its content, loaded as the robot's program loads it.
 
     Raises SettingsError for contradictory findings, OSError if it cannot be written.
     """
     text = robot_file(base, progress, steps)
     write_durably(path, text)
-    return load_robot(str(path))
+    return load_kurt2(str(path))
 
 
-def _require_own_channels(base: RobotSettings, findings: Findings) -> None:
+def _require_own_channels(base: Kurt2Settings, findings: Findings) -> None:
     """Raise SettingsError if a found channel belongs to an untried sensor of the table."""
     claimed = {channel: name for name, channel in findings.channels.items()}
     for sensor in base.infrared.sensors:
@@ -106,7 +107,7 @@ def _bumpers(table: Sequence[BumperSettings], findings: Findings) -> Sequence[Bu
     return sorted(table, key=lambda bumper: bits[bumper.name])
 
 
-def _comments(base: RobotSettings, progress: Progress) -> dict[str, str]:
+def _comments(base: Kurt2Settings, progress: Progress) -> dict[str, str]:
     """Return the source of each measured value by dotted key."""
     findings = progress.findings
     comments: dict[str, str] = {}

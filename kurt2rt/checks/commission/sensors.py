@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from hal.robot_settings import SensorSettings
+from hal.kurt2_settings import Kurt2SensorSettings
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
@@ -70,7 +70,7 @@ class SensorsStep:
         return result
 
 
-async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
+async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[Kurt2SensorSettings]) -> dict[str, str]:
     """Return the channels found before that need no repetition."""
     before = dict(findings.channels)
     missing = [sensor.name for sensor in sensors if sensor.name not in before]
@@ -85,7 +85,7 @@ async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSe
 
 
 async def _find(
-    stand: TestStand, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
+    stand: TestStand, sensor: Kurt2SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
 ) -> str | None:
     """Ask until a channel is found or the sensor is given up; return a sensor to be repeated, if any."""
     tried = False
@@ -130,13 +130,13 @@ async def _find(
             return owner
 
 
-def _format_channel(sensor: SensorSettings, channel: str) -> str:
+def _format_channel(sensor: Kurt2SensorSettings, channel: str) -> str:
     if channel == sensor.channel:
         return f"{sensor.name} {sensor.label}: {channel}, as the table says"
     return f"{sensor.name} {sensor.label}: {channel}, the table says {sensor.channel}"
 
 
-def _row(sensor: SensorSettings, found: Mapping[str, str], dead: list[str]) -> str:
+def _row(sensor: Kurt2SensorSettings, found: Mapping[str, str], dead: list[str]) -> str:
     if sensor.name in found:
         return _format_channel(sensor, found[sensor.name])
     if sensor.name in dead:

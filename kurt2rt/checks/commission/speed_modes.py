@@ -3,8 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.fault import FaultCode, SkippedError, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
@@ -73,22 +73,22 @@ class _Trial:
         """Return why the wheels were kept from turning."""
         return next((why for why in map(standstill_cause, self.drives) if why is not None), None)
 
-    def answers(self, robot: RobotSettings) -> bool:
+    def answers(self, robot: Kurt2Settings) -> bool:
         """Return whether the wheels turned both ways."""
         return self.standstill_cause() is None and all(
             _fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives
         )
 
-    def share(self, robot: RobotSettings) -> float:
+    def share(self, robot: Kurt2Settings) -> float:
         """Return the ratio of measured and commanded speed of the faster side."""
         measured_m_s = sum(_fastest_m_s(drive, robot) for drive in self.drives) / len(self.drives)
         return measured_m_s / abs(self.drives[0].applied.left_m_s)
 
-    def full_speed_m_s(self, robot: RobotSettings) -> float:
+    def full_speed_m_s(self, robot: Kurt2Settings) -> float:
         """Return the speed at 100 % in SPEED mode."""
         return round(robot.motors.full_speed_m_s * self.share(robot), 3)
 
-    def text(self, robot: RobotSettings) -> str:
+    def text(self, robot: Kurt2Settings) -> str:
         """Return the result in one line."""
         stood = self.standstill_cause()
         if stood is not None:
@@ -100,7 +100,7 @@ class _Trial:
         said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
 
-    def fault(self, robot: RobotSettings) -> StepFault | None:
+    def fault(self, robot: Kurt2Settings) -> StepFault | None:
         """Return the fault of a mode that the firmware knows."""
         stood = self.standstill_cause()
         if stood == RAN_AWAY:
@@ -113,7 +113,7 @@ class _Trial:
         return StepFault.of(FaultCode.MODE_SPEED, mode=self.mode.value, ratio=self.share(robot), ticks=ticks)
 
 
-def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) -> StepResult:
+def _conclude(trials: list[_Trial], robot: Kurt2Settings, result: StepResult) -> StepResult:
     """Take the first mode that answers; faults of later modes do not matter."""
     for trial in trials:
         fault = trial.fault(robot)
@@ -130,5 +130,5 @@ def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) ->
     return result
 
 
-def _fastest_m_s(drive: TestDrive, robot: RobotSettings) -> float:
+def _fastest_m_s(drive: TestDrive, robot: Kurt2Settings) -> float:
     return max(map(abs, steady_speeds(drive, robot)))

@@ -86,5 +86,5 @@ def _fell_after_s(stand: TestStand, drive: TestDrive) -> float:
     from_s = drive.heard.encoder[-1].time_s
     for frame in drive.after.encoder:
         if abs(frame.left) + abs(frame.right) < _FALLEN_SHARE * steady_ticks:
-            return max(stand.settings.can.cycle_s, frame.time_s - from_s)
+            return max(stand.settings.cycle_s, frame.time_s - from_s)
     return drive.rested_after_s or 0.0

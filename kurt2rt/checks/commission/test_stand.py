@@ -10,8 +10,8 @@ from anyio.lowlevel import checkpoint
 
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone
@@ -64,8 +64,8 @@ class TestStand:
 
     def __init__(
         self,
-        settings: RobotSettings,
-        open_robot: Callable[[RobotSettings], Kurt2],
+        settings: Kurt2Settings,
+        open_robot: Callable[[Kurt2Settings], Kurt2],
         listener: Listener,
         clock: Clock,
         operator: Operator,
@@ -82,7 +82,7 @@ class TestStand:
         self._robot: Kurt2 | None = None
         self._mode: SpeedMode | None = None
         self._result = GuardResult(STANDSTILL, (), latched=True)
-        self._cycle_s = settings.can.cycle_s
+        self._cycle_s = settings.cycle_s
         self._deadline_s = clock.now_s()
 
     def __enter__(self) -> Self:

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from hal.robot_settings import RobotSettings, SpeedMode
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 
 MAXIMUM_SPEED_M_S = 0.2
 ACCELERATION_M_S2 = 0.5
@@ -14,8 +14,8 @@ With the wheels in the air they are not needed, and the checklist must find cont
 
 
 def test_stand_settings(
-    robot: RobotSettings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
-) -> RobotSettings:
+    robot: Kurt2Settings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
+) -> Kurt2Settings:
     """Return the guard settings for wheel tests in a speed mode, with the received analog channels only.
 
     Without any channel the sensor table stays, and the guard will not let the wheels turn.

@@ -1,7 +1,7 @@
 """Step that checks side and direction of motors and encoders."""
 
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
@@ -69,7 +69,7 @@ class WheelsStep:
         return result
 
 
-def _counted(drive: TestDrive, robot: RobotSettings) -> Motion:
+def _counted(drive: TestDrive, robot: Kurt2Settings) -> Motion:
     return Motion(*(_sign(speed_m_s) for speed_m_s in steady_speeds(drive, robot)))
 
 

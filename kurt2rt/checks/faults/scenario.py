@@ -65,7 +65,7 @@ class _Scenario:
         self._latched: str | None = None
         self._ended_by = ""
         # The ticks' phase against the controller's cycle.
-        self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
+        self._time.run_until(chance.uniform(0.1, 0.9) * settings.cycle_s)
         self._time.at(rig.disturbance.begin_s, self._require_driving)
         self._time.at(self._script.resume_at_s, self._note_the_end)
         self._level = FaultyLevel(self._time, rig.disturbance) if case.target == "tick" else None
@@ -137,7 +137,7 @@ class _Scenario:
 
     def _require_driving(self) -> None:
         begin_s = self._rig.disturbance.begin_s
-        if self._observer.standstills(begin_s - self._settings.can.cycle_s, begin_s):
+        if self._observer.standstills(begin_s - self._settings.cycle_s, begin_s):
             raise DidNotDriveError(
                 "the robot stands before anything fails", where=self._case, do="look at action and task"
             )

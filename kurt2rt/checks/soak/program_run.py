@@ -77,12 +77,12 @@ class ProgramRun:
         self._chance = random.Random(f"life {start.number}, seed {start.seed}")
         self._started_s: float | None = None
         self._begun_s = 0.0
-        self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
+        self._checkpoint_ticks = round(service.checkpoint_period_s / settings.cycle_s)
         self._link: TeacherLink | None = None
         path = Path(service.knowledge)
         opened = open_soak_knowledge(path, settings, run_settings.task)
         self.knowledge = SoakKnowledge(path, opened, rig.time)
-        observer.begin_program(rig.start_driver(start.wire), settings.can.cycle_s)
+        observer.begin_program(rig.start_driver(start.wire), settings.cycle_s)
         teacher.program_started()
         self.clock = SoakClock(rig.time)
         self.level = SoakLevel(rig.time)

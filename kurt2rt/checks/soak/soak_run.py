@@ -53,7 +53,7 @@ class SoakRun:
         self._recording = recording
         self._seed = seed
         self._by_module = by_module
-        self._period_s = settings.can.cycle_s
+        self._period_s = settings.cycle_s
         self._chance = random.Random(f"day {soak.name}, seed {seed}")
         self._observer = SoakObserver(rig, table.envelope)
         actions = tuple(load_task_repertoire(task, settings))

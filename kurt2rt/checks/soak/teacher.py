@@ -45,7 +45,7 @@ class SoakTeacher:
         self.sent = 0
         """Commands so far, without signs of presence."""
         self._soak, self._task, self._robot, self._actions = soak, task, robot, actions
-        self._period_s = robot.can.cycle_s
+        self._period_s = robot.cycle_s
         self._chance = random.Random(f"teacher of {soak.name}, seed {seed}")
         self._appraisals = tuple(load_critic(task.critic).values)
         self._moods = 0

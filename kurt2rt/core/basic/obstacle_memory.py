@@ -111,7 +111,7 @@ class ObstacleMemory:
         self._sensors = len(law.sensors)
         self._first = np.arange(self._sensors) * (HIGHEST_COUNTS + 1)
         self._look_s = settings.look_s
-        self._look_ticks = max(1, round(settings.look_s / robot.can.cycle_s))
+        self._look_ticks = max(1, round(settings.look_s / robot.cycle_s))
         self._looks = max(1, round(settings.memory_s / self._look_s))
         # Relative to the robot, and moved with it: each look needs the places so.
         self._places_m = np.full((2, self._looks * self._sensors), _NOWHERE_M)

@@ -19,7 +19,7 @@ class AppraisalPerception:
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
         """Prepare tables for a robot. Raises SettingsError for an unknown sensor."""
-        want, period_s = critic.perception, robot.can.cycle_s
+        want, period_s = critic.perception, robot.cycle_s
         sensors, infrared = want.sensors, robot.infrared
         missing = sorted(sensors.used - set(infrared.names))
         if missing:

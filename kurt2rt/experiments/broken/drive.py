@@ -230,10 +230,10 @@ def _runtime(
     if setup.driver is not Driver.RLAS:
         task = task.model_copy(update={"mid": None})  # the policy chooses behaviours, too
         repertoire = load_task_repertoire(task, settings)
-        minimum_ticks = round(task.learning.minimum_action_s / settings.can.cycle_s)
+        minimum_ticks = round(task.learning.minimum_action_s / settings.cycle_s)
         policy: ReferencePolicy = task.policy.build(settings.infrared)
         if setup.driver is Driver.PRESSES:
-            policy = _PressingPolicy(tuple(repertoire), setup.seed, settings.can.cycle_s)
+            policy = _PressingPolicy(tuple(repertoire), setup.seed, settings.cycle_s)
         level = PolicyLevel(policy, repertoire, minimum_ticks, behaviour)
     return build_runtime(
         robot,

@@ -136,7 +136,7 @@ class HealthyJob(_Job):
     async def measure(self, events: Sequence[TeachingEvent], tell: Progress) -> HealthyOutcome:
         """Drive and return the outcome; `tell` gets the simulated seconds. Raises SettingsError."""
         setup = DriveSetup(self.world, self.seed, self.driver, self.seconds)
-        end_tick = round(self.seconds / self.robot.can.cycle_s)
+        end_tick = round(self.seconds / self.robot.cycle_s)
         run = await drive(self.factory, self.robot, self.task, events, setup, end_tick)
         tell(self.seconds)
         return HealthyOutcome(

@@ -54,7 +54,7 @@ def drive_in_batch(
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     with opened_batch(factory, subject, runs) as (batch, courses):
-        period_s = subject.robot.can.cycle_s
+        period_s = subject.robot.cycle_s
         ticks = round(subject.task.exam.duration_s / period_s)
         if courses:
             _drive_guided(batch, courses, ticks, lambda done: tell(done * period_s))
@@ -138,7 +138,7 @@ def opened_batch(
             _put_in_sight(task, simulations, setups)
         minds = build_minds(simulations, robot, task, [(subject.events, setup) for setup in setups])
         exam = task.exam
-        rule = build_stuck_rule(exam.stuck_after_s, robot.can.cycle_s, least_m=exam.stuck_within_m)
+        rule = build_stuck_rule(exam.stuck_after_s, robot.cycle_s, least_m=exam.stuck_within_m)
         batch = factory.open_batch(simulations, minds, replace(build_drive_settings(robot, task), stuck=rule))
         for r, course in enumerate(courses):
             course.guide.begin(batch, r)

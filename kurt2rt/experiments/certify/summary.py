@@ -57,7 +57,7 @@ def summarise(certificate: Certificate) -> Iterator[PlaceSummary]:
     Runs with a broken sensor have a summary of their own.
     """
     plan = certificate.plan
-    period_s = plan.blocks[0].robot.can.cycle_s
+    period_s = plan.blocks[0].robot.cycle_s
     pairs = list(zip(plan.runs, certificate.outcomes, strict=True))
     working = [(run.place, outcome) for run, outcome in pairs if not run.broken]
     broken = [outcome for run, outcome in pairs if run.broken]

@@ -63,7 +63,7 @@ def rate_table(summaries: Sequence[PlaceSummary]) -> Table:
 
 def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
     """Return one row for each of the worst runs."""
-    period_s = certificate.plan.blocks[0].robot.can.cycle_s
+    period_s = certificate.plan.blocks[0].robot.cycle_s
 
     def format_tick(tick: int) -> str:
         return f"{tick * period_s:.1f}" if tick else ""

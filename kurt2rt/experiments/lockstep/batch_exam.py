@@ -82,7 +82,7 @@ class _Drive:
     ) -> None:
         chance = random.Random(setup.chance_seed)
         self._simulation, self._task, self._setup = simulation, task, setup
-        self._period_s = settings.can.cycle_s
+        self._period_s = settings.cycle_s
         metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
         self._metric = metric
         # Asked once, because these read all members of a protocol.

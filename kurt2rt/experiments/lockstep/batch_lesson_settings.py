@@ -53,6 +53,6 @@ def build_lesson_settings(
         behaviours=task.behaviours,
         policy=policy,
         features=feature_table(definition, settings, weights if choose is None else np.ones_like(weights), task),
-        ticks=round(plan_of(task).duration_s / settings.can.cycle_s),
+        ticks=round(plan_of(task).duration_s / settings.cycle_s),
         choose=choose,
     )

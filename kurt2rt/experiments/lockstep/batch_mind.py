@@ -105,7 +105,7 @@ def build_drive_settings(
     actions = {name: _action_of(each) for name, each in load_task_repertoire(task, settings).items()}
     return DriveSettings(
         actions={name: each for name, each in actions.items() if each is not None},
-        minimum_ticks=round(task.learning.minimum_action_s / settings.can.cycle_s)
+        minimum_ticks=round(task.learning.minimum_action_s / settings.cycle_s)
         if minimum_ticks is None
         else minimum_ticks,
         behaviours=task.behaviours,

@@ -110,7 +110,7 @@ class Episode(ABC):
         Raises:
             hal.settings.SettingsError: the world does not fit the metric.
         """
-        task, period_s = runtime.task, runtime.robot.can.cycle_s
+        task, period_s = runtime.task, runtime.robot.cycle_s
         self.simulation = simulation
         self.runtime = runtime
         self.task = task

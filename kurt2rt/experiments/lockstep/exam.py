@@ -160,7 +160,7 @@ class ExamRun(Episode):
             level = PolicyLevel(
                 task.policy.build(settings.infrared),
                 load_task_repertoire(task, settings),
-                round(task.learning.minimum_action_s / settings.can.cycle_s),
+                round(task.learning.minimum_action_s / settings.cycle_s),
                 behaviour,
             )
         learners = None if setup.teacher_policy else setup.learners

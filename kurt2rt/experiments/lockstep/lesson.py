@@ -161,7 +161,7 @@ class TrainingRun(Episode):
         answering: BasicTeacher | None = None,
     ) -> None:
         """Begin the run; `answering`: teacher of phases 1 and 2, None: the task's own."""
-        task, settings, period_s = runtime.task, runtime.robot, runtime.robot.can.cycle_s
+        task, settings, period_s = runtime.task, runtime.robot, runtime.robot.cycle_s
         teaching = task.teaching
         if answering is None:
             answering = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
@@ -367,7 +367,7 @@ def _phase_starts(plan: LessonPlan, period_s: float) -> dict[int, Phase]:
 def _teacher_of(
     plan: LessonPlan, task: TaskSettings, settings: RobotSettings, answering: BasicTeacher, *, seed: int, session: str
 ) -> ScriptedAppraiser:
-    period_s, times = settings.can.cycle_s, plan.times
+    period_s, times = settings.cycle_s, plan.times
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
     timing = FeedbackTiming(
         reaction=round(task.teaching.teacher.reaction_s / period_s),

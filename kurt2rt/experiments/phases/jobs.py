@@ -218,7 +218,7 @@ class StepJob(PhasesJob):
             return
         with Journal.read_only(taught) as journal:
             appraisals = fold_journal(journal, radius=1.0).rlas_at(CRITIC)
-        yield from shuffled(appraisals, load_critic(self.task.critic), self.seed, self.robot.can.cycle_s)
+        yield from shuffled(appraisals, load_critic(self.task.critic), self.seed, self.robot.cycle_s)
 
 
 Job = FirstPhasesJob | StepJob

@@ -210,7 +210,7 @@ class TransferJob(StudyJob):
                 drive = checkpoints[-1].drive
             else:
                 drive = await there.examine(events[: known + lessons], policy)
-            taught_s = ticks[presses] * self.robot.can.cycle_s if presses < len(ticks) else lesson.teaching_s
+            taught_s = ticks[presses] * self.robot.cycle_s if presses < len(ticks) else lesson.teaching_s
             checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
         return checkpoints
 

@@ -136,7 +136,7 @@ class _Reader:
     """Incremental builder of a timeline."""
 
     def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
-        self._period_s = robot.can.cycle_s
+        self._period_s = robot.cycle_s
         self._odometry = WheelOdometry(robot.geometry)
         self._pose = PlanePose()
         self._from_s, self._to_s, self._every = from_s, to_s, every

@@ -80,7 +80,7 @@ def ticks_per_frame(robot: RobotSettings, fps: int) -> int:
 
     Raises RecordingError if frames would not fall on ticks.
     """
-    ticks_per_s = round(1 / robot.can.cycle_s)
+    ticks_per_s = round(1 / robot.cycle_s)
     if fps < 1 or ticks_per_s % fps:
         allowed = [str(each) for each in range(1, ticks_per_s + 1) if ticks_per_s % each == 0]
         raise RecordingError(
@@ -104,7 +104,7 @@ def read_episodes(run: Run, every: int, on_entry: Callable[[TickEntry], None] = 
     Raises:
         RecordingError: the run cannot be read.
     """
-    longest = round(LONGEST_REPEAT_S / run.robot.can.cycle_s)
+    longest = round(LONGEST_REPEAT_S / run.robot.cycle_s)
     stretch = _Stretch(run.robot)
     for entry in run.partial_entries():
         if stretch.newest is not None and not 0 < entry.tick - stretch.newest <= longest:
@@ -172,7 +172,7 @@ class _Stretch:
         at = rows[newest]
         travelled = np.cumsum(rows["encoders"], axis=0, dtype=np.int64)[newest]
         encoders = np.diff(travelled, axis=0, prepend=0)
-        period_s = every * self.robot.can.cycle_s
+        period_s = every * self.robot.cycle_s
         speeds = encoders * self.robot.geometry.metres_per_tick / period_s
         speeds[0] *= every  # of one tick only
         bits = at["bumpers"][:, None] >> np.arange(len(self.robot.bumpers)) & 1

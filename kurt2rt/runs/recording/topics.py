@@ -59,7 +59,7 @@ class Topics:
         self._pictures = RobotScene(settings)
         self._odometry = WheelOdometry(settings.geometry)
         self._reckoned = PlanePose()
-        period_s = settings.can.cycle_s
+        period_s = settings.cycle_s
         self._scan_ticks = max(1, round(1 / SCANS_HZ / period_s))
         self._scene_ticks = max(1, round(1 / SCENES_HZ / period_s))
         self._ground_ticks = round(_GROUND_EVERY_S / period_s)

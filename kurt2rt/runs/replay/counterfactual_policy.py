@@ -78,7 +78,7 @@ class CounterfactualPolicy:
                 mid = None if task.mid is None else load_mid_level(task.mid)
                 self._system = empty_system(task, definition, load_critic(task.critic), mid)
             recent = DecisionHistory(definition.dimensions)
-            self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
+            self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.cycle_s)
             self._worths.restore(tuple(events), statistics)
         except (SettingsError, InvalidEventError) as error:
             cause = event_error_text(error) if isinstance(error, InvalidEventError) else str(error)

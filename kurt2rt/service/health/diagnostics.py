@@ -137,12 +137,12 @@ class Diagnostics:
             yield _Found(_SENSOR_FAULTS[sensor.fault], False, sensor.title, (sensor.counts,))
 
     def _of_ticks(self, punctuality: TickLateness) -> Iterator[_Found]:
-        lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.can.cycle_s))
+        lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.cycle_s))
         if self._tolerates_stalls and punctuality.missed_lately <= TOLERATED_SHARE * lately_ticks:
             return
         if punctuality.missed_lately:
             yield _Found(TroubleCode.TICKS_MISSED, numbers=(punctuality.missed_lately, punctuality.missed))
-        bound_ms = LATE_SHARE * self._settings.can.cycle_s * 1000
+        bound_ms = LATE_SHARE * self._settings.cycle_s * 1000
         if punctuality.p99_ms > bound_ms and not self._tolerates_stalls:
             yield _Found(TroubleCode.TICKS_LATE, numbers=(punctuality.p99_ms,))
 

@@ -59,7 +59,7 @@ class HealthMonitor:
         self._boot = boot
         self._knowledge = str(knowledge)
         self._now = now
-        self._every_ticks = max(1, round(1 / runtime.robot.can.cycle_s))
+        self._every_ticks = max(1, round(1 / runtime.robot.cycle_s))
         self._started_s = now()
         self._started_at = datetime.now(UTC).isoformat(timespec="seconds")
         self._version = version("kurt2rt")

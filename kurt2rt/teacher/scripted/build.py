@@ -37,7 +37,7 @@ def build_teacher(
     Raises:
         hal.settings.SettingsError: the repertoire of the task is missing or invalid.
     """
-    profile, period_s = task.teaching.profile, robot.can.cycle_s
+    profile, period_s = task.teaching.profile, robot.cycle_s
     person = profile.person
     if person is None and (profile.shows.times or {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}):
         person = _without_limits(task.teaching.teacher, period_s)
@@ -63,7 +63,7 @@ def build_teacher_in_charge(
 
     `charge`: rule by which control passes. The other arguments and the errors are those of `build_teacher`.
     """
-    period_s = robot.can.cycle_s
+    period_s = robot.cycle_s
     person = task.teaching.profile.person or _without_limits(task.teaching.teacher, period_s)
     sense = _task_sense(task, robot, actions)
     return TeacherInCharge(person, sense, charge, period_s=period_s, seed=seed, session=session)

@@ -8,13 +8,13 @@ import pytest
 from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.streets import Side
 from behaviors.metrics.town import Street, Town, length_m
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.simulation import Pose
 from kurt2rt.core.task_settings import load_task
 from simbridge.simulation import Kurt2SimulationFactory
 
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
-PLAN = Kurt2SimulationFactory(load_robot()).plan_of("manhattan")
+PLAN = Kurt2SimulationFactory(load_kurt2()).plan_of("manhattan")
 COURSE = load_task("errands").course
 
 

@@ -569,7 +569,7 @@ class OnLine:
         """Return the answer to a request while the robot ticks without pause, for at most 0.4 s of robot time."""
         task = asyncio.create_task(self.line.call(request))
         ticks = 0
-        while not (await asyncio.wait([task], timeout=ROBOT.can.cycle_s))[0]:
+        while not (await asyncio.wait([task], timeout=ROBOT.cycle_s))[0]:
             if ticks < 40:
                 self.desk.run()
                 ticks += 1

@@ -32,7 +32,7 @@ from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL, WELL
 
 LEAST = load_critic().agreement.least
-APART = round(load_critic().agreement.apart_s / ROBOT.can.cycle_s)
+APART = round(load_critic().agreement.apart_s / ROBOT.cycle_s)
 COUNT = len(ROBOT.infrared.sensors)
 
 

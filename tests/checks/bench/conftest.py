@@ -3,7 +3,7 @@
 import anyio
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, learn
 from kurt2rt.core.task_settings import load_task
 from simbridge.simulation import Kurt2SimulationFactory
@@ -11,7 +11,7 @@ from simbridge.simulation import Kurt2SimulationFactory
 
 @pytest.fixture(scope="session")
 def untaught() -> BenchFixture:
-    settings, task = load_robot(), load_task("wall_following")
+    settings, task = load_kurt2(), load_task("wall_following")
     stage = Kurt2SimulationFactory(settings)
     return BenchFixture(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose), batches=stage)
 

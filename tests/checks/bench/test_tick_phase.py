@@ -2,7 +2,7 @@
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.simulation import Simulation
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.checks.bench.tick_phase import LoopPacer
@@ -25,7 +25,7 @@ class PunctualClock:
 
 
 async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: BenchFixture) -> None:
-    clock, settings = PunctualClock(), load_robot()
+    clock, settings = PunctualClock(), load_kurt2()
     simulation: Simulation = untaught.open_simulation("pace")
     runtime = build_runtime(simulation.robot, settings, untaught.task, (), NoTeachingAllowed(), clock)
     pace = LoopPacer(runtime.scheduler, clock)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from hal.identity import SIMULATED_HARDWARE_ID
-from hal.robot_settings import SpeedMode
+from hal.kurt2_settings import SpeedMode
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, step_named, steps_to_run
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault

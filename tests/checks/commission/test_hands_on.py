@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
@@ -124,7 +124,7 @@ async def test_a_hand_that_covers_two_sensors_names_none_of_them(tmp_path: Path)
     assert len(re.findall("[AB]DC..", told)) == 2
 
 
-def without(sensor: str) -> RobotSettings:
+def without(sensor: str) -> Kurt2Settings:
     """Return the settings of a robot on which one sensor is not plugged in."""
     sensors = tuple(each for each in BASE.infrared.sensors if each.name != sensor)
     return BASE.model_copy(update={"infrared": BASE.infrared.model_copy(update={"sensors": sensors})})

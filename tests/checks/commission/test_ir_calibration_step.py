@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.kurt2_settings import Kurt2Settings
+from hal.robot_settings import InfraredSettings
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.fault_text import fields_of
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
@@ -102,7 +103,7 @@ def test_fit_law_implausible_readings_are_refused(
 # The step
 
 
-def other_law(**changes: float) -> RobotSettings:
+def other_law(**changes: float) -> Kurt2Settings:
     """Return a robot whose sensors have another law; plateau and floor follow from that law."""
     law = BASE.infrared.model_copy(update=changes)
     near, far = law.counts_at(law.near_m), law.counts_at(law.far_m)

@@ -9,8 +9,8 @@ import yaml
 from config import CONFIG_DIR
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.robot import WheelSpeeds
-from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.findings import Findings, LawFound
@@ -45,7 +45,7 @@ async def test_the_file_makes_the_robot_sense_in_order_and_drive(tmp_path: Path)
         session = Session(workshop, tmp_path)
         await session.run("modes", "sensors")
         loaded = write_robot_file(out, BASE, session.progress, STEPS)
-        assert loaded == load_robot(str(out))
+        assert loaded == load_kurt2(str(out))
         assert [each.channel for each in loaded.infrared.sensors] == [each.channel for each in true.infrared.sensors]
 
         workshop.hold_before("s1", 0.2)
@@ -80,14 +80,14 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
         "  controller_watchdog_s: 0.12  # measured, 2026-11-21, anna",
         "  metres_per_tick: 0.00001727",
         "  numerator_counts_m: 90.5  # fitted, 2026-11-21, anna",
-        "    - {name: s1, label: left front, channel: ADC08, x_m: 0.14, y_m: 0.165, heading_deg: 90.0}"
+        "    - {name: s1, label: left front, x_m: 0.14, y_m: 0.165, heading_deg: 90.0, channel: ADC08}"
         "  # by hand, was ADC07, 2026-11-21, anna",
         "  - {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
     ):
         assert line in text.splitlines()
     assert re.search(r" s9,.*# DEAD.*, 2026-11-21, anna", text)
     assert re.search(r" s3,.*not tried", text)
-    assert RobotSettings.model_fields.keys() == yaml.safe_load(text).keys()
+    assert Kurt2Settings.model_fields.keys() == yaml.safe_load(text).keys()
 
 
 def test_commissioned_settings_without_findings_equal_the_base() -> None:
@@ -143,5 +143,5 @@ def test_the_runtime_settings_take_the_file_by_its_path(tmp_path: Path) -> None:
     default = (CONFIG_DIR / "runtime" / "default.yaml").read_text()
     mine = tmp_path / "mine.yaml"
     mine.write_text(default.replace("robot: kurt2 ", f"robot: {out} "))
-    assert load_robot(load_service(str(mine)).robot).can.speed_mode is SpeedMode.RAW
+    assert load_kurt2(load_service(str(mine)).robot).can.speed_mode is SpeedMode.RAW
     assert out.read_text().splitlines()[0].endswith(" can0: PASSED")

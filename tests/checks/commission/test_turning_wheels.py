@@ -7,7 +7,7 @@ import pytest
 
 from hal.bus import open_bus
 from hal.guard_reason import GuardReason
-from hal.robot_settings import RobotSettings, SpeedMode
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
 from kurt2rt.checks.commission.fault_text import fault_text
@@ -27,7 +27,7 @@ async def turned(
     tmp_path: Path,
     *steps: str,
     wiring: Wiring | None = None,
-    true: RobotSettings = BASE,
+    true: Kurt2Settings = BASE,
     instead: Instead = lambda _: None,
 ) -> Session:
     """Run a session and return it; steps after `modes` begin with a mode that answers."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hal.identity import SIMULATED_HARDWARE_ID
-from hal.robot_settings import SpeedMode, load_robot
+from hal.kurt2_settings import SpeedMode, load_kurt2
 from kurt2rt.checks.commission.checklist import STEPS, step_named
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress, StepRecord, load_progress
@@ -88,7 +88,7 @@ def commission_the_rest(type_at: Type, spec: str, folder: Path, *steps: str) -> 
         assert line in said.out.splitlines()
     assert "--only modes" in said.out  # passed before
     assert "stopped" not in said.out
-    robot = load_robot(str(folder / "var" / "robots" / "robbie.yaml"))
+    robot = load_kurt2(str(folder / "var" / "robots" / "robbie.yaml"))
     assert robot.can.speed_mode is SpeedMode.SPEED
     assert 0.1 <= robot.motors.controller_watchdog_s <= 1.0
     report = (folder / PROGRESS).with_suffix(".txt").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from hal.codec import load_codec
 from hal.control import Control, RawControl, SpeedControl, control_frame, decode_control
 from hal.frame import Frame
 from hal.in_process_bus import InProcessBus
-from hal.robot_settings import SpeedMode
+from hal.kurt2_settings import SpeedMode
 
 _CODEC = load_codec()
 _ENCODER, _BUMPERC = _CODEC.message("ENCODER"), _CODEC.message("BUMPERC")

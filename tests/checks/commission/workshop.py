@@ -11,7 +11,7 @@ from hal.bus import CanBus, open_bus
 from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from hal.kurt2 import Kurt2
-from hal.robot_settings import RobotSettings, SensorSettings, load_robot
+from hal.kurt2_settings import Kurt2SensorSettings, Kurt2Settings, load_kurt2
 from kurt2rt.checks.commission.checklist import STEPS, Checklist, step_named
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.listener import Listener
@@ -21,12 +21,12 @@ from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
 from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels_off_ground_step import WORDS
 from kurt2rt.platform.clock import LockstepClock
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.obstacle_settings import RoundObstacleSettings
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 from tests.checks.commission.wired_end import WiredEnd, Wiring
 
-BASE = load_robot()
+BASE = load_kurt2()
 CODEC = load_codec()
 TODAY = "2026-11-21 15:00"
 _SIDE_M = 6.0
@@ -42,7 +42,7 @@ class Workshop:
 
     def __init__(
         self,
-        true: RobotSettings = BASE,
+        true: Kurt2Settings = BASE,
         wiring: Wiring | None = None,
         seed: int = 1,
         hand_radius_m: float = 0.05,
@@ -54,7 +54,7 @@ class Workshop:
         self.robot_end = (
             open_bus(spec) if spec else CanBus(self.spec.partition(":")[2], lambda name: WiredEnd(name, self.wiring))
         )
-        self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
+        self.robot = SimulatedKurt2(true, _room(hand_radius_m), self.robot_end, seed)
         self.stranger: CanBus | None = None
         """Another node, which sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
         self.stranger_waits_s = 0.0
@@ -71,7 +71,7 @@ class Workshop:
     def step(self) -> None:
         self.robot.step()
         if self.stranger is not None and any(self.robot.wheel_speeds):
-            self.stranger_waits_s -= self.true.can.cycle_s
+            self.stranger_waits_s -= self.true.cycle_s
         if self.stranger is not None and self.stranger_waits_s < 0.0:
             self.stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
             self.stranger.shutdown()
@@ -96,10 +96,10 @@ class Workshop:
         middle = {"x_m": (single_side.x_m + other.x_m) / 2, "y_m": (single_side.y_m + other.y_m) / 2}
         self._hold(single_side.model_copy(update=middle), distance_m)
 
-    def _place(self, sensor: str) -> SensorSettings:
+    def _place(self, sensor: str) -> Kurt2SensorSettings:
         return next(each for each in BASE.infrared.sensors if each.name == sensor)
 
-    def _hold(self, place: SensorSettings, distance_m: float) -> None:
+    def _hold(self, place: Kurt2SensorSettings, distance_m: float) -> None:
         pose = self.robot.pose
         heading_rad = pose.heading_rad + math.radians(place.heading_deg)
         cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
@@ -223,7 +223,7 @@ class Session:
         return self.progress.steps[step].measured
 
 
-def with_channels(**channels: str) -> RobotSettings:
+def with_channels(**channels: str) -> Kurt2Settings:
     """Return BASE with some sensors on other channels."""
     sensors = tuple(
         each.model_copy(update={"channel": channels.get(each.name, each.channel)}) for each in BASE.infrared.sensors

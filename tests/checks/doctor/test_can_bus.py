@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.doctor.can_bus import BIT_RATE_BIT_S, check_can_interfaces, check_can_kernel, check_vcan
 from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 
@@ -55,7 +55,7 @@ def no_can() -> socket.socket:
 
 
 def test_the_bit_rate_to_copy_is_that_of_the_robot() -> None:
-    assert load_robot().can.bit_rate_bit_s == BIT_RATE_BIT_S
+    assert load_kurt2().can.bit_rate_bit_s == BIT_RATE_BIT_S
 
 
 def test_check_can_kernel_this_machine_has_can_or_misses_it() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import anyio
 
-from hal.robot_settings import RobotSettings, load_robot
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from kurt2rt.checks.faults.table import FaultTable, load_faults
 from kurt2rt.checks.soak.result import SoakResult
 from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings, load_soak
@@ -19,9 +19,9 @@ from simbridge.faults.long_run_rig import LongRunRig
 
 DAY: SoakSettings = load_soak()
 TABLE: FaultTable = load_faults(DAY.faults)
-ROBOT: RobotSettings = load_robot(TABLE.robot)
+ROBOT: Kurt2Settings = load_kurt2(TABLE.robot)
 TASK: TaskSettings = load_task(DAY.task)
-CYCLE_S = ROBOT.can.cycle_s
+CYCLE_S = ROBOT.cycle_s
 
 PATIENT = MoodSettings(
     share=1.0, lasts_s=(10.0, 20.0), phase=2, reaction_s=0.3, patience_s=0.3, error_rate=0.0, most_corrections=3

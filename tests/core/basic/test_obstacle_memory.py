@@ -28,7 +28,7 @@ REPERTOIRE = {
 }
 ACTIONS = set_points(REPERTOIRE)
 NOTHING = ROBOT.infrared.floor_counts
-PERIOD_S = ROBOT.can.cycle_s
+PERIOD_S = ROBOT.cycle_s
 LOOK_TICKS = round(SETTINGS.look_s / PERIOD_S)
 
 

@@ -6,7 +6,7 @@ import anyio
 import numpy as np
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import Driven, LearnerSetting, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
@@ -19,7 +19,7 @@ from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.core.learner.helpers import SETTING, Dog, Parrot, label
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 
 
 class Listener(Dog):

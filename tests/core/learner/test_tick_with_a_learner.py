@@ -8,8 +8,8 @@ import pytest
 from numpy.typing import NDArray
 
 from hal.guard_reason import GuardReason
+from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
-from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.decision.standing_text import reason_text
@@ -27,7 +27,7 @@ from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.core.learner.helpers import SETTING, Parrot
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 TASK = load_task("wall_following")
 ACTIONS = ("forward", "spin_left", "spin_right", "teleport")
 

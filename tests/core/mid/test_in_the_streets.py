@@ -9,8 +9,9 @@ import pytest
 from behaviors.metrics.junctions import Junctions
 from behaviors.metrics.streets import Junction, Side, StreetMap
 from behaviors.repertoire import load_repertoire
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot import SensorReadings
-from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.robot_settings import InfraredSettings
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -31,13 +32,13 @@ _IN_A_STREET_M = 0.35
 class Drive:
     """The policy drives; what is wanted may change in every tick."""
 
-    def __init__(self, seed: int, robot: RobotSettings = ROBOT) -> None:
+    def __init__(self, seed: int, robot: Kurt2Settings = ROBOT) -> None:
         self.simulation = Kurt2Simulation(robot, "manhattan", seed, "test")
         self.wanted = ActiveBehaviour(TASK.behaviours)
         self._level = PolicyLevel(
             TASK.policy.build(robot.infrared), load_repertoire(TASK.repertoire, robot), 10, self.wanted
         )
-        self._period_s = robot.can.cycle_s
+        self._period_s = robot.cycle_s
 
     def ticks(self, duration_s: float) -> Iterator[SensorReadings]:
         """Yield the sensor readings of each tick."""
@@ -97,7 +98,7 @@ class Truth:
         return (-1 if quarters == 3 else quarters, *sides)
 
 
-def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[list[object], list[object]]:
+def random_drive(seed: int, duration_s: float, robot: Kurt2Settings) -> tuple[list[object], list[object]]:
     """Return the passed and the detected junctions of a random drive."""
     drive = Drive(seed, robot)
     streets = StreetMap(drive.simulation.plan)
@@ -121,7 +122,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
     return passed[:both], told[:both]
 
 
-def noisy(robot: RobotSettings, **changes: float) -> RobotSettings:
+def noisy(robot: Kurt2Settings, **changes: float) -> Kurt2Settings:
     infrared: InfraredSettings = robot.infrared.model_copy(update=changes)
     return robot.model_copy(update={"infrared": infrared})
 

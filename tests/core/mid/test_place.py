@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from behaviors.repertoire import load_repertoire
+from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL, SensorReadings
-from hal.robot_settings import load_robot
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -20,7 +20,7 @@ from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.task_settings import load_task
 from simbridge.kurt2_simulation import Kurt2Simulation
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 STREETS = load_task("streets")
 PLACES = load_mid_level("places")
 NOTHING = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
@@ -56,7 +56,7 @@ class Drive:
     def step(self) -> bool:
         """One tick; whether a junction was passed."""
         self._tick += 1
-        now_s = self._tick * ROBOT.can.cycle_s
+        now_s = self._tick * ROBOT.cycle_s
         readings = self.simulation.robot.sense(now_s)
         changed = self.place.perceive(readings, NOTHING)
         decision = self._leader.decide(NOWHERE, readings, None)

@@ -2,13 +2,13 @@
 
 import math
 
+from hal.kurt2_settings import load_kurt2
 from hal.robot import SensorReadings
-from hal.robot_settings import load_robot
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 STREET_M, OPEN_M = 0.235, 0.60
 _STEP_M = 0.005
 _LEFT, _RIGHT = ("s1", "s3", "s4", "s2"), ("s5", "s7", "s8", "s6")

@@ -227,12 +227,12 @@ async def test_a_log_that_canplayer_plays_is_sensed_as_it_was_recorded(vcan0: st
         now_s, left_to_look = 0.0, 5
         while left_to_look:
             left_to_look -= canplayer.poll() is not None
-            now_s += ROBOT.can.cycle_s
+            now_s += ROBOT.cycle_s
             readings = kurt2.sense(now_s)
             ticks[0] += readings.encoder_left_ticks
             ticks[1] += readings.encoder_right_ticks
             sensed.add(readings.infrared_counts)
-            await asyncio.sleep(ROBOT.can.cycle_s)
+            await asyncio.sleep(ROBOT.cycle_s)
     kurt2.close()
     assert tuple(ticks) == recorded.ticks
     assert len(sensed) > 50

@@ -11,9 +11,9 @@ import can
 
 from hal.bus import CanBus, FramePort, open_bus
 from hal.frame import Frame
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from simbridge.realtime import RealtimeSimulation
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.hal.helpers import CODEC, INFRARED_FRAMES
 
@@ -50,10 +50,10 @@ class FallingSilentPort:
 
 def main() -> None:
     name, seconds, *infrared_seconds = sys.argv[1:]
-    settings = load_robot()
+    settings = load_kurt2()
     bus = open_bus(name)
     silent_from_s = time.monotonic() + (float(infrared_seconds[0]) if infrared_seconds else float("inf"))
-    robot = SimulatedRobot(settings, load_world("a", settings), FallingSilent(bus, silent_from_s), seed=7)
+    robot = SimulatedKurt2(settings, load_world("a", settings), FallingSilent(bus, silent_from_s), seed=7)
     with RealtimeSimulation(robot) as simulation:
         simulation.wait(float(seconds))
     bus.shutdown()

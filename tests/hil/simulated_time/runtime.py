@@ -13,8 +13,8 @@ import anyio
 from behaviors.repertoire import load_repertoire
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import load_kurt2
 from hal.robot import SensorReadings
-from hal.robot_settings import load_robot
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
@@ -43,9 +43,9 @@ class Hanging(PolicyLevel):
 
 
 async def drive(bus: str, seconds: float, hangs_at: int) -> None:
-    settings, task = load_robot(), load_task("wall_following")
+    settings, task = load_kurt2(), load_task("wall_following")
     policy = task.policy.build(settings.infrared)
-    period_s = settings.can.cycle_s
+    period_s = settings.cycle_s
     level = Hanging(
         policy,
         load_repertoire(task.repertoire, settings),

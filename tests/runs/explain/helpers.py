@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import anyio
 
+from hal.kurt2_settings import load_kurt2
 from hal.robot import WheelSpeeds
-from hal.robot_settings import load_robot
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.task_settings import load_task
@@ -20,7 +20,7 @@ from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 
 
 class Lesson:

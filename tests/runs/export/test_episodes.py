@@ -34,7 +34,7 @@ def test_frames_of_each_tick_hold_readings_and_speeds() -> None:
     for at in (0, 500, 4399):
         entry, state = ENTRIES[at], episode.columns[STATE][at]
         assert state[:18].tolist() == list(entry.readings.infrared_counts)
-        left_m_s = entry.readings.encoder_left_ticks * robot.geometry.metres_per_tick / robot.can.cycle_s
+        left_m_s = entry.readings.encoder_left_ticks * robot.geometry.metres_per_tick / robot.cycle_s
         assert state[18] == pytest.approx(left_m_s)
         assert episode.columns[ACTION][at] == pytest.approx(entry.decision.wheel_speeds)
         assert episode.columns["complementary_info.applied"][at] == pytest.approx(entry.grant.wheel_speeds)

@@ -14,8 +14,8 @@ from tempfile import TemporaryDirectory
 
 from mcap.writer import CompressionType, Writer
 
+from hal.kurt2_settings import load_kurt2
 from hal.robot import Robot
-from hal.robot_settings import load_robot
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
@@ -190,7 +190,7 @@ def record_story(
     `faulty`: puts a fault between the robot and its mind. `saved`: statistics that the run begins with.
     """
     told = STORIES[name]
-    settings, task = load_robot(), task or load_task(told.task)
+    settings, task = load_kurt2(), task or load_task(told.task)
     simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
     notebook = InMemoryEventStore()
     clock = LockstepClock(simulation.step)

@@ -8,7 +8,7 @@ import pytest
 from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.sensor_signs import SensorFault
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
@@ -42,7 +42,7 @@ class Ward:
     """One robot, looked at once a second."""
 
     def __init__(self, *, tolerates_stalls: bool = False) -> None:
-        self.book = Diagnostics(load_robot(), tolerates_stalls=tolerates_stalls)
+        self.book = Diagnostics(load_kurt2(), tolerates_stalls=tolerates_stalls)
         self.counted = Counted()
         self.now_s = 50.0
         self.counters = {"missed": 0, "junk": 0, "drops lines": 0}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import anyio
 
 from behaviors.metrics.task_metric import TaskMetric
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from hal.simulation import Pose
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
@@ -17,7 +17,7 @@ from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.simulation import Kurt2SimulationFactory
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 FACTORY = Kurt2SimulationFactory(ROBOT)
 
 
@@ -67,7 +67,7 @@ def drive_in_batch(
     ids = [getattr(mind, "rla_ids", ()) for mind in minds]
     steps: list[list[Step]] = [[] for _ in exams]
     collisions = [0] * len(exams)
-    ticks = round(task.exam.duration_s / ROBOT.can.cycle_s)
+    ticks = round(task.exam.duration_s / ROBOT.cycle_s)
     for begin in range(0, ticks, stretch):
         active = [r for r in range(len(exams)) if not batch.reason_to_leave(r)]
         batch.drive(active, min(stretch, ticks - begin))

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 from hal.batch import PolicyMind, TabledPolicy
 from hal.bus import open_bus
-from hal.guard import Guard
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
 from hal.simulation import Pose
@@ -24,11 +23,12 @@ from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
+from tests.hal.helpers import guard_on
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 
 
-def _standing_in(world: str) -> tuple[SimulatedRobot, Any, World]:
+def _standing_in(world: str) -> tuple[SimulatedKurt2, Any, World]:
     """Return a simulated robot, its record in a batch, and the batch's worlds."""
     simulation = FACTORY.open(world, 1, "exam")
     simulation.close()
@@ -79,10 +79,10 @@ def test_may_touch_is_false_only_where_the_body_is_free(world: str) -> None:
 )
 def test_slew_is_that_of_the_guard(from_m_s: float, to_m_s: float, elapsed_s: float) -> None:
     limits = ROBOT.guard
-    law = GuardLaw(ROBOT.can.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
+    law = GuardLaw(ROBOT.cycle_s, limits.maximum_speed_m_s, limits.acceleration_m_s2, limits.braking_m_s2, 0, 0)
     bus = open_bus(f"virtual:{uuid.uuid4()}")
     try:
-        guard = Guard(ROBOT, bus)
+        guard = guard_on(ROBOT, bus)
         assert slewed(from_m_s, to_m_s, elapsed_s, law) == guard._slewed(from_m_s, to_m_s, elapsed_s)
     finally:
         bus.shutdown()
@@ -133,6 +133,6 @@ def assert_obeys(targets: Targets, put_every: int | None) -> None:
             if put_every is not None and tick % put_every == 0:
                 wheels.halt()
             wheels.turn(told_m_s, -told_m_s)
-            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.can.cycle_s) == ""
+            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.cycle_s) == ""
             told_m_s = int(target_m_s * 100) / 100
             watch.set_command(WheelSpeeds(told_m_s, -told_m_s))

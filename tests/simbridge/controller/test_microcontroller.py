@@ -7,7 +7,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.settings import SettingsError
 from hal.simulation import Pose
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import BRAKE, CODEC, ROBOT, STAND, Rig, facing_wall, room
 
 FORWARD = SpeedControl(Mode.SPEED_CM, 30, 30)
@@ -213,7 +213,7 @@ def test_analog_frames_sensor_on_another_channel_is_refused(rig: Rig) -> None:
     wrong = ROBOT.infrared.sensors[0].model_copy(update={"channel": "ADC12"})
     infrared = ROBOT.infrared.model_copy(update={"sensors": (wrong, *ROBOT.infrared.sensors[1:])})
     with pytest.raises(SettingsError, match=r"s1.*ADC12"):
-        SimulatedRobot(ROBOT.model_copy(update={"infrared": infrared}), room(), rig.robot_end, 1)
+        SimulatedKurt2(ROBOT.model_copy(update={"infrared": infrared}), room(), rig.robot_end, 1)
 
 
 def test_bumpers_are_sent_as_long_as_the_contact_lasts(rig: Rig) -> None:

@@ -9,7 +9,7 @@ from hal.can_interface import CanInterface
 from hal.control import Mode, SpeedControl, control_frame
 from hal.in_process_bus import QUEUE_FRAMES, InProcessBus
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import CODEC, ROBOT, room
 
 SLOWLY = control_frame(SpeedControl(Mode.SPEED_CM, 20, 20))
@@ -49,11 +49,11 @@ def adapter() -> Iterator[Adapter]:
 
 
 def test_reconnecting_bus_robot_stands_while_it_is_gone(adapter: Adapter) -> None:
-    robot = SimulatedRobot(ROBOT, room(), adapter.steady, seed=1)
+    robot = SimulatedKurt2(ROBOT, room(), adapter.steady, seed=1)
 
     def cycles(count: int) -> None:
         for _ in range(count):
-            adapter.now_s += ROBOT.can.cycle_s
+            adapter.now_s += ROBOT.cycle_s
             adapter.control.send(SLOWLY)
             robot.step()
             adapter.notebook.drain()

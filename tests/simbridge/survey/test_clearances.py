@@ -4,7 +4,7 @@ import random
 
 import pytest
 
-from hal.robot_settings import load_robot
+from hal.kurt2_settings import load_kurt2
 from simbridge.robot.world import World
 from simbridge.survey.clearance import Clearance
 from simbridge.worlds.world_loading import load_world
@@ -12,7 +12,7 @@ from simbridge.worlds.world_loading import load_world
 
 @pytest.mark.parametrize("world", ["a", "two_objects"])
 def test_clearances_are_those_of_single_positions(world: str) -> None:
-    place, chance = World(load_world(world, load_robot())), random.Random(world)
+    place, chance = World(load_world(world, load_kurt2())), random.Random(world)
     clearance = Clearance(place)
     width_m, height_m = place.settings.size_m
     positions = [(chance.uniform(0, width_m), chance.uniform(0, height_m)) for _ in range(200)]

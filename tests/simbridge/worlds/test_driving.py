@@ -6,14 +6,14 @@ import math
 import pytest
 
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
-from hal.robot_settings import RobotSettings
+from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, half_turn, post, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
 
 
-def robot_with_track(track_m: float) -> RobotSettings:
+def robot_with_track(track_m: float) -> Kurt2Settings:
     return ROBOT.model_copy(update={"geometry": ROBOT.geometry.model_copy(update={"effective_track_m": track_m})})
 
 
@@ -55,7 +55,7 @@ def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
         rig.step(control)
         speeds.append(rig.speed_m_s)
     changes = [after - before for before, after in itertools.pairwise(speeds)]
-    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.cycle_s
     assert max(changes) == pytest.approx(ROBOT.motors.acceleration_m_s2 * 0.01, abs=rounding)
     assert min(changes) == pytest.approx(-ROBOT.motors.braking_m_s2 * 0.01, abs=rounding)
 

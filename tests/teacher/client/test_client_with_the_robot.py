@@ -20,7 +20,7 @@ from kurt2rt.service.post_tick import ProgramConsole
 from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
-from simbridge.simulated_world import Kurt2World
+from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.world_loading import load_world
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
@@ -38,7 +38,7 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
         ports.append(channel.endpoint.port)
         opened.set()
 
-    ground = Kurt2World(live.simulated, load_world("a"), SETTINGS.geometry, live.simulation)
+    ground = RealtimeWorld(live.simulated, load_world("a"), SETTINGS.geometry, live.simulation)
     settings = settings_for(folder / "knowledge.sqlite").model_copy(
         update={"teachers": str(folder / "teachers"), "port": 0}
     )

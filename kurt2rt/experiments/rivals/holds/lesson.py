@@ -120,7 +120,7 @@ class _HoldRun(MarkedRun):
         on_progress: Callable[[float], None],
         times: FitTimes,
     ) -> None:
-        task, period_s = runtime.task, runtime.robot.can.cycle_s
+        task, period_s = runtime.task, runtime.robot.cycle_s
         self._team, self._learners, self._clock = team, dict(learners), clock
         for learner in self._learners.values():
             learner.fits_at_intervals = True

@@ -1,14 +1,16 @@
-"""A KURT2 that drives on by itself after its computer stalled, for a simulator in the same program."""
+"""Drivers that drive on by themselves after their computer stalled, for a simulator in the same program."""
 
 from typing import Final
 
 from hal.guard_reason import GuardReason
+from hal.guarded_robot import GuardedRobot
 from hal.kurt2 import Kurt2
+from hal.linked_robot import LinkedRobot
 from hal.robot import GuardResult, WheelSpeeds
 
 
-class StallTolerantKurt2(Kurt2):
-    """Brakes while ticks cease, as every KURT2 does, and releases that latch with the next tick.
+class StallTolerant(GuardedRobot):
+    """Brakes while ticks cease, as every driver does, and releases that latch with the next tick.
 
     Nothing can come to harm: wheels and walls are in the program that stalled. Never for a robot on a real bus, nor for
     a simulator in another program, which goes on while this one stalls.
@@ -39,3 +41,11 @@ class StallTolerantKurt2(Kurt2):
 
 
 _STALLED: Final = (GuardReason.TICKS_CEASED,)
+
+
+class StallTolerantKurt2(StallTolerant, Kurt2):
+    """KURT2 whose simulation stalls with its driver."""
+
+
+class StallTolerantLinkedRobot(StallTolerant, LinkedRobot):
+    """Robot over a RobotLink whose simulation stalls with its driver."""

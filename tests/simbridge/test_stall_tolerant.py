@@ -9,20 +9,20 @@ import pytest
 from hal.bus import open_bus
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
+from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Watch
 from kurt2rt.service.bus_names import SIMULATED
 from kurt2rt.service.open_robot import open_robot
-from simbridge.simulated_robot import SimulatedRobot
-from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
+from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.stall_tolerant import StallTolerantKurt2
 from simbridge.worlds.world_loading import load_world
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_by_hand import watch
 from tests.teacher.helpers import teach
 
-ROBOT = load_robot()
+ROBOT = load_kurt2()
 TURN = WheelSpeeds(0.1, -0.1)
 
 
@@ -33,11 +33,11 @@ class Scene:
         spec = f"virtual:{uuid.uuid4()}"
         self.far_end = open_bus(spec)
         self.now_s = 0.0
-        self.simulated = SimulatedRobot(ROBOT, load_world("a"), self.far_end, 1)
+        self.simulated = SimulatedKurt2(ROBOT, load_world("a"), self.far_end, 1)
         self.robot = driver(ROBOT, open_bus(spec), lambda: self.now_s)
 
     def tick(self, wanted: WheelSpeeds = TURN) -> GuardResult:
-        self.now_s += ROBOT.can.cycle_s
+        self.now_s += ROBOT.cycle_s
         self.simulated.step()
         self.robot.sense(self.now_s)
         return self.robot.drive(wanted, self.now_s, self.now_s)

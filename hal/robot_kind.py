@@ -1,0 +1,52 @@
+"""Kind of robot: schema of its settings, driver and simulation, which a plug-in of `kurt2rt.robots` offers."""
+
+from pathlib import Path
+from typing import Protocol, cast
+
+from hal.guarded_robot import GuardedRobot
+from hal.robot_settings import RobotSettings
+from hal.settings import find_robot_kind
+from hal.simulation import SimulationFactory
+from hal.tap import Tap
+
+
+class RobotKind(Protocol):
+    """Kind of robot. Its imports are light: a driver imports what it needs in `open`, a simulation in `simulations`."""
+
+    @property
+    def settings(self) -> type[RobotSettings]:
+        """Schema of the settings of such a robot."""
+        ...
+
+    @property
+    def folder(self) -> Path:
+        """Folder of its YAML files, with the folders of `config`: robots, situations, repertoires, tasks, worlds."""
+        ...
+
+    def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
+        """Return the driver of the robot at an address, such as can0; its watchdog is not started.
+
+        `tap`: sees each CAN frame; a kind without CAN refuses one. Raises hal.bus.BusError, SettingsError.
+        """
+        ...
+
+    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
+        """Return what opens simulations of such a robot. Raises SettingsError for a wire that its link cannot have."""
+        ...
+
+
+def kind_of(settings: RobotSettings) -> RobotKind:
+    """Return the kind of a robot. Raises hal.settings.SettingsError if its plug-in is not installed."""
+    return cast("RobotKind", find_robot_kind(settings.kind))
+
+
+NO_WIRE = "none"
+"""Name of ideal transport: messages arrive at once, none is lost."""
+
+
+def simulations_of(settings: RobotSettings, wire: str = NO_WIRE) -> SimulationFactory:
+    """Return what opens simulations of a robot, over a wire that its link knows. Raises SettingsError.
+
+    Raises ModuleNotFoundError where the simulator, which is an extra, is not installed.
+    """
+    return kind_of(settings).simulations(settings, wire)

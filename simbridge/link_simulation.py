@@ -1,0 +1,97 @@
+"""Simulations of a robot that is reached over a RobotLink, for plug-ins."""
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from hal.linked_robot import LinkedRobot
+from hal.robot_link import RobotLink
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import LiveSimulation
+from hal.tap import Tap
+from simbridge.controller.controller import Controller
+from simbridge.live_simulation import run_live
+from simbridge.robot.body import Body
+from simbridge.robot.wheels import Wheels
+from simbridge.robot_simulation import RobotSimulation, chance_of
+from simbridge.robot_worlds import RobotWorlds
+from simbridge.simulated_link import SimulatedLink
+from simbridge.simulated_robot import MakeSensors, SimulatedRobot, infrared_sensors
+from simbridge.stall_tolerant import StallTolerantLinkedRobot
+from simbridge.wire.line import NO_WIRE
+from simbridge.worlds.world_loading import load_world
+
+
+class PairedLink(SimulatedLink, Protocol):
+    """Link with both of its ends: the runtime's, and the simulated electronics of the robot."""
+
+    @property
+    def runtime_end(self) -> RobotLink:
+        """End that the driver owns and closes."""
+        ...
+
+    def make_controller(self, body: Body, wheels: Wheels) -> Controller:
+        """Return the electronics at the robot's end, for a robot with this body and these wheels."""
+        ...
+
+
+OpenLink = Callable[[RobotSettings], PairedLink]
+"""Open both ends of a link. A function of a module, because a factory is sent to other processes."""
+
+
+@dataclass(frozen=True, slots=True)
+class LinkSimulationFactory(RobotWorlds):
+    """Opens simulations of a robot without CAN (hal.simulation.SimulationFactory); can be sent to another process.
+
+    There is no batch of such robots: a study drives them over their link.
+    """
+
+    open_link: OpenLink = field(kw_only=True)
+    make_sensors: MakeSensors = field(kw_only=True, default=infrared_sensors)
+    """Range sensors of the robot: a function of a module."""
+
+    def open(self, world: str, seed: int, purpose: str) -> RobotSimulation:
+        """Open the simulated robot in a world; `seed` and `purpose` make its sensors, start pose and noise.
+
+        Raises SettingsError for an unknown world, or for a wire.
+        """
+        return self._open(world, seed, purpose, LinkedRobot)[0]
+
+    def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
+        """Return a context in which a robot runs in real time.
+
+        Raises SettingsError for an unknown world, for a wire, or for a tap, which sees CAN frames.
+        """
+        if tap is not None:
+            raise SettingsError("has no CAN frames to be seen", where=f"robot {self.settings.name}", do="leave it out")
+        simulation, driver = self._open(world, seed, "run", StallTolerantLinkedRobot)
+        return run_live(simulation, driver, simulation.simulated_robot.world.settings)
+
+    def require_worlds(self, *worlds: str) -> None:
+        """Check each world, and that no wire is asked for. Raises SettingsError."""
+        self._require_no_wire()
+        super(LinkSimulationFactory, self).require_worlds(*worlds)
+
+    def _open(
+        self, world: str, seed: int, purpose: str, driver_class: type[LinkedRobot]
+    ) -> tuple[RobotSimulation, LinkedRobot]:
+        self._require_no_wire()
+        loaded = load_world(world, self.settings)
+        chance = chance_of(world, seed, purpose)
+        noise_seed = chance.getrandbits(32)
+        link = self.open_link(self.settings)
+        simulated = SimulatedRobot(
+            self.settings, loaded, link.make_controller, noise_seed, robot_seed=seed, make_sensors=self.make_sensors
+        )
+        driver = driver_class(self.settings, link.runtime_end)
+        return RobotSimulation(self.settings, simulated, driver, link, chance), driver
+
+    def _require_no_wire(self) -> None:
+        if self.wire != NO_WIRE:
+            raise SettingsError(
+                f"has no CAN bus, so no wire (got {self.wire}, allowed {NO_WIRE})",
+                where=f"robot {self.settings.name}",
+                do="leave --wire out",
+            )

@@ -1,0 +1,143 @@
+"""A simulated robot in one world, with the runtime's driver at the other end of its link."""
+
+import random
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+
+from hal.guarded_robot import GuardedRobot
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose, Position, WorldPlan
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_link import SimulatedLink
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_world import plan_of
+from simbridge.survey.clearance import Clearance
+from simbridge.survey.free_poses import FreePoses
+
+
+class RobotSimulation:
+    """A robot of any kind in one world, with its link and its driver (hal.simulation.Simulation)."""
+
+    def __init__(
+        self,
+        settings: RobotSettings,
+        simulated: SimulatedRobot,
+        driver: GuardedRobot,
+        link: SimulatedLink,
+        chance: random.Random,
+    ) -> None:
+        """Place the robot at a start pose by `chance`; the simulation closes driver and link."""
+        self.simulated_robot = simulated
+        self.robot = driver
+        self.settings = settings
+        self._link = link
+        self._cycle_s = settings.cycle_s
+        self._starts = [start.pose for start in simulated.world.settings.start_poses]
+        simulated.place(chance.choice(self._starts))
+
+    @property
+    def position(self) -> Position:
+        """True position of the robot, in m."""
+        pose = self.simulated_robot.pose
+        return Position(pose.x_m, pose.y_m)
+
+    @property
+    def pose(self) -> Pose:
+        """True pose of the robot, in m and rad."""
+        return self.simulated_robot.pose
+
+    @property
+    def plan(self) -> WorldPlan:
+        """World from above, with walls at their present places."""
+        return plan_of(self.simulated_robot.world.settings)
+
+    # Surveys of the whole world, which a run on a large map never asks for.
+    @cached_property
+    def _nearest(self) -> Clearance:
+        return Clearance(self.simulated_robot.world)
+
+    @cached_property
+    def _free(self) -> FreePoses:
+        return FreePoses(self.simulated_robot.world, self.settings)
+
+    @property
+    def collisions(self) -> int:
+        """Contacts with walls or obstacles so far."""
+        return self.simulated_robot.collisions
+
+    @property
+    def touching(self) -> bool:
+        """True while the robot touches something."""
+        return self.simulated_robot.touching
+
+    @property
+    def laps(self) -> float:
+        """Progress along walls, in laps; driving backwards counts negative."""
+        return self.simulated_robot.laps
+
+    @property
+    def lap_m(self) -> float:
+        """Length of a lap along the outer wall, in m."""
+        return self.simulated_robot.lap_m
+
+    def step(self) -> None:
+        """Advance the world by one cycle. Raises hal.bus.BusError."""
+        self._link.cycle(self.simulated_robot.step)
+
+    def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:
+        """Return the distance in m from each position to the nearest wall or obstacle."""
+        return self._nearest.distances_m(positions)
+
+    def rescue(self) -> None:
+        """Put the robot, standing, at the nearest start pose."""
+        self.put(self.nearest_start)
+
+    @property
+    def nearest_start(self) -> Pose:
+        """Start pose that is nearest to the robot, in m and rad."""
+        here = self.simulated_robot.pose
+
+        def squared_distance(pose: Pose) -> float:
+            return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
+
+        return min(self._starts, key=squared_distance)
+
+    def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
+        """Put the robot, standing, at a random start pose, or at any free pose `in_sight` of an obstacle.
+
+        `close`: so close to it that the robot cannot turn on the spot. Raises hal.settings.SettingsError if no free
+        pose is found.
+        """
+        self.put(self.draw_pose(chance, in_sight=in_sight, close=close))
+
+    def draw_pose(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> Pose:
+        """Return a random start pose, or a free pose `in_sight` of an obstacle, in m and rad (`reposition`)."""
+        return self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts)
+
+    def put(self, pose: Pose) -> None:
+        """Put the robot, standing, at this pose."""
+        self.simulated_robot.place(pose)
+
+    @contextmanager
+    def live(self) -> Iterator[RealtimeSimulation]:
+        """Advance the world in real time in a thread, with the robot's watchdog running, until the context ends.
+
+        Yields the thread. Leaving raises the error that ended it, if any.
+        """
+        with (
+            self._link.live(),
+            RealtimeSimulation(self.simulated_robot, self._cycle_s) as realtime,
+            self.robot.watchdog,
+        ):
+            yield realtime
+
+    def close(self) -> None:
+        """Stop the robot and close both ends of its link."""
+        self.robot.close()
+        self._link.close()
+
+
+def chance_of(world: str, seed: int, purpose: str) -> random.Random:
+    """Return the chance of a simulation: first its noise seed of 32 bits, then its start pose."""
+    return random.Random(f"{purpose} in world {world}, seed {seed}")

@@ -1,0 +1,141 @@
+"""A robot over a RobotLink is simulated as KURT2 is: the same body, sensors and worlds behind another link."""
+
+import pickle
+import random
+import time
+from collections.abc import Sequence
+from contextlib import closing
+
+import pytest
+
+from hal.batch import BatchFactory
+from hal.batch_lesson import LessonFactory
+from hal.linked_robot import LinkedRobot
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import Pose, SimulationFactory
+from hal.tap import Tap
+from simbridge.link_simulation import LinkSimulationFactory
+from simbridge.robot.noise import Noise
+from simbridge.robot.world import World
+from simbridge.robot_simulation import RobotSimulation
+from simbridge.simulation import Kurt2SimulationFactory
+from tests.simbridge.direct_link import DirectEnd, DirectLink
+from tests.simbridge.rig import ROBOT
+
+FACTORY = LinkSimulationFactory(ROBOT, open_link=DirectLink)
+FORWARD = WheelSpeeds(0.3, 0.3)
+
+
+class CompassSensors:
+    """Range sensors that read the robot's position along x, in cm."""
+
+    def __init__(self, sensors: int) -> None:
+        self.counts = [0] * sensors
+        self.due_s: tuple[float, ...] = ()
+
+    def measure(self, pose: Pose) -> Sequence[int]:
+        self.measure_all(pose)
+        return range(len(self.counts))
+
+    def measure_all(self, pose: Pose) -> None:
+        self.counts[:] = [round(100 * pose.x_m)] * len(self.counts)
+
+
+def compass_sensors(robot: RobotSettings, world: World, noise: Noise, build: Noise) -> CompassSensors:  # noqa: ARG001
+    return CompassSensors(len(robot.infrared.sensors))
+
+
+def drive(simulation: RobotSimulation, wanted: WheelSpeeds, cycles: int, start_s: float = 0.0) -> None:
+    for cycle in range(1, cycles + 1):
+        simulation.step()
+        now_s = start_s + cycle * ROBOT.cycle_s
+        simulation.robot.sense(now_s)
+        simulation.robot.drive(wanted, now_s, now_s)
+
+
+def test_link_simulation_drives_and_reports() -> None:
+    with closing(FACTORY.open("a", 1, "exam")) as simulation:
+        start = simulation.position
+        drive(simulation, FORWARD, 100)
+        readings = simulation.robot.sense(1.005)
+        assert simulation.position != start
+        assert readings.infrared_counts == simulation.simulated_robot.infrared_counts
+        assert readings.encoder_left_ticks == 0
+        drive(simulation, STANDSTILL, 100, start_s=1.01)
+        assert simulation.simulated_robot.wheel_speeds == pytest.approx((0.0, 0.0), abs=0.001)
+
+
+def test_link_simulation_same_seed_same_run() -> None:
+    def run(seed: int, purpose: str) -> str:
+        with closing(FACTORY.open("b", seed, purpose)) as simulation:
+            drive(simulation, WheelSpeeds(0.3, 0.2), 200)
+            return simulation.simulated_robot.state_hash()
+
+    assert run(3, "exam") == run(3, "exam")
+    assert len({run(3, "exam"), run(3, "lesson"), run(4, "exam")}) == 3
+
+
+def test_link_simulation_robot_equals_kurt2_of_the_same_seed() -> None:
+    with (
+        closing(FACTORY.open("a", 5, "exam")) as simulation,
+        closing(Kurt2SimulationFactory(ROBOT).open("a", 5, "exam")) as kurt2,
+    ):
+        assert simulation.pose == kurt2.pose
+        assert simulation.simulated_robot.infrared_counts == kurt2.simulated_robot.infrared_counts
+
+
+def test_link_simulation_has_sensors_of_the_plug_in() -> None:
+    factory = LinkSimulationFactory(ROBOT, open_link=DirectLink, make_sensors=compass_sensors)
+    with closing(factory.open("a", 1, "exam")) as simulation:
+        simulation.put(Pose(1.5, 0.5, 0.0))
+        simulation.step()
+        assert set(simulation.robot.sense(0.01).infrared_counts) == {150}
+
+
+def test_link_simulation_closes_both_ends() -> None:
+    simulation = FACTORY.open("a", 1, "exam")
+    link = simulation._link
+    assert isinstance(link, DirectLink)
+    simulation.close()
+    assert link.runtime_end.closed
+    assert isinstance(link.runtime_end, DirectEnd)
+
+
+def test_link_factory_pickles_and_has_no_batch() -> None:
+    again: SimulationFactory = pickle.loads(pickle.dumps(FACTORY))
+    assert again.settings_of("a") == FACTORY.settings_of("a")
+    assert not isinstance(FACTORY, BatchFactory | LessonFactory)
+    assert isinstance(Kurt2SimulationFactory(ROBOT), BatchFactory)
+
+
+def test_link_factory_wire_is_refused() -> None:
+    wired = LinkSimulationFactory(ROBOT, "lossy", open_link=DirectLink)
+    with pytest.raises(SettingsError, match=r"no CAN bus.*lossy.*leave --wire out"):
+        wired.require_worlds("a")
+    with pytest.raises(SettingsError, match="no CAN bus"):
+        wired.open("a", 1, "exam")
+
+
+def test_link_factory_tap_is_refused() -> None:
+    class Silent:
+        def on_rx(self, *_: object) -> None: ...
+
+        def on_tx(self, *_: object) -> None: ...
+
+    tap: Tap = Silent()
+    with pytest.raises(SettingsError, match="no CAN frames"):
+        FACTORY.live("a", 1, tap)
+
+
+def test_link_simulation_lives_in_real_time() -> None:
+    with FACTORY.live("a", 1) as live:
+        assert isinstance(live.robot, LinkedRobot)
+        assert live.robot.watchdog.running
+        deadline_s = time.monotonic() + 10.0
+        while live.robot.sense(time.monotonic()).infrared_age_s > 1.0 and time.monotonic() < deadline_s:
+            time.sleep(0.01)
+        assert live.world.lives
+        live.simulation.reposition(random.Random(1), in_sight=True)
+    assert live.robot.health.latched is not None
