@@ -7,12 +7,9 @@ from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.codec import load_codec
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
-from simbridge.controller.controller import Controller
 from simbridge.controller.reconnecting_bus import ReconnectingBus
-from simbridge.robot.body import Body
-from simbridge.robot.wheels import Wheels
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.simulated_robot import MakeSensors, SimulatedRobot, infrared_sensors
+from simbridge.simulated_robot import MakeController, MakeSensors, SimulatedRobot, infrared_sensors
 from simbridge.worlds.world_settings import WorldSettings
 
 _LISTEN_S = 0.1
@@ -46,21 +43,12 @@ class RobotEnd(Protocol):
         ...
 
 
-class ControllerLink(Protocol):
-    """Robot's end of the link of a plug-in."""
+class ClosablePort(Protocol):
+    """Robot's end of the link of a plug-in. It is never lost: a lost line is the other end's."""
 
     @property
     def name(self) -> str:
         """Name of the link in messages, such as `serial port /dev/ttyACM0`."""
-        ...
-
-    @property
-    def error_text(self) -> str:
-        """Cause of the present interruption; empty without one."""
-        ...
-
-    def make_controller(self, body: Body, wheels: Wheels) -> Controller:
-        """Return the electronics at this end, for a robot with this body and these wheels."""
         ...
 
     def close(self) -> None:
@@ -100,31 +88,28 @@ class CanRobotEnd:
 
 
 class LinkRobotEnd:
-    """End of the link of a plug-in, made of the parts that its simulation has (simbridge.link_simulation)."""
+    """End of the link of a plug-in, with the parts that its simulation has (simbridge.link_simulation)."""
 
-    lost = 0
+    error_text, lost = "", 0
 
     def __init__(
         self,
         settings: RobotSettings,
-        link: ControllerLink,
+        port: ClosablePort,
+        make_controller: MakeController,
         make_sensors: MakeSensors = infrared_sensors,
     ) -> None:
-        """Own the robot's end of a link from now on."""
-        self.name = link.name
-        self._settings, self._link, self._make_sensors = settings, link, make_sensors
-
-    @property
-    def error_text(self) -> str:
-        """Cause of the present interruption; empty without one."""
-        return self._link.error_text
+        """Own `port` from now on, at which the electronics of `make_controller` is."""
+        self.name = port.name
+        self._settings, self._port = settings, port
+        self._make_controller, self._make_sensors = make_controller, make_sensors
 
     def simulate(self, world: WorldSettings, seed: int, robot_seed: int) -> SimulatedRobot:
         """Return the robot at this end."""
         return SimulatedRobot(
             self._settings,
             world,
-            self._link.make_controller,
+            self._make_controller,
             seed,
             robot_seed=robot_seed,
             make_sensors=self._make_sensors,
@@ -132,7 +117,7 @@ class LinkRobotEnd:
 
     def close(self) -> None:
         """Close the robot's end of the link."""
-        self._link.close()
+        self._port.close()
 
 
 def require_free_bus(settings: Kurt2Settings, bus: CanBus) -> None:
