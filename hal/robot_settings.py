@@ -1,7 +1,9 @@
 """Settings of a robot: geometry, limits, and the law and places of its range sensors."""
 
+import json
 from collections.abc import Mapping
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -190,12 +192,31 @@ def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
     The file's `kind` names the plug-in that knows its schema. Raises hal.settings.SettingsError.
     """
     path = find_config("robots", name_or_path)
-    content = content_of(path)
+    return robot_of_content(content_of(path), path)
+
+
+def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:
+    """Return the settings of a robot from JSON, as recordings and packages keep it.
+
+    Raises hal.settings.SettingsError that names `where`, also for a kind that is not installed.
+    """
+    try:
+        content = json.loads(text)
+    except ValueError as error:
+        raise SettingsError(f"not valid JSON: {error}", where=where) from error
+    return robot_of_content(content, where)
+
+
+def robot_of_content(content: Any, where: Path | str) -> RobotSettings:
+    """Return the settings of a robot from the content of its file, in the types of JSON.
+
+    Raises hal.settings.SettingsError that names `where` and the key, also for a kind that is not installed.
+    """
     kind = content.get("kind", DEFAULT_KIND) if isinstance(content, dict) else DEFAULT_KIND
     if not isinstance(kind, str):
-        raise SettingsError(f"kind: Input should be a valid string (found {kind!r})", where=path)
+        raise SettingsError(f"kind: Input should be a valid string (found {kind!r})", where=where)
     try:
         schema: type[RobotSettings] = find_robot_kind(kind).settings
     except SettingsError as error:
-        raise SettingsError(f"kind: {error.what} (found {kind!r})", where=path, do=error.do) from error
-    return settings_of(schema.read_earlier(content) if isinstance(content, dict) else content, schema, path)
+        raise SettingsError(f"kind: {error.what} (found {kind!r})", where=where, do=error.do) from error
+    return settings_of(schema.read_earlier(content) if isinstance(content, dict) else content, schema, where)

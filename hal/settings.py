@@ -190,7 +190,7 @@ class RobotParts(Protocol):
         ...
 
 
-_ROBOT_PARTS = ("settings", "folder", "open", "simulations")
+_ROBOT_PARTS = ("settings", "folder", "open", "simulations", "serve")
 ROBOTS = PluginKind(
     "robots",
     "robot",

@@ -24,6 +24,7 @@ _PANELS = {
         "why": "Explain what the robot did, and why: at a moment of a run, in a whole run, or now.",
         "replay": "Replay a recorded run, and compare every decision and all that is known, bit for bit.",
         "recover": "Copy what is whole of a recorded run to files that Foxglove opens.",
+        "export": "Write recorded runs as data sets for other programs.",
     },
     "Knowledge": {
         "knowledge": "Look after what the robot was taught. A file is changed only while no robot runs on it; it is "

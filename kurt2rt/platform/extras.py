@@ -12,8 +12,10 @@ EXTRAS = {
     "networkx": "simulation",
     "optuna": "search",
     "PIL": "simulation",
+    "pyarrow": "export",
     "pymunk": "simulation",
     "river": "rivals",
+    "rosbags": "ros",
     "scipy": "studies",
     "shapely": "simulation",
     "serial": "serial",
@@ -21,6 +23,7 @@ EXTRAS = {
     "starlette": "page",
     "uvicorn": "page",
     "websockets": "page",
+    "zenoh": "ros",
     "zstandard": "recording",
 }
 """Packages that a robot can do without, by their importable names, and the extra that brings each."""

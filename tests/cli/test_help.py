@@ -59,6 +59,7 @@ def test_every_command_is_found() -> None:
             "merge",
             "diff",
             "export",
+            "lerobot",
             "import",
             "compact",
             "contradictions",

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from pydantic import ValidationError
 
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import RobotSettings, robot_of_json
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import AVERAGED, SituationDefinition, load_situation
 from kurt2rt.core.task_settings import TaskSettings
@@ -26,8 +26,8 @@ def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task
         task: here.
     """
     try:
-        there_robot = RobotSettings.model_validate_json(settings[ROBOT])
         with extracted_settings(settings):
+            there_robot = robot_of_json(settings[ROBOT], "the package's robot")
             there_task = TaskSettings.model_validate_json(settings[TASK])
             there = load_situation(there_task.situation, there_robot.infrared.names)
     except (KeyError, ValidationError, SettingsError, OSError) as error:

@@ -142,4 +142,5 @@ def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding
     levels = {CRITIC: load_critic(task.critic).level_features}
     if task.mid is not None:
         levels[MID] = load_mid_level(task.mid).level_features
-    return KnowledgeBinding(definition.hash(sensors), definition.names, task.system_name, settings.name, levels)
+    fingerprint = definition.hash(sensors, settings.kind)
+    return KnowledgeBinding(fingerprint, definition.names, task.system_name, settings.name, levels)

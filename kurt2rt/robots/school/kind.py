@@ -44,5 +44,21 @@ class SchoolKind:
 
         return LinkSimulationFactory(settings, wire, open_link=MemoryLine)
 
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return the end of a simulated robot behind a pseudo-terminal, which `address` leads to, for other programs.
+
+        Raises hal.bus.BusError if the path `address` is taken.
+        """
+        from kurt2rt.robots.school.simulated import SchoolElectronics
+        from simbridge.pty_port import PtyPort
+        from simbridge.robot_end import LinkRobotEnd
+
+        port = PtyPort(address)
+
+        def electronics(*_: object) -> SchoolElectronics:
+            return SchoolElectronics(settings, port)
+
+        return LinkRobotEnd(settings, port, electronics)
+
 
 SCHOOL = SchoolKind()

@@ -19,6 +19,8 @@ LINE_PERIOD_S = 0.02
 class SchoolElectronics:
     """Electronics (simbridge.controller.controller.Controller) that obey valid lines, and brake if there are none."""
 
+    crashed = False
+
     def __init__(self, settings: RobotSettings, port: BytePort) -> None:
         self._port = port
         self._cycle_s = settings.cycle_s
@@ -33,13 +35,18 @@ class SchoolElectronics:
         self._lines = Lines(self._port)
         self.commands = MOTORS_BRAKED
         self._silent_cycles = self._watchdog_cycles
-        self._cycles = self._left = self._right = 0
+        self._cycles = self._left = self._right = self.control_frames = 0
         self._command = lines.NO_COMMAND
 
     @property
     def watchdog_expired(self) -> bool:
         """Return whether no valid command has arrived for the watchdog's time."""
         return self._silent_cycles >= self._watchdog_cycles
+
+    @property
+    def junk_frames(self) -> int:
+        """Number of lines that could not be read."""
+        return self._lines.junk
 
     @property
     def state(self) -> tuple[int, ...]:
@@ -75,6 +82,7 @@ class SchoolElectronics:
 
     def _obey(self, number: int, commands: MotorCommands) -> None:
         self.commands, self._command, self._silent_cycles = commands, number, 0
+        self.control_frames += 1
 
 
 class MemoryLine(InstantLink):

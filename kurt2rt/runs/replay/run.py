@@ -9,7 +9,8 @@ from typing import TypeVar
 from pydantic import ValidationError
 
 from hal.plugins import settings_from_elsewhere
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import RobotSettings, robot_of_json
+from hal.settings import SettingsError
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachment_files import extracted_settings, unsafe_reason
@@ -104,8 +105,9 @@ class Run:
 
     @cached_property
     def robot(self) -> RobotSettings:
-        """Settings of the robot in the run."""
-        return RobotSettings.model_validate_json(self._attachments[ROBOT])
+        """Settings of the robot in the run. Raises SettingsError if its kind is not installed."""
+        with settings_from_elsewhere():
+            return robot_of_json(self._attachments[ROBOT], "the robot of the run")
 
     @cached_property
     def task(self) -> TaskSettings:
@@ -223,11 +225,9 @@ class Run:
                 raise RecordingError(f"{name} is damaged", where=self.name, do="give another copy of the run")
         try:
             _ = self.robot, self.task
-        except ValidationError as error:
-            problem = error.errors(include_url=False)[0]
+        except (ValidationError, SettingsError) as error:
             raise RecordingError(
-                f"was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
-                f"({'.'.join(map(str, problem['loc']))}: {problem['msg']})",
+                f"was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use ({_told(error)})",
                 where=self.name,
                 do="replay it with that one",
             ) from error
@@ -243,6 +243,13 @@ class Run:
                     "raise recordings_mb for the next"
                 ),
             )
+
+
+def _told(error: ValidationError | SettingsError) -> str:
+    if isinstance(error, SettingsError):
+        return error.what
+    problem = error.errors(include_url=False)[0]
+    return f"{'.'.join(map(str, problem['loc']))}: {problem['msg']}"
 
 
 def _decoded(decode: Callable[[bytes], DecodedT], data: bytes) -> DecodedT:

@@ -80,7 +80,7 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
         "  controller_watchdog_s: 0.12  # measured, 2026-11-21, anna",
         "  metres_per_tick: 0.00001727",
         "  numerator_counts_m: 90.5  # fitted, 2026-11-21, anna",
-        "    - {name: s1, label: left front, channel: ADC08, x_m: 0.14, y_m: 0.165, heading_deg: 90.0}"
+        "    - {name: s1, label: left front, x_m: 0.14, y_m: 0.165, heading_deg: 90.0, channel: ADC08}"
         "  # by hand, was ADC07, 2026-11-21, anna",
         "  - {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
     ):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from config import CONFIG_DIR
-from hal.robot_settings import RobotSettings, load_robot
+from hal.robot_settings import load_robot, robot_of_json
 from hal.sensor_signs import SensorRules
 from hal.settings import SettingsError, find_config, kept_name, settings_override
 from kurt2rt.core.rla.events import RlaCreated
@@ -39,7 +39,7 @@ def test_collect_attachments_task_is_read_back(task: str) -> None:
     robot = load_robot()
     attached = collect_attachments(robot, settings)
     assert TaskSettings.model_validate_json(attached[TASK]) == settings
-    assert RobotSettings.model_validate_json(attached[ROBOT]) == robot
+    assert robot_of_json(attached[ROBOT], "test") == robot
 
 
 def test_collect_attachments_defaults_are_included() -> None:

@@ -1,0 +1,72 @@
+"""The base as a kind of robot (hal.robot_kind.RobotKind)."""
+
+from pathlib import Path
+
+from hal.guarded_robot import GuardedRobot
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import SimulationFactory
+from hal.tap import Tap
+from kurt2rt.robots.turtlebot.settings import TurtlebotSettings, require_turtlebot
+
+
+class TurtlebotKind:
+    """Base on topics of ROS 2 over zenoh, or simulated on topics in memory."""
+
+    settings: type[RobotSettings] = TurtlebotSettings
+    folder: Path = Path(__file__).parent / "data"
+
+    def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
+        """Return the driver of the robot behind the locator `address`, such as tcp/127.0.0.1:7447.
+
+        Raises hal.bus.BusError if nothing answers there, hal.settings.SettingsError for a tap, which sees CAN frames.
+        """
+        from hal.bus import BusError
+        from hal.linked_robot import LinkedRobot
+        from kurt2rt.robots.turtlebot.link import TurtlebotLink
+        from kurt2rt.ros.port import RosConnectionError
+        from kurt2rt.ros.session import ZenohSession
+
+        checked = require_turtlebot(settings)
+        if tap is not None:
+            raise SettingsError("has no CAN frames to be seen", where=f"robot {settings.name}", do="leave it out")
+        try:
+            session = ZenohSession(checked.ros, connect=[address])
+        except RosConnectionError as error:
+            raise BusError(str(error), do=TurtlebotLink.remedy) from error
+        return LinkedRobot(checked, TurtlebotLink(checked, session, session.name))
+
+    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
+        """Return what opens simulations. They raise hal.settings.SettingsError for any wire."""
+        from kurt2rt.robots.turtlebot.lidar import lidar_of
+        from kurt2rt.robots.turtlebot.simulated import LocalLink
+        from simbridge.link_simulation import LinkSimulationFactory
+
+        return LinkSimulationFactory(settings, wire, open_link=LocalLink, make_sensors=lidar_of)
+
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return the end of a simulated base that listens at a locator, such as tcp/127.0.0.1:7447, for other programs.
+
+        Raises hal.bus.BusError if nothing can listen there.
+        """
+        from hal.bus import BusError
+        from kurt2rt.robots.turtlebot.lidar import lidar_of
+        from kurt2rt.robots.turtlebot.link import MachineClock
+        from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
+        from kurt2rt.ros.port import RosConnectionError
+        from kurt2rt.ros.session import ZenohSession
+        from simbridge.robot_end import LinkRobotEnd
+
+        checked = require_turtlebot(settings)
+        try:
+            session = ZenohSession(checked.ros, listen=[address])
+        except RosConnectionError as error:
+            raise BusError(str(error), do="give another locator, such as tcp/127.0.0.1:7447") from error
+
+        def electronics(*_: object) -> TurtlebotElectronics:
+            return TurtlebotElectronics(checked, session, MachineClock())
+
+        return LinkRobotEnd(checked, session, electronics, lidar_of)
+
+
+TURTLEBOT = TurtlebotKind()

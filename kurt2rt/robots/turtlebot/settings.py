@@ -1,0 +1,62 @@
+"""Settings of a base with a lidar on topics of ROS 2."""
+
+from typing import Annotated
+
+from pydantic import Field, field_validator
+
+from hal.robot_settings import RobotSettings, Seconds
+from hal.settings import Settings, SettingsError
+from kurt2rt.ros.settings import RosSettings, is_ros_name
+
+
+class TopicSettings(RosSettings):
+    """Topics of the base."""
+
+    scan: str
+    odom: str
+    cmd_vel: str
+    diagnostics: str
+    stamped_cmd_vel: bool
+    """True for geometry_msgs/TwistStamped, as turtlebot3_bringup of Jazzy sets it; False for Twist."""
+    stops_on_errors_of: tuple[str, ...]
+    """Beginnings of the names in /diagnostics whose level ERROR stops the robot."""
+    linear_step_m_s: Annotated[float, Field(gt=0, le=0.1)]
+    """Steps to which the base cuts speeds off."""
+    angular_step_rad_s: Annotated[float, Field(gt=0, le=0.1)]
+    maximum_turn_rad_s: Annotated[float, Field(gt=0, le=10)]
+
+    @field_validator("scan", "odom", "cmd_vel", "diagnostics")
+    @classmethod
+    def _is_a_topic(cls, name: str) -> str:
+        if not is_ros_name(name):
+            raise ValueError(f"{name!r} is not a name of ROS (letters, digits and _, joined by /)")
+        return name
+
+
+class LidarSettings(Settings):
+    """Lidar; the simulated one measures all rays at once, the real one while it turns."""
+
+    rays: Annotated[int, Field(ge=24, le=10_000)]
+    nearest_m: Annotated[float, Field(gt=0, le=1)]
+    farthest_m: Annotated[float, Field(gt=0, le=100)]
+    period_s: Seconds
+    noise_m: Annotated[float, Field(ge=0, le=1)]
+    """Standard deviation of each range."""
+    zero_is_far: bool
+    """True if a range of 0 means that nothing came back; False if it means nothing."""
+
+
+class TurtlebotSettings(RobotSettings):
+    """Settings of the base."""
+
+    ros: TopicSettings
+    lidar: LidarSettings
+    odometry_period_s: Seconds
+    """Period of the simulated base's /odom."""
+
+
+def require_turtlebot(settings: RobotSettings) -> TurtlebotSettings:
+    """Return settings of this kind of robot. Raises hal.settings.SettingsError for those of another kind."""
+    if not isinstance(settings, TurtlebotSettings):
+        raise SettingsError(f"is of kind {settings.kind} (allowed turtlebot)", where=f"robot {settings.name}")
+    return settings

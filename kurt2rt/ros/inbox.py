@@ -1,0 +1,68 @@
+"""Queue of one topic's messages, from zenoh's thread to the thread of the tick."""
+
+from collections import deque
+from collections.abc import Iterator
+from typing import Generic, NamedTuple, Protocol
+
+from kurt2rt.ros.message_age import StampedAge
+from kurt2rt.ros.messages import InvalidMessageError, MessageT, Time, decode, to_seconds
+from kurt2rt.ros.port import RosPort
+from kurt2rt.ros.topic import Topic
+
+_MOST_WAITING = 64
+
+
+class Clock(Protocol):
+    """Clocks of this machine."""
+
+    def now_s(self) -> float:
+        """Return the present in s, from any start, never backwards."""
+        ...
+
+    def wall_s(self) -> float:
+        """Return the present in s since 1970, as time stamps count it."""
+        ...
+
+
+class Arrived(NamedTuple, Generic[MessageT]):
+    """Message with its age."""
+
+    message: MessageT
+    age_s: float
+
+
+class _Waiting(NamedTuple):
+    payload: bytes
+    now_s: float
+    wall_s: float
+
+
+class Inbox(Generic[MessageT]):
+    """Messages of one topic that arrived. The oldest of too many are dropped; bytes that are no message are junk."""
+
+    def __init__(self, port: RosPort, topic: Topic, kind: type[MessageT], clock: Clock) -> None:
+        """Subscribe to the topic, whose messages are of class `kind`. Raises RosConnectionError."""
+        self._kind, self._clock, self._age = kind, clock, StampedAge()
+        self._waiting: deque[_Waiting] = deque(maxlen=_MOST_WAITING)
+        self.junk = 0
+        """Messages so far that could not be read."""
+        port.subscribe(topic, self._keep)
+
+    def take(self) -> Iterator[Arrived[MessageT]]:
+        """Yield the messages that wait, oldest first, with their ages in s."""
+        for _ in range(len(self._waiting)):
+            payload, arrived_s, wall_s = self._waiting.popleft()
+            try:
+                message = decode(payload, self._kind)
+            except InvalidMessageError:
+                self.junk += 1
+                continue
+            header = getattr(message, "header", None)
+            stamp = getattr(header, "stamp", None)
+            stamped_s = to_seconds(stamp) if isinstance(stamp, Time) else 0.0
+            since_s = self._clock.now_s() - arrived_s
+            yield Arrived(message, since_s + self._age.on_arrival(stamped_s, wall_s))
+
+    def _keep(self, payload: bytes) -> None:
+        # A deque drops the oldest by itself, and is safe between two threads.
+        self._waiting.append(_Waiting(payload, self._clock.now_s(), self._clock.wall_s()))

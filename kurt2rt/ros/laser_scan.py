@@ -1,0 +1,66 @@
+"""Reduction of a laser scan to one distance per sector."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from kurt2rt.ros.messages import InvalidMessageError, LaserScan
+
+_MOST_RANGES = 100_000
+
+
+class SectorReduction:
+    """Nearest distance in each of several directions, by REP 117's meaning of invalid ranges."""
+
+    def __init__(self, headings_deg: Sequence[float], *, zero_is_far: bool) -> None:
+        """Give each ray to the heading that is nearest to it.
+
+        Args:
+            headings_deg: directions of the sectors' middles, counter-clockwise from the scanner's x axis.
+            zero_is_far: whether a range of 0 means that nothing came back, as some drivers say; else it means nothing.
+        """
+        turned = np.asarray(headings_deg, dtype=np.float64) % 360
+        self._order = np.argsort(turned)
+        middles = turned[self._order]
+        self._borders_deg = (middles + np.append(middles[1:], middles[0] + 360)) / 2
+        """Upper border of each sector, in the order of their headings from 0; the last may lie beyond 360."""
+        self._zero_is_far = zero_is_far
+        self._layout: tuple[int, float, float] = (0, 0.0, 0.0)
+        self._sector_of_ray = np.zeros(0, dtype=np.intp)
+
+    def distances_m(self, scan: LaserScan) -> tuple[float, ...]:
+        """Return a distance for each sector; infinite: nothing within range, NaN: no ray measured anything.
+
+        A range below the scanner's least, or minus infinity, is an object too near to measure: it counts as the least.
+        Raises kurt2rt.ros.messages.InvalidMessageError for a scan that makes no sense.
+        """
+        least_m, most_m = scan.range_min, scan.range_max
+        if not (0 <= least_m < most_m < math.inf):
+            raise InvalidMessageError(f"LaserScan: range_min {least_m:g} and range_max {most_m:g} make no sense")
+        self._lay_out(len(scan.ranges), scan.angle_min, scan.angle_increment)
+        ranges = scan.ranges.astype(np.float64)
+        if self._zero_is_far:
+            ranges[ranges == 0] = math.inf
+        with np.errstate(invalid="ignore"):
+            ranges[ranges == 0] = math.nan
+            ranges[ranges > most_m] = math.inf
+            ranges[ranges < least_m] = least_m
+        nearest = np.full(len(self._order), math.nan)
+        np.fmin.at(nearest, self._sector_of_ray, ranges)  # fmin passes over NaN
+        return tuple(nearest.tolist())
+
+    def _lay_out(self, number: int, first_rad: float, step_rad: float) -> None:
+        """Find the sector of each ray, if the scan is of another layout than the previous one."""
+        layout = (number, first_rad, step_rad)
+        if layout == self._layout:
+            return
+        if not (0 < number <= _MOST_RANGES and math.isfinite(first_rad) and 0 < abs(step_rad) < math.tau):
+            raise InvalidMessageError(
+                f"LaserScan: {number} ranges from {first_rad:g} by {step_rad:g} rad make no sense"
+            )
+        rays_deg = np.degrees(first_rad + step_rad * np.arange(number)) % 360
+        rays_deg[rays_deg < self._borders_deg[-1] - 360] += 360
+        above = np.searchsorted(self._borders_deg, rays_deg, side="right")
+        self._sector_of_ray = self._order[above % len(self._order)]
+        self._layout = layout

@@ -1,0 +1,47 @@
+"""Settings of a connection to ROS 2: which names its topics have on zenoh."""
+
+import re
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import Field, field_validator
+
+from hal.settings import Settings
+
+_NAME = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)(/[A-Za-z_][A-Za-z0-9_]*)*")
+"""Names of topics and services (design.ros2.org, "Topic and Service name mapping to DDS")."""
+
+
+class Naming(StrEnum):
+    """Names of topics on zenoh, by the program at the other end."""
+
+    BRIDGE = "bridge"
+    """zenoh-bridge-ros2dds: the topic's name alone, such as `scan`."""
+    RMW_ZENOH = "rmw_zenoh"
+    """rmw_zenoh_cpp from Jazzy on: `<domain>/<topic>/<type>/<hash>`, with an attachment."""
+    RMW_ZENOH_HUMBLE = "rmw_zenoh_humble"
+    """The same in Humble, whose types have no hash."""
+
+
+class RosSettings(Settings):
+    """Names of a robot's topics."""
+
+    naming: Naming = Field(default=Naming.BRIDGE, strict=False)
+    domain: Annotated[int, Field(ge=0, le=232)] = 0
+    """ROS_DOMAIN_ID; rmw_zenoh has it in each key."""
+    namespace: str = ""
+    """Namespace before each relative name, such as "robot1"."""
+    node: str = "kurt2rt"
+    """Name of this program's node in `ros2 node list` (rmw_zenoh alone)."""
+
+    @field_validator("namespace", "node")
+    @classmethod
+    def _is_a_name(cls, name: str) -> str:
+        if name and not is_ros_name(name):
+            raise ValueError(f"{name!r} is not a name of ROS (letters, digits and _, joined by /)")
+        return name
+
+
+def is_ros_name(name: str) -> bool:
+    """Return whether a text is a name of a topic, service or namespace."""
+    return _NAME.fullmatch(name) is not None

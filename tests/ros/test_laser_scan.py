@@ -1,0 +1,109 @@
+"""Sectors of a laser scan: the nearest valid range, and invalid ranges as REP 117 says."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.ros.laser_scan import SectorReduction
+from kurt2rt.ros.messages import InvalidMessageError, LaserScan
+from tests.ros.examples import HEADER
+
+RAYS = 360
+HEADINGS = tuple(range(0, 360, 15))
+NEAR, FAR = 0.12, 3.5
+
+
+def scan(ranges: "list[float] | np.ndarray", first_deg: float = 0.0, step_deg: float | None = None) -> LaserScan:
+    step_rad = math.radians(360 / len(ranges) if step_deg is None else step_deg)
+    first_rad = math.radians(first_deg)
+    values = np.asarray(ranges, dtype=np.float32)
+    nothing = np.zeros(0, dtype=np.float32)
+    return LaserScan(
+        HEADER, first_rad, first_rad + step_rad * len(values), step_rad, 0.0, 0.2, NEAR, FAR, values, nothing
+    )
+
+
+def reduce(message: LaserScan, *, zero_is_far: bool = False) -> tuple[float, ...]:
+    return SectorReduction(HEADINGS, zero_is_far=zero_is_far).distances_m(message)
+
+
+def with_ray(angle_deg: int, range_m: float, others_m: float = math.inf) -> LaserScan:
+    ranges = [others_m] * RAYS
+    ranges[angle_deg] = range_m
+    return scan(ranges)
+
+
+@pytest.mark.parametrize(("angle_deg", "sector"), [(0, 0), (7, 0), (8, 1), (22, 1), (23, 2), (352, 23), (353, 0)])
+def test_sectors_ray_belongs_to_its_nearest_heading(angle_deg: int, sector: int) -> None:
+    found = reduce(with_ray(angle_deg, 1.5))
+    assert [index for index, distance in enumerate(found) if distance < math.inf] == [sector]
+    assert found[sector] == 1.5
+
+
+@given(st.lists(st.floats(0.125, 3.5, width=32), min_size=RAYS, max_size=RAYS))
+def test_sectors_distance_is_the_nearest_of_their_rays(ranges: list[float]) -> None:
+    expected = [min(ranges[(heading + offset) % RAYS] for offset in range(-7, 8)) for heading in HEADINGS]
+    assert list(reduce(scan(ranges))) == expected
+
+
+@pytest.mark.parametrize(
+    ("range_m", "distance_m"),
+    [(math.inf, math.inf), (3.6, math.inf), (-math.inf, NEAR), (0.05, NEAR), (-1.0, NEAR), (1.25, 1.25)],
+)
+def test_sectors_ranges_out_of_limits_are_far_or_nearest(range_m: float, distance_m: float) -> None:
+    found = reduce(scan([range_m] * RAYS))
+    assert found == pytest.approx([distance_m] * len(HEADINGS))
+
+
+def test_sectors_nan_is_passed_over_if_others_measure() -> None:
+    assert reduce(with_ray(90, math.nan, others_m=2.0)) == (2.0,) * 24
+    assert reduce(with_ray(90, 2.0, others_m=math.nan))[6] == 2.0
+    assert sum(map(math.isnan, reduce(with_ray(90, 2.0, others_m=math.nan)))) == 23
+
+
+def test_sectors_zero_is_nothing_measured_or_far_as_told() -> None:
+    assert all(map(math.isnan, reduce(scan([0.0] * RAYS))))
+    assert reduce(scan([0.0] * RAYS), zero_is_far=True) == (math.inf,) * 24
+
+
+def test_sectors_scan_from_minus_180_clockwise_gives_the_same() -> None:
+    ranges = np.linspace(0.5, 3.0, RAYS)
+    turned = np.roll(ranges, 180)
+    assert reduce(scan(turned, first_deg=-180)) == reduce(scan(ranges))
+    assert reduce(scan(ranges[::-1], first_deg=359, step_deg=-1)) == reduce(scan(ranges))
+
+
+def test_sectors_scan_of_front_alone_leaves_the_rest_unmeasured() -> None:
+    found = reduce(scan([1.0] * 180, first_deg=-90, step_deg=1))
+    assert [math.isnan(found[index]) for index in (0, 6, 12, 18)] == [False, False, True, False]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"range_max": math.inf},
+        {"range_min": math.nan},
+        {"range_min": 4.0},
+        {"angle_increment": 0.0},
+        {"angle_increment": math.nan},
+        {"angle_min": math.inf},
+        {"ranges": np.zeros(0, dtype=np.float32)},
+    ],
+)
+def test_sectors_senseless_scan_is_refused(wrong: dict[str, object]) -> None:
+    message = scan([1.0] * RAYS)
+    for key, value in wrong.items():
+        setattr(message, key, value)
+    with pytest.raises(InvalidMessageError, match="make no sense"):
+        reduce(message)
+
+
+@given(st.lists(st.integers(-180, 179), min_size=1, max_size=12, unique=True), st.integers(0, 359))
+def test_sectors_any_headings_get_the_rays_nearest(headings: list[int], angle_deg: int) -> None:
+    found = SectorReduction(headings, zero_is_far=False).distances_m(with_ray(angle_deg, 1.0, others_m=math.nan))
+    (sector,) = (index for index, distance in enumerate(found) if not math.isnan(distance))
+    apart = [abs((angle_deg - heading + 180) % 360 - 180) for heading in headings]
+    assert apart[sector] == min(apart)
