@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 
 from hal.robot_kind import kind_of
-from hal.robot_settings import RobotSettings, load_robot
+from hal.robot_settings import RobotSettings, load_robot_of
 from hal.settings import SettingsError
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
@@ -48,7 +48,7 @@ class _Options:
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Decides the robot's sensors, its noise and where it starts.")
     ] = 1
-    robot: RobotName = "kurt2"
+    robot: RobotName = None
     seconds: Annotated[
         float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after so long; default: on Ctrl-C.")
     ] = None
@@ -85,7 +85,7 @@ def sim(options: _Options) -> None:
         raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
     if options.bus.startswith("virtual:"):
         raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
-    settings = load_robot(options.robot)
+    settings = load_robot_of(options.robot, options.world)
     _simulate(options, settings)
 
 
