@@ -26,6 +26,8 @@ class PtyPort:
         self._closed = False
         if self._link is not None:
             try:
+                if self._link.is_symlink() and not self._link.exists():  # of a program that was killed
+                    self._link.unlink()
                 self._link.symlink_to(os.ttyname(self._slave))
             except OSError as error:
                 self._link = None

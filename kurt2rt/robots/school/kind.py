@@ -45,20 +45,13 @@ class SchoolKind:
         return LinkSimulationFactory(settings, wire, open_link=MemoryLine)
 
     def serve(self, settings: RobotSettings, address: str) -> object:
-        """Return the end of a simulated robot behind a pseudo-terminal, which `address` leads to, for other programs.
-
-        Raises hal.bus.BusError if the path `address` is taken.
-        """
+        """Return a simulated robot's end of a pseudo-terminal at the path `address`. Raises hal.bus.BusError."""
         from kurt2rt.robots.school.simulated import SchoolElectronics
         from simbridge.pty_port import PtyPort
         from simbridge.robot_end import LinkRobotEnd
 
         port = PtyPort(address)
-
-        def electronics(*_: object) -> SchoolElectronics:
-            return SchoolElectronics(settings, port)
-
-        return LinkRobotEnd(settings, port, electronics)
+        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port))
 
 
 SCHOOL = SchoolKind()

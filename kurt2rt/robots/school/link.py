@@ -30,7 +30,6 @@ class SchoolLink:
         self._port = port
         self._sensors = sensors
         self._lines = Lines(port, first_number)
-        self._rejected = 0
         self._last_command = first_number
         self._begin()
 
@@ -45,7 +44,7 @@ class SchoolLink:
     @property
     def junk(self) -> int:
         """Lines so far that could not be read."""
-        return self._lines.junk + self._rejected
+        return self._lines.junk
 
     @property
     def unconfirmed(self) -> int:
@@ -116,14 +115,14 @@ class SchoolLink:
 
     def _reports_of(self, message: Message, now_s: float) -> list[Report]:
         if message.word != lines.SENSE or len(message.numbers) != 5 + self._sensors:
-            self._rejected += 1
+            self._lines.junk += 1
             return []
         (number, time_ms, left, right, command), counts = message.numbers[:5], message.numbers[5:]
         last_ms, last_left, last_right = self._last or (time_ms, left, right)
         elapsed_ms = difference(time_ms, last_ms)
         begins = self._last is None or (number == 0 and elapsed_ms < 0)  # switched off and on
         if not 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS or (elapsed_ms <= 0 and not begins):
-            self._rejected += 1  # an old line again tells nothing of now
+            self._lines.junk += 1  # an old line again tells nothing of now
             return []
         self._last = time_ms, left, right
         robot_s = time_ms % lines.COUNTERS / 1000

@@ -121,3 +121,12 @@ def test_pty_path_in_use_is_refused_and_left_alone(tmp_path: Path) -> None:
         PtyPort(str(path))
     assert path.read_text() == "mine"
     assert open_files() == before
+
+
+def test_pty_link_of_a_killed_program_is_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "robot"
+    path.symlink_to(tmp_path / "gone")
+    port = PtyPort(str(path))
+    assert path.exists()
+    port.close()
+    assert not path.is_symlink()
