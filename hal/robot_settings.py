@@ -196,12 +196,16 @@ def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
 
 
 def load_robot_of(name_or_path: str | None, task: str) -> RobotSettings:
-    """Load the settings of a robot by name or path; None: the robot of the task.
+    """Load the settings of a robot by name or path; None: the robot of the task. Raises hal.settings.SettingsError."""
+    return load_robot(robot_named(name_or_path, task))
 
-    A task of a robot's plug-in, such as `school/fleeing`, is for that robot, and any other one for KURT2. Raises
-    hal.settings.SettingsError.
+
+def robot_named(name_or_path: str | None, task: str) -> str:
+    """Return a robot's name or path; None: the name of the task's robot.
+
+    A task of a robot's plug-in, such as `school/fleeing`, is for that robot, and any other one for KURT2.
     """
-    return load_robot(name_or_path or robot_of_task(task) or DEFAULT_KIND)
+    return name_or_path or robot_of_task(task) or DEFAULT_KIND
 
 
 def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:

@@ -37,6 +37,7 @@ def test_every_command_is_found() -> None:
         *(
             "demo",
             "run",
+            "ros",
             "status",
             "sim",
             "teach",

@@ -26,6 +26,7 @@ REFUSED = {
     "page": ("teach --phone",),
     "cluster": ("worker --to host:8786",),
     "export": ("export lerobot",),
+    "ros": ("ros --as base",),
 }
 """Commands that need an extra, by the extra."""
 NEEDED_BY_NO_COMMAND = {"gymnasium", "llvmlite", "numba", "pytest"}
