@@ -21,7 +21,8 @@ def recover(
 
     A file that a power cut tore lacks its index, and so does the one that a
     robot is recording to: replay and why read them, a viewer refuses them. The
-    run itself stays as it is. Import the layout that this names into Foxglove once.
+    run itself stays as it is. Import the layout that this names into Foxglove
+    once.
 
         kurt2rt recover copies
         kurt2rt recover copies 20261122T031005Z-wall_following
