@@ -31,6 +31,7 @@ ROOMS: dict[str, frozenset[str]] = {
         "kurt2rt.channel.protocol": "hal kurt2rt.core kurt2rt.platform kurt2rt.runs.explain.facts",
         "kurt2rt.teacher": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.runs.explain"
         " kurt2rt.channel.protocol kurt2rt.channel.security",
+        "kurt2rt.teacher.ros": "* kurt2rt.ros kurt2rt.teacher",
         "kurt2rt.service": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
         " kurt2rt.channel",
         "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"

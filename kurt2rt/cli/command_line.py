@@ -16,6 +16,7 @@ _PANELS = {
         "run": "Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.",
         "teach": "Teach a robot that runs: from a browser, from a terminal, or by a script.",
         "pair": "Pair a teacher's device with this robot, and show the code that opens its page.",
+        "ros": "Join a robot that runs to ROS 2, over zenoh; no ROS is needed here.",
         "demo": "Teach a simulated robot from nothing, examine it without its teacher, draw the drives.",
         "lesson": "Teach the simulated robot with a scripted teacher, in simulated time.",
     },
@@ -24,6 +25,7 @@ _PANELS = {
         "why": "Explain what the robot did, and why: at a moment of a run, in a whole run, or now.",
         "replay": "Replay a recorded run, and compare every decision and all that is known, bit for bit.",
         "recover": "Copy what is whole of a recorded run to files that Foxglove opens.",
+        "export": "Write recorded runs as data sets for other programs.",
     },
     "Knowledge": {
         "knowledge": "Look after what the robot was taught. A file is changed only while no robot runs on it; it is "

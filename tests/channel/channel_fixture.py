@@ -45,11 +45,13 @@ class WideRobot(CorridorRobot):
     def __init__(self) -> None:
         super().__init__()
         self.bumpers = 0
+        self.ticks = (0, 0)
+        """Encoder ticks of each cycle, left and right."""
         self.refuses: tuple[GuardReason, ...] = ()
 
     def sense(self, now_s: float) -> SensorReadings:
         counts = (self.counts,) * len(ROBOT.infrared.sensors)
-        return SensorReadings(now_s, counts, self.infrared_age_s, 0, 0, 0.0, self.bumpers, 0.0)
+        return SensorReadings(now_s, counts, self.infrared_age_s, *self.ticks, 0.0, self.bumpers, 0.0)
 
     def drive(self, wanted: Any, decided_at_s: float, now_s: float) -> GuardResult:
         grant = super().drive(wanted, decided_at_s, now_s)

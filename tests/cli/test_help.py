@@ -37,6 +37,7 @@ def test_every_command_is_found() -> None:
         *(
             "demo",
             "run",
+            "ros",
             "status",
             "sim",
             "teach",
@@ -59,6 +60,7 @@ def test_every_command_is_found() -> None:
             "merge",
             "diff",
             "export",
+            "lerobot",
             "import",
             "compact",
             "contradictions",

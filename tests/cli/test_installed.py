@@ -25,6 +25,8 @@ REFUSED = {
     "simulation": ("run", "sim --bus shared:base", "demo", "exam base.knowledge", "knowledge graph base.knowledge"),
     "page": ("teach --phone",),
     "cluster": ("worker --to host:8786",),
+    "export": ("export lerobot",),
+    "ros": ("ros --as base",),
 }
 """Commands that need an extra, by the extra."""
 NEEDED_BY_NO_COMMAND = {"gymnasium", "llvmlite", "numba", "pytest"}

@@ -23,6 +23,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     ("why", WALLS, "--to", "5", "--picture", "made.svg"): {
         *("run", "task", "from_s", "to_s", "ticks", "missed", "stretches", "notes", "trouble", "picture")
     },
+    ("export", "lerobot", WALLS, "--out", "set"): {"folder", "fps", "runs"},
     ("pair", "--list"): {"paired"},
     ("knowledge", "list", "."): {"files", "unreadable"},
     ("knowledge", "lessons", "mine.knowledge"): {"file", "lessons", "older"},
@@ -42,7 +43,7 @@ REPORTING = {
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
     *(("broken",), ("certify",), ("results", "show"), ("rivals",), ("results", "merge"), ("search",), ("tune",)),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
-    *(("plugin", "list"), ("plugin", "check")),
+    *(("plugin", "list"), ("plugin", "check"), ("export", "lerobot")),
 }
 
 

@@ -183,6 +183,7 @@ _STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing."""
 _STOP = (_NAME, _LINE)
 """The fields of ActiveStop."""
+_WAY = OrNone(_WHEELS)
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -211,6 +212,7 @@ def encode_state(state: State) -> bytes:
     if standing is not None and standing.stop is not None:
         standing = standing._replace(says=stop_text(standing.stop))
     picture["sd"] = None if standing is None else _row(standing[:-1], _STANDING)
+    picture["od"] = None if state.way_m is None else list(state.way_m)
     if state.lesson_speed != 1.0:
         picture["ls"] = round(100 * state.lesson_speed)
     return encode_plainly(picture)
@@ -236,6 +238,7 @@ def decode_state(payload: bytes) -> State:
     if shown is not None and not len(shown[2]) == len(shown[3]) == len(shown[4]):
         raise WireError("shown drive: has to have as many actions as ticks")
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
+    way_m = _WAY("way of the wheels", picture.get("od"))
     lesson_percent = Int(SLOWEST_PERCENT, 100)("lesson speed", picture.get("ls", 100))
     sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
@@ -254,6 +257,7 @@ def decode_state(payload: bytes) -> State:
         shown=None if shown is None else ShownState(*shown),
         standing=None if standing is None else _standing(*standing, stopped=stopped),
         lesson_speed=lesson_percent / 100,
+        way_m=None if way_m is None else (way_m[0], way_m[1]),
         **values,
     )
 

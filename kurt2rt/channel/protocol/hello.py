@@ -87,6 +87,8 @@ class Hello:
     """Sentence on the task for its teacher; empty from an older robot."""
     law: InfraredLaw | None = None
     """Law of the infra-red sensors; None from an older robot."""
+    track_m: float | None = None
+    """Distance between the sides that turns the robot by (right - left) / track_m, in m; None from an older robot."""
 
     @property
     def sensor_words(self) -> SensorWords:
@@ -122,6 +124,7 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             seeks=Flag()("seeks", body["seeks"]),
             what=_WHAT("what", body.get("what", "")),
             law=None if (law := _LAW("law", body.get("law"))) is None else InfraredLaw(*law),
+            track_m=OrNone(_METRES)("track_m", body.get("track_m")),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error

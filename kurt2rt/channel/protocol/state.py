@@ -187,6 +187,9 @@ class State:
     """None from a robot of an older version."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in phases 1 and 2, from 0.2; 1 is no slow lesson."""
+    way_m: tuple[float, float] | None = None
+    """Way of the left and right side by the encoders since the program started, in m, forward positive; None from a
+    robot of an older version."""
 
     @property
     def speed_share(self) -> float:

@@ -182,6 +182,7 @@ def describe_robot(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[st
         "seeks": runtime.navigator is not None,
         "sensors": [[each.name, each.label, each.x_m, each.y_m, each.heading_deg] for each in sensors],
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
+        "track_m": robot.geometry.effective_track_m,
         "max_m_s": robot.guard.maximum_speed_m_s,
         "what": runtime.task.sentence,
         "law": list(infrared_law(robot.infrared)),

@@ -59,10 +59,14 @@ class StateBuilder:
         self._count = 0
         self._late_p99_ms = 0.0
         self._surprise: SurpriseState | None = None
+        self._left_ticks = self._right_ticks = 0
+        """Encoder ticks since the program started."""
 
     def on_tick(self, record: TickRecord) -> None:
-        """Keep the surprise of a tick, which lasts one tick; call it for each tick."""
+        """Keep the surprise and the encoder ticks of a tick, which last one tick; call it for each tick."""
         self._surprise = surprise_state(record) or self._surprise
+        self._left_ticks += record.readings.encoder_left_ticks
+        self._right_ticks += record.readings.encoder_right_ticks
 
     def pause(self) -> None:
         """Look at the lateness again with the next state; call it in ticks without an observer."""
@@ -72,6 +76,7 @@ class StateBuilder:
         """Return the state of the robot after a tick."""
         runtime, parts = self._runtime, self._parts
         decision, readings, commands = record.decision, record.readings, runtime.handler
+        metres = runtime.robot.geometry.metres_per_tick
         if self._count % _LATENESS_EVERY == 0:
             self._late_p99_ms = self._late()
         self._count += 1
@@ -112,6 +117,7 @@ class StateBuilder:
             progress=runtime.progress.progress(),
             standing=record.standing,
             lesson_speed=commands.lesson_speed.share,
+            way_m=(self._left_ticks * metres, self._right_ticks * metres),
             **self._nearest(record),
             **self._critic(record),
             **_plan(record),

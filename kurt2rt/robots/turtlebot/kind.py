@@ -44,5 +44,29 @@ class TurtlebotKind:
 
         return LinkSimulationFactory(settings, wire, open_link=LocalLink, make_sensors=lidar_of)
 
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return the end of a simulated base that listens at a locator, such as tcp/127.0.0.1:7447, for other programs.
+
+        Raises hal.bus.BusError if nothing can listen there.
+        """
+        from hal.bus import BusError
+        from kurt2rt.robots.turtlebot.lidar import lidar_of
+        from kurt2rt.robots.turtlebot.link import MachineClock
+        from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
+        from kurt2rt.ros.port import RosConnectionError
+        from kurt2rt.ros.session import ZenohSession
+        from simbridge.robot_end import LinkRobotEnd
+
+        checked = require_turtlebot(settings)
+        try:
+            session = ZenohSession(checked.ros, listen=[address])
+        except RosConnectionError as error:
+            raise BusError(str(error), do="give another locator, such as tcp/127.0.0.1:7447") from error
+
+        def electronics(*_: object) -> TurtlebotElectronics:
+            return TurtlebotElectronics(checked, session, MachineClock())
+
+        return LinkRobotEnd(checked, session, electronics, lidar_of)
+
 
 TURTLEBOT = TurtlebotKind()

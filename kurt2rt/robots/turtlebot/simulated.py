@@ -58,6 +58,8 @@ class TurtlebotElectronics:
     It stops without /cmd_vel for the time of its watchdog, which a real TurtleBot3 does not (docs/turtlebot.md).
     """
 
+    crashed = False
+
     def __init__(self, settings: TurtlebotSettings, port: RosPort, clock: Clock) -> None:
         """Use `port`, and stamp by `clock`. Raises kurt2rt.ros.port.RosConnectionError."""
         topics, self._settings, self._clock = settings.ros, settings, clock
@@ -74,13 +76,18 @@ class TurtlebotElectronics:
         """Switch off and on: odometry begins at its origin."""
         self.commands = MOTORS_BRAKED
         self._silent_cycles = self._watchdog_cycles
-        self._cycles = self._left_ticks = self._right_ticks = 0
+        self._cycles = self._left_ticks = self._right_ticks = self.control_frames = 0
         self._x_m = self._y_m = self._heading_rad = 0.0
 
     @property
     def watchdog_expired(self) -> bool:
         """Return whether no valid /cmd_vel has arrived for the watchdog's time."""
         return self._silent_cycles >= self._watchdog_cycles
+
+    @property
+    def junk_frames(self) -> int:
+        """Number of twists that could not be read."""
+        return self._inbox.junk
 
     @property
     def state(self) -> tuple[int, ...]:
@@ -97,6 +104,7 @@ class TurtlebotElectronics:
             if math.isfinite(forward_m_s) and math.isfinite(turn_rad_s):
                 self.commands = self._commands_of(forward_m_s, turn_rad_s)
                 self._silent_cycles = 0
+                self.control_frames += 1
         if self.watchdog_expired:
             self.commands = MOTORS_BRAKED
 

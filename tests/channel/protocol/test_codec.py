@@ -459,3 +459,17 @@ def test_lesson_speed_out_of_range_is_refused(percent: object) -> None:
 def test_speed_share_is_that_of_the_phase() -> None:
     shares = [state(lesson_speed=0.6, phase=phase).speed_share for phase in range(1, 6)]
     assert shares == [0.6, 0.6, 1.0, 1.0, 1.0]
+
+
+def test_way_of_the_wheels_is_missing_from_an_older_robot() -> None:
+    body = cbor2.loads(encode_state(state(way_m=(1.5, -0.25))))
+    assert decode_state(cbor2.dumps(body)).way_m == (1.5, -0.25)
+    del body["od"]
+    assert decode_state(cbor2.dumps(body)).way_m is None
+
+
+@pytest.mark.parametrize("way", [[1.0], [1.0, "x"], [1.0, float("nan")], "11"])
+def test_way_that_is_no_pair_of_numbers_is_refused(way: object) -> None:
+    body = cbor2.loads(encode_state(state()))
+    with pytest.raises(WireError):
+        decode_state(cbor2.dumps({**body, "od": way}))

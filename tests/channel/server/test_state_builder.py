@@ -56,6 +56,14 @@ def test_lateness_is_taken_from_health_report(desk: ChannelFixture) -> None:
     assert later[-1] == WELL.punctuality.p99_ms
 
 
+def test_way_of_the_wheels_sums_up_all_ticks(desk: ChannelFixture) -> None:
+    assert picture(desk).way_m == (0.0, 0.0)
+    desk.robot.ticks = (30, -10)
+    desk.run(7)
+    metres = ROBOT.geometry.metres_per_tick
+    assert picture(desk).way_m == pytest.approx((210 * metres, -70 * metres))
+
+
 def test_urgent_trouble_of_health_is_state_trouble(desk: ChannelFixture) -> None:
     full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
     desk.health = replace(ILL, troubles=(*ILL.troubles, full))
@@ -102,6 +110,7 @@ def test_a_robot_that_knows_nothing(desk: ChannelFixture) -> None:
         place=None,
         signals_missing=(LEAST, LEAST),
         standing=Standing(StandReason.ASKS, asks=True),
+        way_m=(0.0, 0.0),
     )
 
 

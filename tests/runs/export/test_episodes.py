@@ -1,0 +1,112 @@
+"""Episodes of recorded runs."""
+
+import numpy as np
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.rla.events import RlaRewarded
+from kurt2rt.runs.export.episodes import Episode, features_of, read_episodes, ticks_per_frame
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
+from kurt2rt.runs.replay.run import Run, RunSource
+from tests.runs.replay.stored_runs import stored
+
+ENTRIES = tuple(stored("walls").entries())
+STATE, ACTION = "observation.state", "action"
+
+
+def run_of(entries: tuple[TickEntry, ...]) -> Run:
+    whole = stored("walls")
+    return Run("part", whole.head, whole._attachments, RunSource(lambda: iter(entries)), partial=True)
+
+
+def only_episode(entries: tuple[TickEntry, ...], every: int = 1) -> Episode:
+    (episode,) = read_episodes(run_of(entries), every)
+    return episode
+
+
+def test_frames_of_each_tick_hold_readings_and_speeds() -> None:
+    episode = only_episode(ENTRIES)
+    robot = load_robot()
+    assert episode.frames == len(ENTRIES) == 4400
+    assert episode.tasks == ("wall following",)
+    for at in (0, 500, 4399):
+        entry, state = ENTRIES[at], episode.columns[STATE][at]
+        assert state[:18].tolist() == list(entry.readings.infrared_counts)
+        left_m_s = entry.readings.encoder_left_ticks * robot.geometry.metres_per_tick / robot.cycle_s
+        assert state[18] == pytest.approx(left_m_s)
+        assert episode.columns[ACTION][at] == pytest.approx(entry.decision.wheel_speeds)
+        assert episode.columns["complementary_info.applied"][at] == pytest.approx(entry.grant.wheel_speeds)
+    by_hand = [entry.decision.cause is DecisionCause.TEACHER for entry in ENTRIES]
+    assert episode.columns["complementary_info.is_intervention"].tolist() == by_hand
+    assert episode.columns["next.done"].nonzero()[0].tolist() == [4399]
+
+
+def test_rewards_stand_at_the_decision_that_they_are_about() -> None:
+    rewards = [each for entry in ENTRIES for each in entry.events if isinstance(each, RlaRewarded)]
+    assert len(rewards) == 4
+    wanted = np.zeros(4400)
+    for each in rewards:
+        wanted[each.decided_at_tick - 1] += each.value
+    assert only_episode(ENTRIES).columns["next.reward"].tolist() == wanted.tolist()
+    assert sum(only_episode(ENTRIES, 10).columns["next.reward"]) == wanted.sum()
+
+
+def test_thinned_frames_keep_way_lessons_and_interventions() -> None:
+    every, thin = only_episode(ENTRIES), only_episode(ENTRIES, 20)
+    assert thin.frames == 220
+    assert (thin.columns[STATE][:, :18] == every.columns[STATE][::20, :18]).all()
+    # Each frame has the mean speed since the frame before, so no way is lost.
+    way_m = every.columns[STATE][1:4381, 18:20].sum(axis=0) * 0.01
+    assert thin.columns[STATE][1:, 18:20].sum(axis=0) * 0.2 == pytest.approx(way_m, rel=1e-4)
+    lessons, by_hand = "complementary_info.lessons", "complementary_info.is_intervention"
+    assert thin.columns[lessons].sum() == every.columns[lessons].sum() > 40
+    assert (thin.columns[by_hand] == every.columns[by_hand].reshape(-1, 20).any(axis=1)).all()
+
+
+def test_missed_ticks_repeat_the_frame_before_them() -> None:
+    episode = only_episode(ENTRIES[:500] + ENTRIES[510:1000])
+    assert episode.frames == 1000
+    assert (episode.columns[ACTION][500:510] == episode.columns[ACTION][499]).all()
+
+
+def test_a_long_gap_begins_the_next_episode() -> None:
+    first, second = read_episodes(run_of(ENTRIES[:500] + ENTRIES[600:1000]), 1)
+    assert (first.frames, second.frames) == (500, 400)
+    assert second.first_tick == 601
+    assert second.began_s == pytest.approx(6.0)
+    assert second.columns["next.done"].sum() == 1
+
+
+def test_task_tells_the_behaviour_of_each_frame() -> None:
+    (episode,) = read_episodes(stored("errand"), 1)
+    assert episode.tasks == ("errands: straight on", "errands: turn right")
+    behaviours = [f"errands: {entry.behaviour.replace('_', ' ')}" for entry in stored("errand").entries()]
+    assert [episode.tasks[each] for each in episode.task_of_frame] == behaviours
+
+
+def test_speed_that_is_not_a_number_becomes_zero() -> None:
+    entry = ENTRIES[0]
+    wrong = entry.decision._replace(wheel_speeds=entry.decision.wheel_speeds._replace(left_m_s=float("nan")))
+    assert only_episode((entry._replace(decision=wrong), *ENTRIES[1:9])).columns[ACTION][0].tolist() == [0.0, 0.0]
+
+
+def test_slow_lesson_scales_the_action() -> None:
+    slow = tuple(entry._replace(lesson_speed=0.5) for entry in ENTRIES[:900])
+    assert only_episode(slow).columns[ACTION] == pytest.approx(only_episode(ENTRIES[:900]).columns[ACTION] / 2)
+
+
+def test_columns_have_the_types_of_their_features() -> None:
+    columns = only_episode(ENTRIES[:20]).columns
+    features = features_of(load_robot())
+    assert columns.keys() == features.keys()
+    for name, feature in features.items():
+        assert columns[name].dtype == feature.dtype
+        assert columns[name].reshape(20, -1).shape[1] == feature.length
+
+
+@pytest.mark.parametrize("fps", [0, 30, 200])
+def test_frames_between_ticks_are_refused(fps: int) -> None:
+    with pytest.raises(RecordingError, match="give one of 1, 2, 4, 5, 10, 20, 25, 50, 100"):
+        ticks_per_frame(load_robot(), fps)

@@ -1,0 +1,143 @@
+"""The robot as ROS 2 messages, read by a second CDR library."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from hal.odometry import PlanePose
+from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.hello import Hello, hello_of
+from kurt2rt.channel.server.channel import describe_robot
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.ros import messages as ros
+from kurt2rt.teacher.client.link_quality import LinkQuality
+from kurt2rt.teacher.ros.odometer import Odometer, WheelPose
+from kurt2rt.teacher.ros.robot_messages import (
+    RAYS,
+    ScanBuilder,
+    link_status,
+    odometry,
+    robot_status,
+    transform,
+)
+from tests.channel.channel_fixture import BOOT, ChannelFixture
+from tests.channel.states import state
+from tests.ros import foreign
+
+STAMP = ros.to_time(12.5)
+INFRARED = load_robot().infrared
+
+
+def read_by_another(kind: Any, message: ros.Message) -> Any:
+    """Return a message as the second library reads it; its types are made at run time."""
+    return kind.deserialize(ros.encode(message))
+
+
+@pytest.fixture(scope="module")
+def hello() -> Hello:
+    return hello_of({"tick": 0, **describe_robot(ChannelFixture().runtime, BOOT, simulated=True)})
+
+
+def counts(**seen_m: float) -> tuple[int, ...]:
+    """Return readings with obstacles at these distances from some sensors."""
+    return tuple(round(INFRARED.counts_at(seen_m[name])) if name in seen_m else 20 for name in INFRARED.names)
+
+
+def test_scan_has_each_hit_where_the_sensor_sees_it(hello: Hello) -> None:
+    builder = ScanBuilder(hello)
+    for sensor in INFRARED.sensors:
+        scan = read_by_another(foreign.LaserScan, builder.build(counts(**{sensor.name: 0.3}), STAMP))
+        (ray,) = [number for number, range_m in enumerate(scan.ranges) if math.isfinite(range_m)]
+        angle_rad = scan.angle_min + ray * scan.angle_increment
+        heading_rad = math.radians(sensor.heading_deg)
+        x_m, y_m = sensor.x_m + 0.3 * math.cos(heading_rad), sensor.y_m + 0.3 * math.sin(heading_rad)
+        found = scan.ranges[ray] * math.cos(angle_rad), scan.ranges[ray] * math.sin(angle_rad)
+        assert found == pytest.approx((x_m, y_m), abs=0.012), sensor.name
+        assert scan.ranges[ray] < scan.range_max
+
+
+def test_scan_of_free_space_is_infinite_where_a_sensor_looks(hello: Hello) -> None:
+    scan = read_by_another(foreign.LaserScan, ScanBuilder(hello).build(counts(), STAMP))
+    assert len(scan.ranges) == RAYS
+    assert scan.angle_max - scan.angle_min == pytest.approx((RAYS - 1) * scan.angle_increment)
+    seen = [each for each in scan.ranges if not math.isnan(each)]
+    assert 0 < len(seen) <= len(INFRARED.sensors)
+    assert set(seen) == {math.inf}
+    assert (scan.header.frame_id, scan.header.stamp.sec, scan.header.stamp.nanosec) == ("base_link", 12, 500_000_000)
+
+
+def test_odometry_and_transform_tell_the_same_pose() -> None:
+    place = WheelPose(PlanePose(1.0, -2.0, math.pi / 2), 0.3, -0.5)
+    told = read_by_another(foreign.Odometry, odometry(place, STAMP))
+    (moved,) = read_by_another(foreign.TFMessage, transform(place.pose, STAMP)).transforms
+    assert (told.header.frame_id, told.child_frame_id) == (moved.header.frame_id, moved.child_frame_id)
+    assert (told.pose.pose.position.x, told.pose.pose.position.y) == (1.0, -2.0)
+    assert (moved.transform.translation.x, moved.transform.translation.y) == (1.0, -2.0)
+    assert told.pose.pose.orientation == moved.transform.rotation
+    assert 2 * math.atan2(moved.transform.rotation.z, moved.transform.rotation.w) == pytest.approx(math.pi / 2)
+    assert (told.twist.twist.linear.x, told.twist.twist.angular.z) == (0.3, -0.5)
+    diagonal = list(told.pose.covariance)[::7]
+    assert diagonal[2:5] == [1e6] * 3
+    assert all(each > 0 for each in diagonal)
+
+
+@pytest.mark.parametrize(
+    ("standing", "trouble", "level"),
+    [
+        (Standing(), "", ros.DiagnosticStatus.OK),
+        (Standing(StandReason.ASKS, asks=True), "", ros.DiagnosticStatus.WARN),
+        (Standing(StandReason.BUS_LOST, needs_resume=True), "", ros.DiagnosticStatus.ERROR),
+        (Standing(StandReason.BLIND), "", ros.DiagnosticStatus.ERROR),
+        (Standing(), "the disk is full; make room", ros.DiagnosticStatus.ERROR),
+    ],
+)
+def test_status_of_robot_has_a_level(hello: Hello, standing: Standing, trouble: str, level: int) -> None:
+    told = robot_status(state(standing=standing, trouble=trouble, action="forward"), hello)
+    array = ros.DiagnosticArray(ros.Header(STAMP, ""), [told])
+    (read,) = read_by_another(foreign.DiagnosticArray, array).status
+    assert read.level == level
+    values = {each.key: each.value for each in read.values}
+    assert (values["task"], values["tick"], values["trouble"]) == ("wall_following", "1234", trouble)
+
+
+def test_status_of_stopped_robot_says_who_stopped_it(hello: Hello) -> None:
+    stop = ActiveStop(StopReason.SAID_STOP, "ann")
+    told = robot_status(state(stopped=stop, standing=Standing(StandReason.STOPPED, True, stop=stop)), hello)
+    assert told.level == ros.DiagnosticStatus.WARN
+    assert "ann" in told.message
+
+
+def test_status_of_silent_link_is_an_error() -> None:
+    link = LinkQuality(None, None, 0.0)
+    assert link_status(link, "", 0.05, "kurt2").level == ros.DiagnosticStatus.OK
+    lost = link_status(link, "connection refused", math.inf, "kurt2")
+    assert (lost.level, lost.message) == (ros.DiagnosticStatus.ERROR, "connection refused")
+    assert link_status(link, "", 0.6, "kurt2").message == "no state comes from the robot"
+
+
+def test_odometer_follows_an_arc_over_lost_states() -> None:
+    odometer = Odometer()
+    odometer.update(state(tick=0, way_m=(0.0, 0.0)), 0.4, 0.01)
+    quarter_m = math.pi / 2
+    place = odometer.update(state(tick=100, way_m=(0.8 * quarter_m, 1.2 * quarter_m)), 0.4, 0.01)
+    assert place is not None
+    assert place.pose.heading_rad == pytest.approx(math.pi / 2)
+    assert (place.forward_m_s, place.turn_rad_s) == pytest.approx((quarter_m, math.pi / 2))
+
+
+def test_odometer_of_restarted_robot_goes_on_where_it_was() -> None:
+    odometer = Odometer()
+    odometer.update(state(tick=5, way_m=(3.0, 3.0)), 0.4, 0.01)
+    odometer.update(state(tick=10, way_m=(4.0, 4.0)), 0.4, 0.01)
+    again = odometer.update(replace(state(tick=1, way_m=(0.0, 0.0)), boot=b"next"), 0.4, 0.01)
+    assert again == WheelPose(PlanePose(1.0, 0.0, 0.0), 0.0, 0.0)
+    moved = odometer.update(replace(state(tick=2, way_m=(0.5, 0.5)), boot=b"next"), 0.4, 0.01)
+    assert moved is not None
+    assert moved.pose.x_m == pytest.approx(1.5)
+
+
+def test_odometer_of_older_robot_tells_nothing() -> None:
+    assert Odometer().update(state(way_m=None), 0.4, 0.01) is None
