@@ -34,6 +34,13 @@ class RobotKind(Protocol):
         """Return what opens simulations of such a robot. Raises SettingsError for a wire that its link cannot have."""
         ...
 
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return the end of the link at which a simulated robot is (simbridge.robot_end.RobotEnd), for other programs.
+
+        Raises hal.bus.BusError if the address cannot be opened or a robot is there.
+        """
+        ...
+
 
 def kind_of(settings: RobotSettings) -> RobotKind:
     """Return the kind of a robot. Raises hal.settings.SettingsError if its plug-in is not installed."""

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from hal.infrared_law import InfraredLawNumbers, counts_at
-from hal.settings import Settings, SettingsError, content_of, find_config, find_robot_kind, settings_of
+from hal.settings import Settings, SettingsError, content_of, find_config, find_robot_kind, robot_of_task, settings_of
 
 Metres = Annotated[float, Field(gt=0, le=5)]
 MetresPerSecond = Annotated[float, Field(gt=0, le=3)]
@@ -193,6 +193,19 @@ def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
     """
     path = find_config("robots", name_or_path)
     return robot_of_content(content_of(path), path)
+
+
+def load_robot_of(name_or_path: str | None, task: str) -> RobotSettings:
+    """Load the settings of a robot by name or path; None: the robot of the task. Raises hal.settings.SettingsError."""
+    return load_robot(robot_named(name_or_path, task))
+
+
+def robot_named(name_or_path: str | None, task: str) -> str:
+    """Return a robot's name or path; None: the name of the task's robot.
+
+    A task of a robot's plug-in, such as `school/fleeing`, is for that robot, and any other one for KURT2.
+    """
+    return name_or_path or robot_of_task(task) or DEFAULT_KIND
 
 
 def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:

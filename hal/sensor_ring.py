@@ -20,6 +20,13 @@ class Neighbours(NamedTuple):
     """Sensor next to `after`, counter-clockwise."""
     substitutes: tuple[int, ...]
     """Sensors whose readings replace this sensor's: those next to it that look the same way, or else both."""
+    has_witnesses: bool
+    """True if both sensors next to it look nearly the same way: then their readings say something about its own."""
+
+
+WITNESS_DEG = 60.0
+"""Greatest angle between two sensors that look nearly the same way. KURT2's are 45 degrees apart at most; a robot with
+few sensors has gaps."""
 
 
 def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
@@ -32,7 +39,11 @@ def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
     for at, place in enumerate(ring):
         before, after, second_before, second_after = (ring[(at + step) % len(ring)] for step in (-1, 1, -2, 2))
         alike = tuple(each for each in (before, after) if sensors[each].heading_deg == sensors[place].heading_deg)
-        found[place] = Neighbours(before, after, second_before, second_after, alike or (before, after))
+        has_witnesses = all(
+            abs(math.remainder(sensors[each].heading_deg - sensors[place].heading_deg, 360.0)) <= WITNESS_DEG
+            for each in (before, after)
+        )
+        found[place] = Neighbours(before, after, second_before, second_after, alike or (before, after), has_witnesses)
     return tuple(found[place] for place in range(len(sensors)))
 
 

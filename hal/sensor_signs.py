@@ -96,6 +96,7 @@ class SensorSigns:
         "_has_witnesses",
         "_high",
         "_highest",
+        "_looks_alike",
         "_low",
         "_lowest",
         "_quiet_high",
@@ -122,12 +123,12 @@ class SensorSigns:
         self._before, self._after = near.before, near.after
         self._second_before, self._second_after = near.second_before, near.second_after
         self._lowest, self._highest, self._stuck_ticks, self._rules = limits
-        self._has_witnesses = True
+        self._has_witnesses = self._looks_alike = near.has_witnesses
         self.restart(0)
 
     def set_witnesses(self, broken: Container[int]) -> None:
         """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
-        self._has_witnesses = self._before not in broken and self._after not in broken
+        self._has_witnesses = self._looks_alike and self._before not in broken and self._after not in broken
         self.low_ticks = self.high_ticks = self.agreed_ticks = 0
         self._across_m = self._toward_m = 0.0
         self.passes = False

@@ -190,7 +190,7 @@ class RobotParts(Protocol):
         ...
 
 
-_ROBOT_PARTS = ("settings", "folder", "open", "simulations")
+_ROBOT_PARTS = ("settings", "folder", "open", "simulations", "serve")
 ROBOTS = PluginKind(
     "robots",
     "robot",
@@ -269,6 +269,44 @@ def _file_of_robot(kind: str, name: str) -> Path | None:
         names = ", ".join(f"{robot}/{path.stem}" for path in sorted(folder.glob("*.yaml"))) or "none"
         raise SettingsError(f"the robot {robot} has no such file in {kind}", where=name, do=f"it has: {names}")
     return folder / f"{rest}.yaml"
+
+
+def robot_of_task(name: str) -> str | None:
+    """Return the robot whose plug-in has a task, as in `school/fleeing`; None for a task by another name or a path."""
+    robot, slash, _ = name.partition("/")
+    return robot if slash and robot in {each.name for each in ROBOTS.installed()} else None
+
+
+_FIRST_TASK = "wall_following"
+
+
+def find_task_of_robot(robot: str) -> str | None:
+    """Return the first task to teach a robot of a plug-in, such as `school/wall_following`; None if it has none.
+
+    Raises SettingsError for a plug-in that cannot be imported.
+    """
+    if robot not in {each.name for each in ROBOTS.installed()}:
+        return None
+    folder = find_robot_kind(robot).folder
+    if folder == CONFIG_DIR:  # tasks of the project go by their names alone
+        return None
+    names = sorted(path.stem for path in (folder / TASKS.group).glob("*.yaml"))
+    if not names:
+        return None
+    return f"{robot}/{_FIRST_TASK if _FIRST_TASK in names else names[0]}"
+
+
+def robots_task(name: str) -> str | None:
+    """Return the task of a robot's plug-in, such as `school/fleeing`, whose settings give it a name.
+
+    None if there is none. Raises SettingsError for a plug-in that cannot be imported, and for a task that is no YAML.
+    """
+    for plugin in ROBOTS.installed():
+        for path in sorted((find_robot_kind(plugin.name).folder / TASKS.group).glob("*.yaml")):
+            content = content_of(path)
+            if isinstance(content, dict) and content.get("name") == name:
+                return f"{plugin.name}/{path.stem}"
+    return None
 
 
 def plugin_file(path: str, name: str) -> Path:

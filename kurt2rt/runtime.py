@@ -16,7 +16,8 @@ from kurt2rt.core.basic.obstacle_memory import ObstacleMemory
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Critic
-from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.event_store import EventStore
@@ -169,7 +170,7 @@ class _Assembly:
         self._settings, self._task, self._events, self._options = settings, task, events, options
         self._period_s = settings.cycle_s
         self.definition = load_situation(task.situation, settings.infrared.names)
-        self.critic = load_critic(task.critic)
+        self.critic = critic_of(task.critic, settings)
         mid_settings = None if task.mid is None else load_mid_level(task.mid)
         minimum_action_ticks = round(task.learning.minimum_action_s / self._period_s)
         self._system = empty_system(task, self.definition, self.critic, mid_settings)

@@ -101,7 +101,7 @@ class News:
 
     def since(self) -> Iterator[str]:
         """Yield a line for each change of the robot since the last call."""
-        robot, trouble = self._standalone.robot, self._standalone.bus.error_text
+        robot, trouble = self._standalone.robot, self._standalone.end.error_text
         controller = robot.controller
         unheard, dead, collisions = controller.watchdog_expired, controller.crashed, robot.collisions
         if trouble != self._trouble:
@@ -127,7 +127,7 @@ class StatusLine:
 
     def next(self) -> str:
         """Return the present status in a line; its rates are those since the last call."""
-        robot, bus, simulation = self._standalone.robot, self._standalone.bus, self._standalone.simulation
+        robot, end, simulation = self._standalone.robot, self._standalone.end, self._standalone.simulation
         controller = robot.controller
         time_s, control_frames = robot.time_s, controller.control_frames
         rate = (control_frames - self._told) / max(time_s - self._told_at_s, 0.01)
@@ -149,8 +149,8 @@ class StatusLine:
             parts.append("no CONTROL, braked")
         if robot.lifted:
             parts.append("on a block")
-        if bus.error_text:
-            parts.append(f"{bus.error_text}; {bus.lost} frames lost")
+        if end.error_text:
+            parts.append(f"{end.error_text}; {end.lost} frames lost")
         return " | ".join(parts)
 
 

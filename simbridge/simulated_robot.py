@@ -21,6 +21,8 @@ from simbridge.survey.laps import WallProgress
 from simbridge.worlds.world_settings import WorldSettings
 
 _LAPS_EVERY_CYCLES = 10
+_KURT2_WIDTH_M = 0.330
+"""Width of the robot for which the survey of walls is made."""
 
 MakeController = Callable[[Body, Wheels], Controller]
 """Make the controller of a robot with this body and these wheels."""
@@ -64,6 +66,7 @@ class SimulatedRobot:
         cycle_s = robot.cycle_s
         self.world = World(world)
         self._cycle_s = cycle_s
+        self._width_scale = robot.geometry.outline_width_m / _KURT2_WIDTH_M
         self._cycles = 0
         self.infrared_noise = Noise(seed, "infrared")
         self.slip_noise = Noise(seed, "slip")
@@ -116,7 +119,7 @@ class SimulatedRobot:
     @cached_property
     def _progress(self) -> WallProgress:
         # Made when it is asked for: its survey takes as long as all else of a robot in a batch, which needs none.
-        progress = WallProgress(self.world)
+        progress = WallProgress(self.world, self._width_scale)
         progress.reset(self._placed)
         return progress
 

@@ -7,7 +7,14 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import (
+    DISTANCE_ERROR,
+    LEAST_SPEED_M_S,
+    LeastSpeed,
+    Metrics,
+    MetricSettings,
+    TaskMetric,
+)
 from hal.simulation import Pose, Position, Simulation
 
 _MEASURED_AT_ONCE = 100
@@ -19,10 +26,12 @@ class LapsSettings(MetricSettings):
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance that is wanted from the robot's centre to the nearest wall."""
+    least_speed_m_s: LeastSpeed = LEAST_SPEED_M_S
+    """Mean speed along walls below which a drive gets nowhere."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:
-        """Return the laps of a drive of `duration_s`, in s, that makes 0.1 m/s along walls."""
-        return LEAST_SPEED_M_S * duration_s / simulation.lap_m
+        """Return the laps of a drive of `duration_s`, in s, at the least speed."""
+        return self.least_speed_m_s * duration_s / simulation.lap_m
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. `chance` is not used."""

@@ -3,14 +3,18 @@
 import random
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import Annotated, NamedTuple, Protocol, runtime_checkable
+
+from pydantic import Field
 
 from hal.areas import Borders
 from hal.settings_by_kind import KindSettings
 from hal.simulation import Pose, Simulation, WorldPlan
 
 LEAST_SPEED_M_S = 0.1
-"""A drive that makes way more slowly than this on average gets nowhere; the shipped policies make 0.2 m/s and more."""
+"""A drive that makes way more slowly than this on average gets nowhere; KURT2's policies make 0.2 m/s and more."""
+LeastSpeed = Annotated[float, Field(gt=0, le=3)]
+"""Such a speed of a slower robot, in m/s."""
 
 Metrics = Mapping[str, float]
 """Measures by name, with the unit in the name where there is one."""

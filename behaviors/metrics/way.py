@@ -4,16 +4,19 @@ import math
 import random
 from collections.abc import Sequence
 
-from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import LEAST_SPEED_M_S, LeastSpeed, Metrics, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
 
 
 class WaySettings(MetricSettings):
     """Settings of the metric `way`."""
 
+    least_speed_m_s: LeastSpeed = LEAST_SPEED_M_S
+    """Mean speed below which a drive gets nowhere."""
+
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
-        """Return the distance in m of a drive of `duration_s`, in s, at 0.1 m/s."""
-        return LEAST_SPEED_M_S * duration_s
+        """Return the distance in m of a drive of `duration_s`, in s, at the least speed."""
+        return self.least_speed_m_s * duration_s
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. The other arguments are not used."""

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -66,7 +66,7 @@ class _Options:
     shard: ShardOption = None
     on: OnOption = None
     out: Annotated[Path, results_option("results/broken")] = Path("results/broken")
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -90,7 +90,8 @@ def broken(options: _Options) -> None:
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was.
     """
-    robot, task, results = load_robot(options.robot_settings), load_task(options.task), Results(options.out)
+    robot = load_robot_of(options.robot_settings, options.task)
+    task, results = load_task(options.task), Results(options.out)
     worlds = tuple(options.world or task.exam.worlds)
     sensors = chosen_sensors(robot.infrared.names, options.sensor)
     drives = BrokenDrives(

@@ -9,7 +9,7 @@ import typer
 from rich.text import Text
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.interpreted_batch import say_if_interpreted
@@ -99,7 +99,7 @@ class _Options:
     shard: ShardOption = None
     on: OnOption = None
     out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -141,7 +141,8 @@ def _certify(options: _Options) -> None:
     from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
 
-    robot, task, results = load_robot(options.robot_settings), _task(options), Results(options.out)
+    task, results = _task(options), Results(options.out)
+    robot = load_robot_of(options.robot_settings, options.task or task_of_file(options.knowledge))
     factory = simulations_of(robot)
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
     parts = JobParts(factory=factory, robot=robot, results=results)
@@ -221,7 +222,7 @@ def _exam_command(options: _Options, run: "RunOutcome") -> str:
     changes = [*(options.changes or ()), *([f"{_SECONDS}={options.seconds:g}"] if options.seconds is not None else [])]
     words += [word for change in changes for word in ("--set", change)]
     words += ["--task", options.task] if options.task is not None else []
-    words += ["--robot-settings", options.robot_settings] if options.robot_settings != "kurt2" else []
+    words += ["--robot-settings", options.robot_settings] if options.robot_settings is not None else []
     return shlex.join(words)
 
 

@@ -78,7 +78,7 @@ class _Options:
     bus: _Bus
     name: _Name = "my-kurt2"
     out: _Out = None
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     only: _Only = None
     skip: _Skip = None
     start_over: _StartOver = False
@@ -141,9 +141,9 @@ def _session(options: _Options) -> "_Session":
     """Return what the options ask for. Raises typer.BadParameter, SettingsError."""
     requested, skipped = _named(options.only, "--only"), _named(options.skip, "--skip")
     operator = _require_one_line(options.who or _user())
-    base = load_kurt2(options.robot_settings)
+    base = load_kurt2(options.robot_settings or "kurt2")
     path = Path("var", "commission", f"{options.name}.json")
-    fresh = Progress(name=options.name, base=options.robot_settings, bus=options.bus)
+    fresh = Progress(name=options.name, base=options.robot_settings or "kurt2", bus=options.bus)
     progress = _progress(path, fresh, options.start_over)
     chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
     return _Session(base, progress, path, chosen, skipped, operator)

@@ -7,7 +7,7 @@ from typing import Annotated
 import anyio
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
@@ -43,7 +43,7 @@ class _Options:
     changes: Changes = None
     seed: Seed = 0
     out: OutFolder = Path("results/demo")
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     wire: WireName = "none"
     as_json: AsJson = False
 
@@ -69,7 +69,7 @@ def demo(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 
-    settings = load_robot(options.robot_settings)
+    settings = load_robot_of(options.robot_settings, options.task)
     task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings, options.wire)

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
@@ -47,7 +47,7 @@ class _Options:
         ),
     ] = 10.0
     jobs: Jobs = ALL_PROCESSORS
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -69,7 +69,7 @@ def doubt(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
 
-    settings = load_robot(options.robot_settings)
+    settings = load_robot_of(options.robot_settings, options.task)
     task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
     factory = simulations_of(settings)
     worlds = options.world or list(task.exam.worlds)

@@ -9,7 +9,7 @@ import typer
 
 from behaviors.metrics.route import RouteSettings
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
@@ -47,7 +47,7 @@ class _Options:
             help="Let an infra-red sensor of the robot break after 2 s, such as s15=low; faults as in kurt2rt broken.",
         ),
     ] = None
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     wire: WireName = "none"
     as_json: AsJson = False
 
@@ -67,9 +67,10 @@ def exam(options: _Options) -> None:
         kurt2rt exam results/demo/wall_following-0.knowledge
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
-    settings = load_robot(options.robot_settings)
+    task_name = options.task or task_of_file(options.knowledge)
+    settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)
-    taught = load_task(options.task or task_of_file(options.knowledge), plain=options.plain, changes=other)
+    taught = load_task(task_name, plain=options.plain, changes=other)
     if options.task is not None:
         task_of_file(options.knowledge, options.task)
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:

@@ -7,7 +7,7 @@ import anyio
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
@@ -112,7 +112,7 @@ def _task_name(options: LessonOptions) -> str:
 
 
 def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
-    robot = load_robot(options.robot_settings)
+    robot = load_robot_of(options.robot_settings, task_name)
     task = load_task(task_name, plain=options.plain, changes=changes_of(options.changes))
     taught = taught_by(task, load_teacher(options.teacher))
     command = typed_command("lesson", options, {"task": task_name, "task_word": None})

@@ -70,7 +70,7 @@ class LessonOptions:
             show_default=False,
         ),
     ] = None
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     wire: WireName = "none"
     decisions: Annotated[
         list[int] | None,

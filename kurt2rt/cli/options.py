@@ -83,9 +83,12 @@ Plain = Annotated[
     ),
 ]
 RobotName = Annotated[
-    str,
+    str | None,
     typer.Option(
-        "--robot-settings", metavar=_NAME_OR_PATH, help="Robot: a name in config/robots, or the path of a YAML file."
+        "--robot-settings",
+        metavar=_NAME_OR_PATH,
+        help="Robot: a name in config/robots or of a plug-in, or the path of a YAML file. Default: the robot of the "
+        "task, which is kurt2 unless the task is of another one, such as school/fleeing.",
     ),
 ]
 Seed = Annotated[

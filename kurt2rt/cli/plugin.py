@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RobotName
@@ -73,7 +73,7 @@ def check(
         ),
     ],
     kind: Annotated[KindName | None, typer.Option(help="Kind of the plug-in, where it is not clear.")] = None,
-    robot_settings: RobotName = "kurt2",
+    robot_settings: RobotName = None,
     as_json: AsJson = False,
 ) -> None:
     """Check that a plug-in keeps the promises of its kind, on made-up readings, lessons and poses.
@@ -88,7 +88,7 @@ def check(
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
     from kurt2rt.checks.plugins.check import PluginCheck
 
-    robot = load_robot(robot_settings)
+    robot = load_robot_of(robot_settings, name)
     checks = PluginCheck(robot, simulations_of(robot))
     found = [(each, checks.broken_promises(each)) for each in subjects]
     if as_json:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import RobotSettings, load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -90,7 +90,7 @@ class _Options:
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/rivals")] = Path("results/rivals")
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -115,12 +115,12 @@ def rivals(options: _Options) -> None:
     interrupted goes on where it was. docs/add-a-learner.md says how to write
     a learner.
     """
-    robot = load_robot(options.robot_settings)
     names = dict.fromkeys(options.task or ("wall_following",))
+    robot = load_robot_of(options.robot_settings, next(iter(names)))
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
     chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or ROWS[options.league])]
     if options.check:
-        _check(chosen, tasks[0], options)
+        _check(chosen, tasks[0], robot, options)
         return
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.rivals.figures import draw_curves
@@ -163,9 +163,8 @@ def rivals(options: _Options) -> None:
     print_whole(console_of(), *map(as_rich, tables), *not_judged, f"report  {report}")
 
 
-def _check(chosen: list[Rival], task: TaskSettings, options: _Options) -> None:
+def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, options: _Options) -> None:
     """Print the promises that learners break. Raises typer.Exit with code 1 if one does."""
-    robot = load_robot(options.robot_settings)
     found = {
         each.name: broken_promises(
             each.factory(), learner_setting(task, robot, seed=_SEED_OF_THE_CHECK, gate=each.gate)

@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import EarlierBus, WireName, bus_of, task_option, world_option
+from kurt2rt.cli.options import EarlierBus, RobotName, WireName, bus_of, task_option, world_option
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
@@ -37,6 +37,7 @@ class _Options:
         ),
     ] = SIMULATED
     robot: EarlierBus = None
+    robot_settings: RobotName = None
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default"
@@ -360,11 +361,16 @@ def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
 
 def _changed(options: _Options, task: str | None) -> "ServiceSettings":
     """Read the runtime settings and apply the command line to them. Raises SettingsError."""
+    from hal.settings import find_task_of_robot, robot_of_task
     from kurt2rt.cli.scripted_file import own_file
     from kurt2rt.core.task_settings import load_task
     from kurt2rt.service.settings import load_service
 
     settings = load_service(options.settings)
+    named = options.robot_settings or (None if task is None else robot_of_task(task))
+    if named is not None:
+        settings = settings.model_copy(update={"robot": named})
+        task = task or find_task_of_robot(named)
     if task is not None:
         taught = load_task(task)
         knowledge = str(Path(settings.knowledge).with_name(f"{taught.name}.knowledge"))

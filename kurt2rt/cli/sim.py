@@ -7,19 +7,22 @@ import time
 from contextlib import ExitStack
 from dataclasses import dataclass
 from types import FrameType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 from rich.console import Console
 
-from hal.bus import open_bus
-from hal.kurt2_settings import Kurt2Settings, load_kurt2
+from hal.robot_kind import kind_of
+from hal.robot_settings import RobotSettings, load_robot_of
 from hal.settings import SettingsError
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.service.console_thread import ConsoleThread
+
+if TYPE_CHECKING:
+    from simbridge.robot_end import RobotEnd
 
 _END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _POLL_S = 0.05
@@ -45,7 +48,7 @@ class _Options:
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Decides the robot's sensors, its noise and where it starts.")
     ] = 1
-    robot: RobotName = "kurt2"
+    robot: RobotName = None
     seconds: Annotated[
         float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after so long; default: on Ctrl-C.")
     ] = None
@@ -82,11 +85,11 @@ def sim(options: _Options) -> None:
         raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
     if options.bus.startswith("virtual:"):
         raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
-    settings = load_kurt2(options.robot)
+    settings = load_robot_of(options.robot, options.world)
     _simulate(options, settings)
 
 
-def _simulate(options: _Options, settings: Kurt2Settings) -> None:
+def _simulate(options: _Options, settings: RobotSettings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
     from simbridge.simulated_world import RealtimeWorld
@@ -106,9 +109,12 @@ def _simulate(options: _Options, settings: Kurt2Settings) -> None:
             SignalHandlers({**dict.fromkeys(_END_SIGNALS, end.on_signal), signal.SIGTTIN: signal.SIG_IGN})
         )
         output = _Output(stack.enter_context(ConsoleThread()))
-        standalone = StandaloneRobot(settings, ground_plan, open_bus(options.bus), options.seed, start=options.start)
+        robot_end = cast("RobotEnd", kind_of(settings).serve(settings, options.bus))
+        standalone = StandaloneRobot(
+            ground_plan, robot_end, options.seed, start=options.start, cycle_s=settings.cycle_s
+        )
         output.log(
-            f"a simulated {settings.name} in world {options.world} is on bus {options.bus}; "
+            f"a simulated {settings.name} in world {options.world} is on {robot_end.name}; "
             "type help, Ctrl-C switches it off"
         )
         stack.enter_context(short_switch_interval())

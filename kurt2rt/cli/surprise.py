@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
@@ -39,7 +39,7 @@ class _Options:
         typer.Option("--different", metavar="SECONDS", min=1.0, help="Seconds that it drives with each difference."),
     ] = DIFFERENT_S
     jobs: Jobs = ALL_PROCESSORS
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -55,7 +55,7 @@ def surprise(options: _Options) -> None:
         kurt2rt lesson --task streets --seeds 0-9
         kurt2rt surprise results/lesson
     """
-    settings = load_robot(options.robot_settings)
+    settings = load_robot_of(options.robot_settings, options.task)
     what = load_task(options.task)
     stage = simulations_of(settings)
     work = [

@@ -12,7 +12,8 @@ import anyio.to_thread
 import typer
 from rich.console import Console
 
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
+from hal.settings import robot_of_task
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, task_option, teacher_option
@@ -248,5 +249,6 @@ async def _by_script(
     if not await anyio.to_thread.run_sync(people_agree, "the robot's knowledge", tuple(people), instead):
         return
     task = taught_by_named(load_task(arguments.task or service.task), arguments.teacher)
-    robot = load_robot(service.robot)
+    name = arguments.task or service.task
+    robot = load_robot_of(None if robot_of_task(name) else service.robot, name)
     await teach_by_script(client, robot, task, print_line, seed=arguments.seed)

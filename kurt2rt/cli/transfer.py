@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -101,7 +101,7 @@ class _Options:
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
-    robot_settings: RobotName = "kurt2"
+    robot_settings: RobotName = None
     as_json: AsJson = False
 
 
@@ -127,7 +127,7 @@ def transfer(options: _Options) -> None:
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.transfer.figures import draw_curves
 
-    robot = load_robot(options.robot_settings)
+    robot = load_robot_of(options.robot_settings, options.task)
     task = taught_by(load_task(options.task, changes=changes_of(options.changes)), load_teacher(options.teacher))
     results = Results(options.out)
     plan = make_plan(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Self
 
 from hal.errors import UserError
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot, load_robot_of, robot_named
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
@@ -39,19 +39,21 @@ class Knowledge:
     """Uses and values of the RLAs."""
 
     @classmethod
-    def load(cls, path: str | PathLike[str], *, task: str | None = None, robot: str = "kurt2") -> Self:
+    def load(cls, path: str | PathLike[str], *, task: str | None = None, robot: str | None = None) -> Self:
         """Read a knowledge file, which stays as it is.
 
         Args:
             path: of the file.
             task: name or path; None: the task that the file names.
-            robot: name or path of the robot's settings.
+            robot: name or path of the robot's settings; None: the robot of the task.
 
         Raises:
             UserError: as kurt2rt.Error, the file cannot be read, or belongs to another task or robot.
         """
         file = Path(path)
-        name, settings = task_of_file(file, task), load_robot(robot)
+        name = task_of_file(file, task)
+        robot = robot_named(robot, name)
+        settings = load_robot(robot)
         events, statistics = read_knowledge(file, settings, load_task(name))
         with Journal.read_only(file) as journal:
             rlas = fold_journal(journal, radius=math.inf).rlas
@@ -75,7 +77,7 @@ def teach(
     task: str = "wall_following",
     seed: int = 0,
     seconds: float | None = None,
-    robot: str = "kurt2",
+    robot: str | None = None,
 ) -> Knowledge:
     """Let the task's scripted teacher teach a simulated robot; return the knowledge, kept in a new file.
 
@@ -84,12 +86,12 @@ def teach(
         task: name or path of the task.
         seed: of the robot and the teacher.
         seconds: robot time in which the teacher answers; corrections last as long. None: as the task says.
-        robot: name or path of the robot's settings.
+        robot: name or path of the robot's settings; None: the robot of the task.
 
     Raises:
         UserError: as kurt2rt.Error, there is a file already, or settings do not fit.
     """
-    file, settings = Path(path), load_robot(robot)
+    file, settings = Path(path), load_robot_of(robot, task)
     if file.exists():
         raise UserError("there is a file already", where=file, do="give the path of a new file")
     loaded = load_task(task, changes=_duration(seconds))

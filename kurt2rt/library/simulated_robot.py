@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from hal.errors import UserError
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot, robot_named
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome_text import text_of
@@ -55,7 +55,7 @@ class SimulatedRobot:
         seed: int = 0,
         knowledge: Knowledge | None = None,
         path: str | PathLike[str] | None = None,
-        robot: str = "kurt2",
+        robot: str | None = None,
         bus: str | None = None,
         record: str | PathLike[str] | None = None,
     ) -> None:
@@ -67,7 +67,7 @@ class SimulatedRobot:
             seed: of the sensors, the noise and the start pose.
             knowledge: to begin with; its file stays as it is.
             path: of a new file that gets each lesson at once; None: lessons are kept by `save` alone.
-            robot: name or path of the robot's settings.
+            robot: name or path of the robot's settings; None: that of `knowledge`, else the robot of the task.
             bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
                 shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
             record: folder of recordings, in which this run gets a folder, for `kurt2rt.replay`; None: no recording.
@@ -76,9 +76,9 @@ class SimulatedRobot:
             UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, `bus` is
                 missing, real or taken, or nothing can be written to `record`.
         """
-        settings = load_robot(robot)
-        self._robot = robot
         self._task = task or ("wall_following" if knowledge is None else knowledge.task)
+        self._robot = robot_named(robot or (None if knowledge is None else knowledge.robot), self._task)
+        settings = load_robot(self._robot)
         loaded = load_task(self._task)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world

@@ -18,6 +18,7 @@ EXTRAS = {
     "rosbags": "ros",
     "scipy": "studies",
     "shapely": "simulation",
+    "serial": "serial",
     "sklearn": "rivals",
     "starlette": "page",
     "uvicorn": "page",

@@ -32,5 +32,12 @@ class Kurt2Kind:
 
         return Kurt2SimulationFactory(require_kurt2(settings, "this simulation"), wire)
 
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return the robot's end of a bus, for a simulated robot that other programs drive. Raises BusError."""
+        from hal.bus import open_bus
+        from simbridge.robot_end import CanRobotEnd
+
+        return CanRobotEnd(require_kurt2(settings, "this simulation"), open_bus(address))
+
 
 KURT2 = Kurt2Kind()

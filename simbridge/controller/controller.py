@@ -26,6 +26,21 @@ class Controller(Protocol):
         ...
 
     @property
+    def crashed(self) -> bool:
+        """Return whether the electronics has crashed, and needs a reset."""
+        ...
+
+    @property
+    def control_frames(self) -> int:
+        """Number of valid commands since power-on."""
+        ...
+
+    @property
+    def junk_frames(self) -> int:
+        """Number of invalid messages since power-on."""
+        ...
+
+    @property
     def watchdog_expired(self) -> bool:
         """Return whether no valid set point has arrived for the time of the controller's own watchdog."""
         ...

@@ -22,7 +22,9 @@ class WallProgress:
     and fro between two walls counts once. Jumps across the room and between rings count nothing.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, scale: float = 1.0) -> None:
+        """`scale`: width of the robot as a multiple of KURT2's, to which all distances of the survey are fitted."""
+        self._scale = scale
         self.laps = 0.0
         """Progress in lengths of the outer wall's ring, also along an island: one unit for a room."""
         self._world = world
@@ -33,16 +35,18 @@ class WallProgress:
     @property
     def lap_m(self) -> float:
         """Length in m of the outer wall's ring."""
-        return self._rings.lengths_m[0]
+        return self._rings.lengths_m[0] * self._scale
 
     def reset(self, pose: Pose) -> None:
         """Restart at a pose after repositioning: no progress, and all gates count again."""
-        if self._world.settings is not self._surveyed or not self._rings.contains((pose.x_m, pose.y_m)):
+        scale = self._scale
+        x_m, y_m = pose.x_m / scale, pose.y_m / scale
+        if self._world.settings is not self._surveyed or not self._rings.contains((x_m, y_m)):
             self._survey(pose)
         self._gates = [_Gates(length_m) for length_m in self._rings.lengths_m]
         self._progress_m = 0.0
         self._place: RingPlace | None = None
-        self._place = self._rings.place(pose.x_m, pose.y_m, pose.heading_rad, None)
+        self._place = self._rings.place(x_m, y_m, pose.heading_rad, None)
 
     def update(self, x_m: float, y_m: float, heading_rad: float) -> float:
         """Apply the pose that the robot drove to, a few decimetres from the last one; return the progress in laps.
@@ -53,19 +57,21 @@ class WallProgress:
             # Arc lengths of the old rings mean nothing after a wall was moved.
             self.reset(Pose(x_m, y_m, heading_rad))
             return self.laps
+        x_m, y_m = x_m / self._scale, y_m / self._scale
         place, last = self._rings.place(x_m, y_m, heading_rad, self._place), self._place
         if place is None:
             return self.laps
         if last is not None and last.ring == place.ring:
             step_m = self._gates[place.ring].pass_through(last.along_m, place.along_m, self._progress_m)
             self._progress_m += step_m
-            self.laps += step_m / self.lap_m
+            self.laps += step_m / self._rings.lengths_m[0]
         self._place = place
         return self.laps
 
     def _survey(self, pose: Pose) -> None:
         self._surveyed = self._world.settings
-        self._rings = WallRings(self._surveyed, (pose.x_m, pose.y_m))
+        scale = self._scale
+        self._rings = WallRings(self._surveyed, (pose.x_m / scale, pose.y_m / scale), scale)
 
 
 class _Gates:

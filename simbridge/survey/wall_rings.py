@@ -1,10 +1,14 @@
-"""Closed paths along the walls of a room: one inside the outer wall, one round each island."""
+"""Closed paths along the walls of a room: one inside the outer wall, one round each island.
+
+Distances are those of KURT2. For a narrower robot the world is enlarged until the robot is as wide as KURT2.
+"""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 import shapely
+from shapely import affinity
 
 from simbridge.worlds.geometry import Point, polygons_of
 from simbridge.worlds.world_settings import WorldSettings
@@ -41,9 +45,12 @@ class RingPlace(NamedTuple):
 class WallRings:
     """Rings of one room, and a search for the place on them that a robot follows."""
 
-    def __init__(self, world: WorldSettings, position: Point) -> None:
-        """Survey the room of `world` that contains `position`, or is closest to it."""
-        self.room = _room_of(world, position)
+    def __init__(self, world: WorldSettings, position: Point, scale: float = 1.0) -> None:
+        """Survey the room of `world` that contains `position`, in m, or is closest to it.
+
+        `scale`: width of the robot as a multiple of KURT2's. All positions, also this one, are divided by it.
+        """
+        self.room = _room_of(world, position, scale)
         """Positions of the robot's centre in this room; its holes are the islands."""
         self.rings = [_outer_ring(self.room), *(_island_ring(hole) for hole in self.room.interiors)]
         self.lengths_m = [float(ring.length) for ring in self.rings]
@@ -110,8 +117,11 @@ class WallRings:
         self._gathered_at = x_m, y_m
 
 
-def _room_of(world: WorldSettings, position: Point) -> shapely.Polygon:
-    parts = polygons_of(world.free_space.buffer(-_ROBOT_M, quad_segs=2))
+def _room_of(world: WorldSettings, position: Point, scale: float) -> shapely.Polygon:
+    free = world.free_space
+    if scale != 1.0:
+        free = affinity.scale(free, 1.0 / scale, 1.0 / scale, origin=(0.0, 0.0))
+    parts = polygons_of(free.buffer(-_ROBOT_M, quad_segs=2))
     centre = shapely.Point(position)
     return min(parts, key=lambda part: float(part.distance(centre)))
 

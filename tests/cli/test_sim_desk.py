@@ -11,6 +11,7 @@ import pytest
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
 from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.robot_end import CanRobotEnd
 from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.standalone import StandaloneRobot
@@ -32,7 +33,7 @@ class Table:
         self.end: CanBus = open_bus(name)
         self.notebook = open_bus(name)
         self.control = self.notebook.control_port()
-        self.standalone = StandaloneRobot(ROBOT, WORLD, self.end, seed=1, start=1)
+        self.standalone = StandaloneRobot(WORLD, CanRobotEnd(ROBOT, self.end), seed=1, start=1)
         self.robot = self.standalone.robot
         self.asked: list[object] = []
         simulation = self.standalone.simulation

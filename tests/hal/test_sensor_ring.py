@@ -60,3 +60,13 @@ def test_substitute_leaves_out_a_broken_neighbour() -> None:
 def test_substitute_without_a_working_neighbour_reads_near() -> None:
     read = SubstituteReadings(INFRARED)(counts_of(s9=0, s11=0, s10=150), (PLACES["s9"], PLACES["s11"]))
     assert read == counts_of(s9=INFRARED.plateau_counts, s11=150, s10=150)
+
+
+def test_neighbours_of_kurt2_are_all_witnesses() -> None:
+    assert all(near.has_witnesses for near in neighbours_of(INFRARED.sensors))
+
+
+def test_neighbours_across_a_gap_are_no_witnesses() -> None:
+    # Five sensors ahead, 20 degrees apart, and one behind: those at the ends have a neighbour that looks elsewhere.
+    ahead = [INFRARED.sensors[0].model_copy(update={"heading_deg": heading}) for heading in (40, 20, 0, -20, -40, 180)]
+    assert [near.has_witnesses for near in neighbours_of(ahead)] == [False, True, True, True, False, False]

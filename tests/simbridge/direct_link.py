@@ -14,7 +14,8 @@ from simbridge.simulated_link import InstantLink
 class DirectController:
     """Robot's end (simbridge.controller.controller.Controller)."""
 
-    watchdog_expired = False
+    watchdog_expired = crashed = False
+    control_frames = junk_frames = 0
 
     def __init__(self, cycle_s: float) -> None:
         self.commands = MOTORS_BRAKED

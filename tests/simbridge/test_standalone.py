@@ -11,6 +11,7 @@ from hal.frame import Frame
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
+from simbridge.robot_end import CanRobotEnd
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import CODEC, ROBOT
@@ -33,7 +34,7 @@ def notebook(name: str) -> Iterator[CanBus]:
 
 
 def test_standalone_is_driven_by_a_runtime(name: str, notebook: CanBus) -> None:
-    standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1, start=2)
+    standalone = StandaloneRobot(WORLD, CanRobotEnd(ROBOT, open_bus(name)), seed=1, start=2)
     robot = standalone.robot
     assert robot.pose == WORLD.start_poses[1].pose
     kurt2 = Kurt2(ROBOT, notebook)
@@ -50,7 +51,7 @@ def test_standalone_is_driven_by_a_runtime(name: str, notebook: CanBus) -> None:
 
 
 def test_standalone_identifies_as_simulated(name: str, notebook: CanBus) -> None:
-    standalone = StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1)
+    standalone = StandaloneRobot(WORLD, CanRobotEnd(ROBOT, open_bus(name)), seed=1)
     for _ in range(10):
         standalone.robot.step()
     told = {CODEC.by_id[frame.arbitration_id].name: frame.data for frame in notebook.drain()}
@@ -62,7 +63,7 @@ def test_standalone_identifies_as_simulated(name: str, notebook: CanBus) -> None
 
 def test_standalone_seed_decides_robot_and_start(name: str) -> None:
     def start_of(seed: int) -> tuple[float, ...]:
-        standalone = StandaloneRobot(ROBOT, WORLD, open_bus(f"{name}-{next(_numbers)}"), seed=seed)
+        standalone = StandaloneRobot(WORLD, CanRobotEnd(ROBOT, open_bus(f"{name}-{next(_numbers)}")), seed=seed)
         seen = (*standalone.robot.pose, *standalone.robot.infrared_counts)
         with standalone:
             return seen
@@ -72,13 +73,13 @@ def test_standalone_seed_decides_robot_and_start(name: str) -> None:
 
 
 def test_standalone_second_robot_is_refused(name: str) -> None:
-    with StandaloneRobot(ROBOT, WORLD, open_bus(name), seed=1) as first:
+    with StandaloneRobot(WORLD, CanRobotEnd(ROBOT, open_bus(name)), seed=1) as first:
         stepped = threading.Event()
         end = open_bus(name)
         first.simulation.submit(stepped.set)
         assert stepped.wait(30.0)
         with pytest.raises(BusError, match=name):
-            StandaloneRobot(ROBOT, WORLD, end, seed=2)
+            StandaloneRobot(WORLD, CanRobotEnd(ROBOT, end), seed=2)
         with pytest.raises(BusError):
             end.drain()
 
@@ -87,5 +88,5 @@ def test_standalone_with_other_senders_starts(name: str, notebook: CanBus) -> No
     end = open_bus(name)
     notebook.telemetry_port().send(Frame(0x300, bytes(8)))
     Kurt2(ROBOT, notebook).close()  # brakes
-    with StandaloneRobot(ROBOT, WORLD, end, seed=1):
+    with StandaloneRobot(WORLD, CanRobotEnd(ROBOT, end), seed=1):
         pass

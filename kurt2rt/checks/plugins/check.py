@@ -2,18 +2,20 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import closing
-from typing import Any
+from typing import Any, cast
 
 from pydantic import TypeAdapter, ValidationError
 
 from behaviors.metrics.task_metric import MetricSettings
 from behaviors.registry import JUDGES, METRICS, POLICIES, AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from behaviors.repertoire_settings import BEHAVIOURS, ActionSettings, PluginAction, RepertoireSettings
+from hal.robot_kind import RobotKind
 from hal.robot_settings import RobotSettings
-from hal.settings import TASKS, WORLDS, find_config, load_settings
+from hal.settings import ROBOTS, TASKS, WORLDS, find_config, find_robot_kind, load_settings
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.kinds import NoPluginError, Subject
 from kurt2rt.checks.plugins.promises import broken_of_action, broken_of_judge, broken_of_metric, broken_of_policy
+from kurt2rt.checks.plugins.robot_promises import broken_of_robot
 from kurt2rt.core.learner.conformance import broken_among, broken_promises
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
@@ -42,6 +44,7 @@ class PluginCheck:
             BEHAVIOURS.group: self._of_action,
             TASKS.group: self._of_task,
             WORLDS.group: self._of_world,
+            ROBOTS.group: lambda name: broken_of_robot(cast("RobotKind", find_robot_kind(name)), name),
         }
 
     def broken_promises(self, subject: Subject) -> list[str]:

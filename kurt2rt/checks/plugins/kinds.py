@@ -11,7 +11,7 @@ from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
 from hal.errors import UserError
 from hal.plugins import Plugin, PluginKind, import_target, is_target
-from hal.settings import TASKS, WORLDS, SettingsError, content_of
+from hal.settings import ROBOTS, TASKS, WORLDS, SettingsError, content_of
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
 
@@ -25,10 +25,11 @@ class KindName(StrEnum):
     BEHAVIOURS = "behaviours"
     TASKS = "tasks"
     WORLDS = "worlds"
+    ROBOTS = "robots"
 
 
 KINDS: dict[str, PluginKind] = {
-    each.group: each for each in (LEARNERS, POLICIES, JUDGES, METRICS, BEHAVIOURS, TASKS, WORLDS)
+    each.group: each for each in (LEARNERS, POLICIES, JUDGES, METRICS, BEHAVIOURS, TASKS, WORLDS, ROBOTS)
 }
 """All kinds of plug-ins by the names of their groups."""
 _KEYS_OF_WORLDS = {"outline", "image", "map"}

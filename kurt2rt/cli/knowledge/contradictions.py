@@ -1,7 +1,7 @@
 """`kurt2rt knowledge contradictions`."""
 
 from behaviors.action_groups import action_groups
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
@@ -14,7 +14,7 @@ from kurt2rt.knowledge.versions.contradictions import load_radii
 
 
 def contradictions(
-    file: KnowledgeFile, task_name: TaskOfTheFile = None, robot_name: RobotName = "kurt2", as_json: AsJson = False
+    file: KnowledgeFile, task_name: TaskOfTheFile = None, robot_name: RobotName = None, as_json: AsJson = False
 ) -> None:
     """List the RLAs that none of their neighbours agrees with, as after a slip of the finger.
 
@@ -28,8 +28,8 @@ def contradictions(
         kurt2rt knowledge contradictions var/wall_following.knowledge
         kurt2rt knowledge undo var/wall_following.knowledge --lesson LESSON-ID
     """
-    task = load_task(task_of_file(file, task_name))
-    robot = load_robot(robot_name)
+    name = task_of_file(file, task_name)
+    task, robot = load_task(name), load_robot_of(robot_name, name)
     system = load_radii(task, robot).empty_system()
     system.apply_all(read_lessons(file, robot, task))
     groups = action_groups(task.repertoire)

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
@@ -25,7 +25,7 @@ def export(
         Path | None, typer.Option(help="Sign it with this private key, as kurt2rt knowledge key makes one.")
     ] = None,
     task_name: TaskOfTheFile = None,
-    robot_name: RobotName = "kurt2",
+    robot_name: RobotName = None,
 ) -> None:
     """Write one file to give away: all lessons and counts, and the settings of their task.
 
@@ -35,7 +35,8 @@ def export(
         kurt2rt knowledge export var/wall_following.knowledge walls.zip --sign ann
     """
     key = None if sign is None else read_private_key(sign)
-    robot, task = load_robot(robot_name), load_task(task_of_file(file, task_name))
+    name = task_of_file(file, task_name)
+    robot, task = load_robot_of(robot_name, name), load_task(name)
     size = export_knowledge(file, out, robot, task, key, stamp=utc_now())
     signed = "" if key is None else f", signed by {fingerprint(key.public_key().public_bytes_raw())}"
     say(f"export  {out}: {size / 1000:.0f} kB{signed}")
@@ -45,7 +46,7 @@ def import_(
     file: Annotated[Path, typer.Argument(help="File that kurt2rt knowledge export wrote.")],
     into: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
     task_name: Annotated[str | None, task_option("Default: the task whose settings came with it.")] = None,
-    robot_name: RobotName = "kurt2",
+    robot_name: RobotName = None,
     trusted: Annotated[
         Path | None, typer.Option(help="Take it only if the owner of this public key (.pub) has signed it.")
     ] = None,
@@ -58,7 +59,8 @@ def import_(
         kurt2rt knowledge import walls.zip --into walls.knowledge --trusted ann.pub
     """
     public = None if trusted is None else read_public_key(trusted)
-    robot, task = load_robot(robot_name), load_task(task_name or read_package(file).task)
+    name = task_name or read_package(file).task
+    robot, task = load_robot_of(robot_name, name), load_task(name)
     imported = import_knowledge(file, into, robot, task, public, stamp=utc_now())
     package = imported.package
     signer = "not signed" if package.signed_by is None else f"signed by {fingerprint(package.signed_by)}"

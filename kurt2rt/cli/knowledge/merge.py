@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from hal.errors import ExitCode
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
 from kurt2rt.core.rla.rla import rla_title
@@ -51,7 +51,7 @@ def merge(
         Side | None, typer.Option(help="The file that is right if both changed an RLA, or contradict each other.")
     ] = None,
     task_name: TaskOfTheFile = None,
-    robot_name: RobotName = "kurt2",
+    robot_name: RobotName = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would come of it.")] = False,
 ) -> None:
     """Merge OTHER's lessons into FILE; merging again adds nothing.
@@ -64,7 +64,8 @@ def merge(
         kurt2rt knowledge merge mine.knowledge yours.knowledge --dry-run
         kurt2rt knowledge merge mine.knowledge yours.knowledge --prefer mine
     """
-    radii = load_radii(load_task(task_of_file(file, task_name)), load_robot(robot_name))
+    name = task_of_file(file, task_name)
+    radii = load_radii(load_task(name), load_robot_of(robot_name, name))
     merged = merge_files(file, other, radii, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
     for conflict in merged.conflicts:
         states = f"here {format_state(conflict.mine)}, there {format_state(conflict.theirs)}"

@@ -166,9 +166,16 @@ def _counts_of(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[
 
 
 def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
-    """Return the distance in m from a side's last sensor forward to its first. Raises SettingsError if not ahead."""
-    x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
-    baseline_m = x_m[side[0]] - x_m[side[-1]]
+    """Return the distance in m from a side's last sensor forward to its first; infinite if they look different ways.
+
+    Only sensors that look the same way tell the angle of a wall by their difference. Raises SettingsError if the first
+    is not ahead of the last.
+    """
+    of = {sensor.name: sensor for sensor in infrared.sensors}
+    first, last = of[side[0]], of[side[-1]]
+    if first.heading_deg != last.heading_deg:
+        return math.inf
+    baseline_m = first.x_m - last.x_m
     if baseline_m <= 0:
         raise SettingsError(
             f"critic {critic}: perception.sensors: {side[0]} does not sit ahead of {side[-1]}",

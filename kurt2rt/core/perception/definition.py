@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from hal.robot_settings import DEFAULT_KIND
 from hal.settings import Settings, SettingsError, find_config, load_settings
 
 AVERAGED = " (10 s average)"
@@ -104,9 +105,11 @@ class SituationDefinition(Settings):
                     continue
         return frozenset(used)
 
-    def hash(self, sensors: tuple[str, ...]) -> str:
-        """Return the fingerprint of definition and sensor order; knowledge with another one is refused."""
-        content = {"definition": self.model_dump(mode="json"), "sensors": list(sensors)}
+    def hash(self, sensors: tuple[str, ...], kind: str) -> str:
+        """Return the fingerprint of definition, sensor order and kind of robot; other knowledge is refused."""
+        content: dict[str, object] = {"definition": self.model_dump(mode="json"), "sensors": list(sensors)}
+        if kind != DEFAULT_KIND:  # knowledge of before there were kinds has none in its fingerprint
+            content["kind"] = kind
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 

@@ -8,7 +8,13 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table, refused, require_known_task
+from kurt2rt.experiments.lockstep.batch_mind import (
+    build_drive_settings,
+    feature_table,
+    refused,
+    require_known_robot,
+    require_known_task,
+)
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
@@ -29,6 +35,7 @@ def build_lesson_settings(
         BatchRefusedError: the batch does not know the task or its teacher.
         hal.settings.SettingsError: settings of the task do not fit each other.
     """
+    require_known_robot(settings, task)
     require_known_task(task)
     profile, doubt = task.teaching.profile, task.learning.doubt
     if doubt is not None and doubt.asks:

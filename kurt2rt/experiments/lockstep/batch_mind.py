@@ -26,6 +26,7 @@ from hal.batch import (
     WallDistance,
 )
 from hal.batch_refusal import BatchRefusedError
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.definition import (
@@ -48,6 +49,12 @@ _BORDER_COURSES = ("junctions",)
 _COURSES = ("laps", "way", "rounds", "eights", *_BORDER_COURSES)
 """Courses that never reposition the robot nor want another behaviour, or at borders only."""
 _ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
+
+
+def require_known_robot(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch knows a kind of robot. Raises BatchRefusedError."""
+    if not isinstance(settings, Kurt2Settings):
+        raise refused(task, f"a robot of kind {settings.kind}")
 
 
 def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
@@ -83,6 +90,7 @@ def require_known_exams(settings: RobotSettings, task: TaskSettings) -> None:
 
     Raises hal.settings.SettingsError if settings of the task do not fit each other.
     """
+    require_known_robot(settings, task)
     require_known(task, [ExamSetup(task.teaching.world, 0)])
     if not isinstance(task.policy.build(settings.infrared), TabledPolicy):
         raise refused(task, f"policy {task.policy.kind}")

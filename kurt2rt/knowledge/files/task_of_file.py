@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from hal.plugins import settings_from_elsewhere
-from hal.settings import SettingsError
+from hal.settings import SettingsError, robots_task
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -32,5 +32,8 @@ def task_of_file(path: Path, given: str | None = None) -> str:
         with settings_from_elsewhere():  # the file may be of anyone, and the name in it a module's
             load_task(taught)
     except SettingsError as error:
-        raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=taught, error=error) from error
+        of_robot = robots_task(taught)
+        if of_robot is None:
+            raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=taught, error=error) from error
+        return of_robot
     return taught

@@ -14,7 +14,7 @@ class KnowledgeBinding:
     """The world that knowledge belongs to; in another one its conditions mean nothing."""
 
     feature_hash: str
-    """Fingerprint of situation definition and sensor order, `SituationDefinition.hash`."""
+    """Fingerprint of situation definition, sensor order and kind of robot, `SituationDefinition.hash`."""
     feature_names: tuple[str, ...]
     """One per dimension of a condition."""
     system: str
@@ -42,7 +42,7 @@ def require_compatible(
     here = LevelFeatures(wanted.feature_hash, wanted.feature_names)
     there = LevelFeatures(taught.feature_hash, taught.feature_names)
     if there != here:
-        difference = _difference(there, here, "scales, history or the robot's sensor order differ")
+        difference = _difference(there, here, "the kind of robot, its sensor order, scales or history differ")
         raise KnowledgeError(KnowledgeCode.OTHER_FEATURES, where=path, difference=difference)
     if taught.system != wanted.system:
         raise KnowledgeError(KnowledgeCode.OTHER_TASK, where=path, taught=taught.system, wanted=wanted.system)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
@@ -139,7 +139,8 @@ def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
-    levels = {CRITIC: load_critic(task.critic).level_features}
+    levels = {CRITIC: critic_of(task.critic, settings).level_features}
     if task.mid is not None:
         levels[MID] = load_mid_level(task.mid).level_features
-    return KnowledgeBinding(definition.hash(sensors), definition.names, task.system_name, settings.name, levels)
+    fingerprint = definition.hash(sensors, settings.kind)
+    return KnowledgeBinding(fingerprint, definition.names, task.system_name, settings.name, levels)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
@@ -47,7 +47,7 @@ def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
     definition = load_situation(task.situation, robot.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
-    critic = load_critic(task.critic)
+    critic = critic_of(task.critic, robot)
     radius = critic.learning.radius
     spaces = {
         BASIC: Space(definition.dimensions, task.learning.radius, weights),

@@ -17,7 +17,7 @@ ROBOT_SENSORS = load_robot().infrared.names
 def hash_of(text: str, folder: Path) -> str:
     path = folder / "changed.yaml"
     path.write_text(text)
-    return load_situation(str(path), ROBOT_SENSORS).hash(ROBOT_SENSORS)
+    return load_situation(str(path), ROBOT_SENSORS).hash(ROBOT_SENSORS, "kurt2")
 
 
 @pytest.mark.parametrize(
@@ -45,16 +45,22 @@ def test_definition_hash_ignores_comments_and_notation(tmp_path: Path) -> None:
     assert hash_of(written_otherwise, tmp_path) == hash_of(BASIC, tmp_path)
 
 
-def test_definition_hash_depends_on_both_orders() -> None:
+def test_definition_hash_depends_on_orders_and_kind() -> None:
     small = definition()
     swapped = definition((ALL_KINDS[1], ALL_KINDS[0], *ALL_KINDS[2:]))
-    hashes = {small.hash(SENSORS), small.hash(SENSORS[::-1]), small.hash((*SENSORS, "e")), swapped.hash(SENSORS)}
-    assert len(hashes) == 4
+    hashes = {
+        small.hash(SENSORS, "kurt2"),
+        small.hash(SENSORS[::-1], "kurt2"),
+        small.hash((*SENSORS, "e"), "kurt2"),
+        small.hash(SENSORS, "other"),
+        swapped.hash(SENSORS, "kurt2"),
+    }
+    assert len(hashes) == 5
 
 
 def test_definition_hash_is_constant() -> None:
     """Knowledge files hold it: a change here makes all of them unreadable for their robots."""
-    assert load_situation("basic", ROBOT_SENSORS).hash(ROBOT_SENSORS) == "ee983b9befe83baa"
+    assert load_situation("basic", ROBOT_SENSORS).hash(ROBOT_SENSORS, "kurt2") == "ee983b9befe83baa"
 
 
 def test_definition_names_follow_the_vector() -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from hal.robot_settings import load_robot
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
 from kurt2rt.experiments.paper.jobs import GrowthJob
@@ -91,3 +92,14 @@ def test_choice_of_a_shard_is_that_of_the_study() -> None:
     together = [job for part in parts for wave in part.waves for job in wave]
     assert {job.file for job in together} == {job.file for wave in plan.waves for job in wave}
     assert len(together) == 10 + 3
+
+
+@pytest.mark.parametrize("asked", [AUTO, IN_BATCH])
+def test_robot_of_another_kind_goes_to_its_link(asked: RequestedLoops) -> None:
+    choice = choose_loops(jobs(20), asked, load_robot("school"))
+    assert choice.apply(jobs(20)) == jobs(20)
+
+
+def test_robot_of_another_kind_is_named() -> None:
+    (refusal,) = choose_loops(jobs(3), IN_BATCH, load_robot("school")).refusals
+    assert "because a batch does not know a robot of kind school" in refusal

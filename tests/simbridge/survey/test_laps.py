@@ -324,3 +324,23 @@ def follow(rig: Rig) -> tuple[int, int]:
     turn = 60.0 * (front_m - 0.20) + 120.0 * (front_m - back_m)
     turn = max(-14.0, min(14.0, turn)) if edge_m > 0.22 else -12.0
     return round(30 - turn / 2), round(30 + turn / 2)
+
+
+def test_laps_of_a_third_of_the_robot_in_a_third_of_the_world() -> None:
+    small = WorldSettings.model_validate(
+        {
+            **ROOM.model_dump(),
+            "size_m": tuple(each / 3 for each in ROOM.size_m),
+            "outline": tuple((x_m / 3, y_m / 3) for x_m, y_m in ROOM.outline),
+            "start_poses": tuple(
+                {"x_m": each.x_m / 3, "y_m": each.y_m / 3, "heading_deg": each.heading_deg} for each in ROOM.start_poses
+            ),
+        }
+    )
+    corners: list[Point] = [(0.4, 2.0), (0.4, 3.6), (3.6, 3.6), (3.6, 2.0)]
+    progress, third = WallProgress(World(ROOM)), WallProgress(World(small), 1 / 3)
+    assert third.lap_m == pytest.approx(progress.lap_m / 3)
+    small_corners = [(x_m / 3, y_m / 3) for x_m, y_m in corners]
+    laps, small_laps = counted(progress, *corners), counted(third, *small_corners)
+    assert laps != 0.0
+    assert small_laps == pytest.approx(laps, abs=0.02)

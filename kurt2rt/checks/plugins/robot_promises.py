@@ -1,0 +1,197 @@
+"""Promises of a robot, tried on its driver and its simulation: what keeps it safe holds for every kind."""
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+from hal.guard_reason import GuardReason
+from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
+from hal.robot_kind import NO_WIRE, RobotKind
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError, content_of, settings_of, shipped_names
+from hal.simulation import Pose, Simulation
+from kurt2rt.core.learner.conformance import broken_among
+
+_SEED, _PURPOSE = 1, "plug-in check"
+_WARM_UP_TICKS, _TICKS = 100, 60
+_STANDS_M = 0.002
+_STALE = {GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE}
+_SLOW = 0.4
+"""Fraction of the guard's highest speed at which it is tried."""
+
+
+class _Tick(NamedTuple):
+    readings: SensorReadings
+    result: GuardResult
+
+
+class _Drive:
+    """Drive of a simulated robot, tick by tick, after it stood for a second."""
+
+    def __init__(self, simulation: Simulation, settings: RobotSettings) -> None:
+        self.simulation, self.robot = simulation, simulation.robot
+        self._cycle_s = settings.cycle_s
+        self.now_s = 100.0
+        self.tick(STANDSTILL, _WARM_UP_TICKS)
+
+    def tick(
+        self, wanted: WheelSpeeds, ticks: int = _TICKS, *, steps: bool = True, decided_ago_s: float = 0.0
+    ) -> _Tick:
+        """Drive for some ticks and return the last; without `steps` the robot says nothing more."""
+        for _ in range(ticks):
+            self.now_s += self._cycle_s
+            if steps:
+                self.simulation.step()
+            readings = self.robot.sense(self.now_s)
+            result = self.robot.drive(wanted, self.now_s - decided_ago_s, self.now_s)
+        return _Tick(readings, result)
+
+    def left_alone(self, seconds: float) -> None:
+        """Let the robot go on without a runtime."""
+        for _ in range(round(seconds / self._cycle_s)):
+            self.simulation.step()
+
+    @property
+    def pose(self) -> Pose:
+        return self.simulation.pose
+
+
+def broken_of_robot(kind: RobotKind, where: str) -> list[str]:
+    """Return the promises that a kind of robot breaks, each in a sentence; `where`: its name, for errors.
+
+    Raises hal.settings.SettingsError for settings that cannot be read.
+    """
+    broken: list[str] = []
+    for path in _settings_files(kind, where):
+        settings: RobotSettings = settings_of(content_of(path), kind.settings, path)
+        broken += [f"{path.stem}: {line}" for line in _broken_of(kind, settings, _world_of(kind))]
+    return broken
+
+
+def _settings_files(kind: RobotKind, where: str) -> Sequence[Path]:
+    files = sorted((kind.folder / "robots").glob("*.yaml"))
+    if not files:
+        raise SettingsError(f"has no settings in {kind.folder / 'robots'}", where=where, do="add the YAML of a robot")
+    return files
+
+
+def _world_of(kind: RobotKind) -> str:
+    """Return a world to drive in: the first one of the plug-in, or else a shipped one."""
+    own = [str(each) for each in sorted((kind.folder / "worlds").glob("*.yaml"))]
+    return (own or shipped_names("worlds"))[0]
+
+
+def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str]:
+    factory = kind.simulations(settings, NO_WIRE)
+    fastest_m_s = settings.guard.maximum_speed_m_s
+    slow_m_s = _SLOW * fastest_m_s
+    ahead, to_left = WheelSpeeds(slow_m_s, slow_m_s), WheelSpeeds(-slow_m_s / 2, slow_m_s / 2)
+
+    def tried(promise: Callable[[_Drive], bool]) -> Callable[[], bool]:
+        def keeps() -> bool:
+            with closing(factory.open(world, _SEED, _PURPOSE)) as simulation:
+                return promise(_Drive(simulation, settings))
+
+        return keeps
+
+    def is_near(before: Pose, after: Pose) -> bool:
+        return math.dist(before, after) < _STANDS_M
+
+    def stands(drive: _Drive) -> bool:
+        before = drive.pose
+        drive.left_alone(0.3)
+        return is_near(before, drive.pose)
+
+    def stands_if_told_to(drive: _Drive) -> bool:
+        before = drive.pose
+        drive.tick(STANDSTILL)
+        return is_near(before, drive.pose)
+
+    def reads(drive: _Drive) -> bool:
+        counts = drive.tick(to_left).readings.infrared_counts
+        return len(counts) == len(settings.infrared.sensors) and all(0 <= each <= HIGHEST_COUNTS for each in counts)
+
+    def goes_ahead(drive: _Drive) -> bool:
+        start, turned = drive.pose, 0
+        for _ in range(_TICKS):
+            readings = drive.tick(ahead, 1).readings
+            turned += readings.encoder_left_ticks + readings.encoder_right_ticks
+        drive.tick(STANDSTILL)
+        way_m = math.dist(start[:2], drive.pose[:2])
+        counted_m = turned / 2 * settings.geometry.metres_per_tick
+        return way_m > _STANDS_M and 0.5 < counted_m / way_m < 1.5
+
+    def turns_left(drive: _Drive) -> bool:
+        start = drive.pose.heading_rad
+        drive.tick(to_left)
+        return drive.pose.heading_rad > start
+
+    def stays_within_limits(drive: _Drive) -> bool:
+        applied = [drive.tick(WheelSpeeds(-10.0, 10.0), 1).result.wheel_speeds for _ in range(_TICKS)]
+        most_m_s = settings.guard.acceleration_m_s2 * 2 * settings.cycle_s
+        steps = [abs(after.right_m_s - before.right_m_s) for before, after in pairwise(applied)]
+        return max(max(map(abs, each)) for each in applied) <= fastest_m_s and max(steps) <= most_m_s + 0.011
+
+    def takes_no_old_command(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        return drive.tick(to_left, 1, decided_ago_s=1.0).result.wheel_speeds == STANDSTILL
+
+    def takes_no_nan(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        return drive.tick(WheelSpeeds(math.nan, slow_m_s), 1).result.wheel_speeds == STANDSTILL
+
+    def notices_silence(drive: _Drive) -> bool:
+        limits = settings.guard
+        longest_s = max(limits.stale_infrared_s, limits.stale_encoder_s) + settings.infrared.period_s
+        drive.tick(to_left)
+        result = drive.tick(to_left, 2 + round(longest_s / settings.cycle_s), steps=False).result
+        return result.wheel_speeds == STANDSTILL and (result.latched or bool(_STALE.intersection(result.reasons)))
+
+    def stays_stopped(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        drive.robot.emergency_stop(GuardReason.OTHER)
+        result = drive.tick(to_left).result
+        stopped = result.latched and result.wheel_speeds == STANDSTILL and stands(drive)
+        drive.tick(STANDSTILL)
+        drive.robot.release()
+        return stopped and drive.tick(to_left).result.wheel_speeds != STANDSTILL
+
+    def brakes_by_itself(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        drive.left_alone(settings.motors.controller_watchdog_s + 1.0)
+        return stands(drive)
+
+    def brakes_when_closed(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        drive.robot.close()
+        drive.robot.close()
+        drive.left_alone(settings.motors.controller_watchdog_s + 1.0)
+        return stands(drive)
+
+    def drives_the_same_again() -> bool:
+        drives: list[object] = []
+        for _ in range(2):
+            with closing(factory.open(world, _SEED, _PURPOSE)) as simulation:
+                drive = _Drive(simulation, settings)
+                drives.append((drive.tick(to_left), drive.pose))
+        return drives[0] == drives[1]
+
+    return broken_among(
+        (
+            ("it senses with each sensor of its table, in counts", tried(reads)),
+            ("it stands unless it is told to drive", tried(stands_if_told_to)),
+            ("equal set points drive it ahead, and its encoders count the way", tried(goes_ahead)),
+            ("a quicker right side turns it to the left", tried(turns_left)),
+            ("no set point passes the guard's limits", tried(stays_within_limits)),
+            ("it stands for a set point that is not a number", tried(takes_no_nan)),
+            ("it stands for a command that is too old", tried(takes_no_old_command)),
+            ("it stands when its senses are silent", tried(notices_silence)),
+            ("a stop lasts until it is released", tried(stays_stopped)),
+            ("it brakes by itself when no command comes", tried(brakes_by_itself)),
+            ("it stands after it was closed, which may be twice", tried(brakes_when_closed)),
+            ("equal seeds give equal drives", drives_the_same_again),
+        )
+    )

@@ -1,0 +1,57 @@
+"""The school robot as a kind of robot (hal.robot_kind.RobotKind)."""
+
+from pathlib import Path
+from secrets import randbelow
+
+from hal.guarded_robot import GuardedRobot
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import SimulationFactory
+from hal.tap import Tap
+
+
+class SchoolKind:
+    """School robot on a serial port, or simulated on a line in memory."""
+
+    settings: type[RobotSettings] = RobotSettings
+    folder: Path = Path(__file__).parent / "data"
+
+    def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
+        """Return the driver of the robot on the serial port `address`, after it has greeted.
+
+        Raises hal.bus.BusError for a port that cannot be opened and for another device, hal.settings.SettingsError for
+        a tap, which sees CAN frames.
+        """
+        from hal.linked_robot import LinkedRobot
+        from hal.serial_port import SerialPort
+        from kurt2rt.robots.school.lines import BIT_RATE_BIT_S, NUMBERS
+        from kurt2rt.robots.school.link import SchoolLink
+
+        if tap is not None:
+            raise SettingsError("has no CAN frames to be seen", where=f"robot {settings.name}", do="leave it out")
+        link = SchoolLink(SerialPort(address, BIT_RATE_BIT_S), len(settings.infrared.sensors), randbelow(NUMBERS))
+        try:
+            link.greet()
+        except BaseException:
+            link.close()
+            raise
+        return LinkedRobot(settings, link)
+
+    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
+        """Return what opens simulations. They raise hal.settings.SettingsError for any wire."""
+        from kurt2rt.robots.school.simulated import MemoryLine
+        from simbridge.link_simulation import LinkSimulationFactory
+
+        return LinkSimulationFactory(settings, wire, open_link=MemoryLine)
+
+    def serve(self, settings: RobotSettings, address: str) -> object:
+        """Return a simulated robot's end of a pseudo-terminal at the path `address`. Raises hal.bus.BusError."""
+        from kurt2rt.robots.school.simulated import SchoolElectronics
+        from simbridge.pty_port import PtyPort
+        from simbridge.robot_end import LinkRobotEnd
+
+        port = PtyPort(address)
+        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port))
+
+
+SCHOOL = SchoolKind()

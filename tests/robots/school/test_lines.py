@@ -1,0 +1,69 @@
+"""Lines of the school robot: what one end writes the other one reads, and damage is only counted."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.byte_port import MemoryPort
+from kurt2rt.robots.school.lines import COUNTERS, NUMBERS, Lines, Message, difference, encode
+
+NUMBER = st.integers(-9_999_999_999, 9_999_999_999)
+
+
+def test_encode_is_the_line_of_the_documentation() -> None:
+    assert encode("drive", 17, 80, -80) == b"drive 17 80 -80*D5CC\n"
+
+
+@given(st.from_regex(r"[a-z]{1,8}", fullmatch=True), st.lists(NUMBER, min_size=1, max_size=12), st.integers(1, 20))
+def test_lines_in_any_pieces_are_read_as_written(word: str, numbers: list[int], piece: int) -> None:
+    port, far_end = MemoryPort.pair()
+    lines, line = Lines(port), encode(word, *numbers)
+    got = []
+    for begin in range(0, len(line), piece):
+        far_end.write(line[begin : begin + piece])
+        got += lines.read()
+    assert got == [Message(word, tuple(numbers))]
+    assert lines.junk == 0
+
+
+@given(st.data())
+def test_line_with_one_damaged_byte_is_junk(data: st.DataObject) -> None:
+    line = bytearray(encode("sense", 3, 20, 1, -1, -1, 0, 0, 812, 40, 0, 0, 0))
+    place = data.draw(st.integers(0, len(line) - 2))
+    line[place] = data.draw(st.integers(0, 255).filter(lambda byte: byte not in (line[place], ord("\n"))))
+    port, far_end = MemoryPort.pair()
+    lines = Lines(port)
+    far_end.write(bytes(line))
+    assert lines.read() == []
+    assert lines.junk == 1
+
+
+def test_lines_after_noise_are_read_again() -> None:
+    port, far_end = MemoryPort.pair()
+    lines = Lines(port)
+    far_end.write(bytes(range(256)) * 4)
+    lines.read()
+    far_end.write(b"\n" + encode("brake", 1))
+    assert lines.read() == [Message("brake", (1,))]
+    assert lines.junk > 0
+
+
+def test_lines_without_an_end_are_dropped() -> None:
+    port, far_end = MemoryPort.pair()
+    lines = Lines(port)
+    for _ in range(1000):
+        far_end.write(b"x" * 100)
+        assert lines.read() == []
+    assert lines.junk > 0
+    assert len(lines._rest) <= 160
+
+
+def test_lines_are_numbered_and_begin_again() -> None:
+    port, far_end = MemoryPort.pair()
+    lines = Lines(port, NUMBERS - 1)
+    assert [lines.write("brake"), lines.write("brake")] == [NUMBERS - 1, 0]
+    assert far_end.read() == encode("brake", NUMBERS - 1) + encode("brake", 0)
+
+
+@given(st.integers(0, COUNTERS - 1), st.integers(-(1 << 31), (1 << 31) - 1))
+def test_difference_of_counters_that_began_again(before: int, change: int) -> None:
+    assert difference((before + change) % COUNTERS, before) == change

@@ -1,0 +1,217 @@
+"""The school robot's link in simulated time: greeting, ages, restarts, foreign commands, the robot's own watchdog."""
+
+import math
+
+import pytest
+
+from hal.bus import BusError
+from hal.byte_port import MemoryPort
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot_link import ForeignCommandReport, RangeReport, WheelReport
+from kurt2rt.robots.school.lines import encode
+from kurt2rt.robots.school.link import SchoolLink
+from tests.robots.school.rig import FORWARD, SETTINGS, MemoryRig
+
+READINGS = (812, 40, 0, 0, 0, 0, 0)
+
+
+class FarEnd:
+    """The robot's end of a line, written by hand."""
+
+    def __init__(self, *, greets: bool = True) -> None:
+        port, self.port = MemoryPort.pair()
+        self.link = SchoolLink(port, len(READINGS), first_number=10)
+        self.number = -1
+        if greets:
+            self.link.receive(0.0)
+            self.port.read()
+            self.write("school", 1, len(READINGS))
+            self.link.receive(0.0)
+
+    def write(self, word: str, *numbers: int) -> None:
+        self.number += 1
+        self.port.write(encode(word, self.number, *numbers))
+
+    def sense(self, time_ms: int, left: int = 0, right: int = 0, command: int = -1) -> None:
+        self.write("sense", time_ms, left, right, command, *READINGS)
+
+
+def test_link_greets_and_is_silent_until_it_is_greeted() -> None:
+    far = FarEnd(greets=False)
+    far.link.send(FORWARD)
+    far.link.brake()
+    far.sense(20)
+    assert far.link.receive(0.0) == []
+    assert far.port.read() == encode("school", 10, 1)
+    assert (far.link.receive(0.4), far.port.read()) == ([], b"")
+    far.link.receive(0.5)
+    assert far.port.read() == encode("school", 11, 1)
+
+
+@pytest.mark.parametrize("greeting", [(2, 7), (1, 5), (1,)])
+def test_link_another_version_or_robot_is_refused(greeting: tuple[int, ...]) -> None:
+    far = FarEnd(greets=False)
+    far.write("school", *greeting)
+    with pytest.raises(BusError, match=r"greets with version and sensors .*allowed is \(1, 7\); load a robot file"):
+        far.link.receive(0.0)
+    assert not far.link.greeted
+
+
+def test_link_reports_readings_and_the_ticks_between_two_lines() -> None:
+    far = FarEnd()
+    far.sense(20, 100, -100)
+    far.sense(40, 116, -92)
+    reports = far.link.receive(5.0)
+    assert [each for each in reports if isinstance(each, RangeReport)][-1] == RangeReport(5.0, 0, READINGS)
+    assert [each[1:] for each in reports if isinstance(each, WheelReport)] == [(0, 0, 0.0), (16, 8, 0.02)]
+
+
+def test_link_lost_line_takes_its_ticks_along() -> None:
+    far = FarEnd()
+    far.sense(20, 100, 100)
+    far.link.receive(5.0)
+    far.number += 1
+    far.sense(60, 132, 132)
+    (_, wheels) = far.link.receive(5.04)
+    assert wheels[1:] == (32, 32, 0.04)
+
+
+def test_link_lines_of_a_stall_are_as_old_as_they_are() -> None:
+    far = FarEnd()
+    for time_ms in range(20, 1020, 20):
+        far.sense(time_ms)
+        far.link.receive(time_ms / 1000)
+    for time_ms in range(1020, 3020, 20):
+        far.sense(time_ms)
+    ages_s = [3.0 - each.at_s for each in far.link.receive(3.0) if isinstance(each, RangeReport)]
+    assert ages_s[0] == pytest.approx(1.98, abs=0.02)
+    assert ages_s[-1] == pytest.approx(0.0, abs=0.02)
+
+
+@pytest.mark.parametrize("rate", [0.995, 1.005])
+def test_link_clock_that_goes_wrong_makes_no_line_old(rate: float) -> None:
+    far = FarEnd()
+    for second in range(1, 2000):
+        far.sense(round(1000 * rate * second))
+        (ranges, _) = far.link.receive(float(second))
+        assert second - 0.02 < ranges.at_s <= second
+
+
+def test_link_repeated_line_is_junk() -> None:
+    far = FarEnd()
+    far.sense(20)
+    far.sense(20)
+    far.sense(10)
+    assert len(far.link.receive(1.0)) == 2
+    assert far.link.junk == 2
+
+
+def test_link_robot_that_was_switched_off_and_on_begins_again() -> None:
+    far = FarEnd()
+    far.sense(50_000, 1000, 1000)
+    far.link.receive(50.0)
+    far.number = -1
+    far.sense(20, 5, 5)
+    reports = far.link.receive(52.0)
+    assert reports == [RangeReport(52.0, 0, READINGS), WheelReport(52.0, 0, 0, 0.0)]
+
+
+@pytest.mark.parametrize("numbers", [(20, 0, 0, -1), (20, 0, 0, -1, *READINGS, 1), (20, 0, 0, -1, 1024, *READINGS[1:])])
+def test_link_impossible_line_is_junk(numbers: tuple[int, ...]) -> None:
+    far = FarEnd()
+    far.write("sense", *numbers)
+    assert far.link.receive(1.0) == []
+    assert far.link.junk == 1
+
+
+def test_link_command_of_another_program_is_reported() -> None:
+    far = FarEnd()
+    far.link.send(FORWARD)
+    far.sense(20, command=11)
+    far.sense(40, command=-1)
+    assert not [each for each in far.link.receive(1.0) if isinstance(each, ForeignCommandReport)]
+    far.sense(60, command=40_000)
+    assert [each for each in far.link.receive(1.0) if isinstance(each, ForeignCommandReport)]
+
+
+@pytest.mark.parametrize("speed_m_s", [0.08, 0.0804, 0.0799999, -0.0804, 0.057, 1e-9, -0.0, 0.1499])
+def test_applied_speed_is_whole_and_never_faster(speed_m_s: float) -> None:
+    (left_m_s, right_m_s) = FarEnd().link.applied(WheelSpeeds(speed_m_s, -speed_m_s))
+    assert left_m_s == -right_m_s
+    assert abs(left_m_s) <= abs(speed_m_s)
+    assert abs(left_m_s) > abs(speed_m_s) - 0.001
+    assert math.isclose(left_m_s * 1000, round(left_m_s * 1000))
+
+
+def test_robot_drives_and_stands_as_told() -> None:
+    rig = MemoryRig()
+    assert not rig.run(1.0).latched
+    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
+    assert rig.robot.health.junk == 0
+    rig.run(0.5, STANDSTILL)
+    assert rig.simulated.wheel_speeds == pytest.approx(STANDSTILL, abs=0.001)
+
+
+def test_robot_without_commands_brakes_by_itself() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    for _ in range(19):
+        rig.simulated.step()
+    assert not rig.simulated.controller.watchdog_expired
+    for _ in range(15):
+        rig.simulated.step()
+    assert rig.simulated.wheel_speeds == STANDSTILL
+
+
+def test_robot_lost_line_latches_and_is_opened_again() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.line.port.lost = True
+    result = rig.tick()
+    assert (result.latched, result.reasons) == (True, (GuardReason.BUS_LOST,))
+    rig.run(0.5)
+    assert rig.simulated.wheel_speeds == STANDSTILL
+    rig.robot.release()
+    assert rig.tick().latched
+    rig.line.port.lost = False
+    rig.run(1.5)
+    rig.robot.release()
+    assert not rig.run(0.5).latched
+    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
+
+
+def test_robot_silent_line_makes_its_senses_stale() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    for _ in range(round(SETTINGS.guard.stale_infrared_s / SETTINGS.cycle_s) + 2):
+        rig.now_s += SETTINGS.cycle_s
+        rig.robot.sense(rig.now_s)
+        result = rig.robot.drive(FORWARD, rig.now_s, rig.now_s)
+    assert result.reasons == (GuardReason.INFRARED_STALE,)
+
+
+def test_robot_line_with_noise_counts_junk_and_drives_on() -> None:
+    rig = MemoryRig()
+    rig.run(0.5)
+    for _ in range(100):
+        rig.line._robot_port.write(b"\xff*sense 1 2 3\n")
+        assert not rig.tick().latched
+    assert rig.robot.health.junk == 100
+    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
+
+
+def test_robot_power_cycle_stops_it_and_the_run_goes_on() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.simulated.controller.power_cycle()
+    assert not rig.run(1.0).latched
+    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
+
+
+def test_robot_too_fast_command_is_not_obeyed() -> None:
+    rig = MemoryRig()
+    rig.run(0.5)
+    rig.line.port.write(encode("drive", 1, 2000, 2000))
+    rig.simulated.step()
+    assert rig.simulated.controller.commands.left_m_s == pytest.approx(0.08)

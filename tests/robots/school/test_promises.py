@@ -1,0 +1,61 @@
+"""The promises of every robot (kurt2rt.checks.plugins.robot_promises) hold in memory and on a pseudo-terminal."""
+
+import time
+from collections.abc import Callable
+
+import pytest
+
+from hal.robot_link import RobotLink
+from hal.robot_settings import RobotSettings
+from hal.serial_port import SerialPort
+from hal.simulation import SimulationFactory
+from kurt2rt.checks.plugins.robot_promises import broken_of_robot
+from kurt2rt.robots.school.kind import SCHOOL, SchoolKind
+from kurt2rt.robots.school.lines import BIT_RATE_BIT_S
+from kurt2rt.robots.school.link import SchoolLink
+from kurt2rt.robots.school.simulated import SchoolElectronics
+from simbridge.link_simulation import LinkSimulationFactory
+from simbridge.pty_port import PtyPort
+from simbridge.robot.body import Body
+from simbridge.robot.wheels import Wheels
+from simbridge.simulated_link import InstantLink
+
+DELIVERY_S = 0.001
+"""Pause in which the kernel's own thread delivers the bytes of a cycle."""
+
+
+class PtyLine(InstantLink):
+    """Serial port and pseudo-terminal in simulated time (simbridge.link_simulation.PairedLink)."""
+
+    def __init__(self, settings: RobotSettings) -> None:
+        self._settings = settings
+        self._robot_port = PtyPort()
+        port = SerialPort(self._robot_port.device, BIT_RATE_BIT_S)
+        self.runtime_end: RobotLink = SchoolLink(port, len(settings.infrared.sensors))
+
+    def make_controller(self, body: Body, wheels: Wheels) -> SchoolElectronics:  # noqa: ARG002
+        return SchoolElectronics(self._settings, self._robot_port)
+
+    def cycle(self, step_robot: Callable[[], None]) -> None:
+        time.sleep(DELIVERY_S)
+        step_robot()
+        time.sleep(DELIVERY_S)
+
+    def close(self) -> None:
+        self._robot_port.close()
+
+
+class SchoolOnPty(SchoolKind):
+    """School robot whose simulations use a pseudo-terminal."""
+
+    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
+        return LinkSimulationFactory(settings, wire, open_link=PtyLine)
+
+
+def test_school_robot_in_memory_keeps_all_promises() -> None:
+    assert broken_of_robot(SCHOOL, "school") == []
+
+
+@pytest.mark.deep
+def test_school_robot_on_pty_keeps_all_promises() -> None:
+    assert broken_of_robot(SchoolOnPty(), "school") == []
