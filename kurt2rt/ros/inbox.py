@@ -1,8 +1,9 @@
 """Queue of one topic's messages, from zenoh's thread to the thread of the tick."""
 
+import time
 from collections import deque
-from collections.abc import Iterator
-from typing import Generic, NamedTuple, Protocol
+from collections.abc import Callable, Iterator
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from kurt2rt.ros.message_age import StampedAge
 from kurt2rt.ros.messages import InvalidMessageError, MessageT, Time, decode, to_seconds
@@ -10,6 +11,7 @@ from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import Topic
 
 _MOST_WAITING = 64
+ResultT = TypeVar("ResultT")
 
 
 class Clock(Protocol):
@@ -24,11 +26,11 @@ class Clock(Protocol):
         ...
 
 
-class Arrived(NamedTuple, Generic[MessageT]):
-    """Message with its age."""
+class MachineClock:
+    """The clocks of this machine themselves."""
 
-    message: MessageT
-    age_s: float
+    now_s = staticmethod(time.monotonic)
+    wall_s = staticmethod(time.time)
 
 
 class _Waiting(NamedTuple):
@@ -48,20 +50,23 @@ class Inbox(Generic[MessageT]):
         """Messages so far that could not be read."""
         port.subscribe(topic, self._keep)
 
-    def take(self) -> Iterator[Arrived[MessageT]]:
-        """Yield the messages that wait, oldest first, with their ages in s."""
+    def take(self, read: Callable[[MessageT, float], ResultT]) -> Iterator[ResultT]:
+        """Yield what `read` makes of each message that waits, oldest first, and of its age in s.
+
+        A message for which it raises kurt2rt.ros.messages.InvalidMessageError is junk as well.
+        """
         for _ in range(len(self._waiting)):
             payload, arrived_s, wall_s = self._waiting.popleft()
             try:
                 message = decode(payload, self._kind)
+                stamp = getattr(getattr(message, "header", None), "stamp", None)
+                stamped_s = to_seconds(stamp) if isinstance(stamp, Time) else 0.0
+                age_s = self._clock.now_s() - arrived_s + self._age.on_arrival(stamped_s, wall_s)
+                result = read(message, age_s)
             except InvalidMessageError:
                 self.junk += 1
-                continue
-            header = getattr(message, "header", None)
-            stamp = getattr(header, "stamp", None)
-            stamped_s = to_seconds(stamp) if isinstance(stamp, Time) else 0.0
-            since_s = self._clock.now_s() - arrived_s
-            yield Arrived(message, since_s + self._age.on_arrival(stamped_s, wall_s))
+            else:
+                yield result
 
     def _keep(self, payload: bytes) -> None:
         # A deque drops the oldest by itself, and is safe between two threads.

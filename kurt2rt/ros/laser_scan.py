@@ -4,9 +4,11 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from kurt2rt.ros.messages import InvalidMessageError, LaserScan
+from kurt2rt.ros.messages import Header, InvalidMessageError, LaserScan, to_time
 
+Ranges = NDArray[np.float32]
 _MOST_RANGES = 100_000
 
 
@@ -64,3 +66,26 @@ class SectorReduction:
         above = np.searchsorted(self._borders_deg, rays_deg, side="right")
         self._sector_of_ray = self._order[above % len(self._order)]
         self._layout = layout
+
+
+def full_turn_scan(ranges_m: Ranges, limits_m: tuple[float, float], period_s: float, stamp_s: float) -> LaserScan:
+    """Return the message of a scanner that turns once in `period_s`, in s, counter-clockwise from ahead.
+
+    Args:
+        ranges_m: ranges at equal angles, shape (rays,).
+        limits_m: least and greatest range that it measures.
+        stamp_s: time of the scan.
+    """
+    step_rad = math.tau / len(ranges_m)
+    return LaserScan(
+        header=Header(to_time(stamp_s), "base_scan"),
+        angle_min=0.0,
+        angle_max=step_rad * (len(ranges_m) - 1),
+        angle_increment=step_rad,
+        time_increment=0.0,
+        scan_time=period_s,
+        range_min=limits_m[0],
+        range_max=limits_m[1],
+        ranges=ranges_m,
+        intensities=np.zeros(0, dtype=np.float32),
+    )

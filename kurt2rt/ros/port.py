@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from typing import Protocol
 
+from hal.bus import BusError
 from kurt2rt.ros.messages import Message, encode
 from kurt2rt.ros.settings import RosSettings
 from kurt2rt.ros.topic import Topic, key_expression
@@ -12,7 +13,7 @@ OnPayload = Callable[[bytes], None]
 """Receiver of a message's CDR bytes. zenoh calls it in a thread of its own: keep them and return, raise nothing."""
 
 
-class RosConnectionError(Exception):
+class RosConnectionError(BusError):
     """Connection to the topics that is closed, or that cannot be made."""
 
 

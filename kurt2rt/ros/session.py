@@ -13,6 +13,8 @@ from kurt2rt.ros.port import OnPayload, RosConnectionError
 from kurt2rt.ros.settings import Naming, RosSettings
 from kurt2rt.ros.topic import Topic, key_expression, liveliness_key, node_liveliness_key
 
+REMEDY = "check the address, the network, and the bridge, router or robot behind it"
+
 
 class ZenohSession:
     """One zenoh session. Callbacks run in zenoh's threads; all methods may be called from any thread."""
@@ -37,7 +39,7 @@ class ZenohSession:
             self._session = zenoh.open(_config(connect, listen))
             self._listener = self._session.info.declare_transport_events_listener(self._on_transport, history=True)
         except zenoh.ZError as error:
-            raise RosConnectionError(f"{self._name}: {_first_line(error)}") from error
+            raise self._failed(error) from error
         self._session_id = str(self._session.zid())
         self._declared: list[object] = [self._listener]
         """Declarations end when their objects are deleted."""
@@ -120,7 +122,9 @@ class ZenohSession:
                     return decode_trigger_response(reply.ok.payload.to_bytes())
         except zenoh.ZError as error:
             raise self._failed(error) from error
-        raise RosConnectionError(f"{self._name}: service {service.name} gave no answer within {timeout_s:g} s")
+        raise RosConnectionError(
+            f"service {service.name} gave no answer within {timeout_s:g} s", where=self._name, do=REMEDY
+        )
 
     def close(self) -> None:
         """Close the session; may be called twice."""
@@ -150,7 +154,7 @@ class ZenohSession:
                 self._transports = self._transports - {peer}
 
     def _failed(self, error: zenoh.ZError) -> RosConnectionError:
-        return RosConnectionError(f"{self._name}: {_first_line(error)}")
+        return RosConnectionError(_first_line(error), where=self._name, do=REMEDY)
 
 
 class ZenohPublisher:
@@ -169,7 +173,7 @@ class ZenohPublisher:
         try:
             self._publisher.put(payload, attachment=self._attachments.next() if self._attachments else None)
         except zenoh.ZError as error:
-            raise RosConnectionError(_first_line(error)) from error
+            raise RosConnectionError(_first_line(error), do=REMEDY) from error
 
 
 class TriggerRequest:
@@ -186,7 +190,7 @@ class TriggerRequest:
             with self._query:  # the client waits until the query is dropped
                 self._query.reply(self._key, encode_trigger_response(success, text), attachment=attachment)
         except zenoh.ZError as error:
-            raise RosConnectionError(_first_line(error)) from error
+            raise RosConnectionError(_first_line(error), do=REMEDY) from error
 
 
 def _config(connect: Sequence[str], listen: Sequence[str]) -> zenoh.Config:

@@ -2,14 +2,29 @@
 
 import re
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import AfterValidator, Field
 
 from hal.settings import Settings
 
 _NAME = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)(/[A-Za-z_][A-Za-z0-9_]*)*")
 """Names of topics and services (design.ros2.org, "Topic and Service name mapping to DDS")."""
+
+
+def is_ros_name(name: str) -> bool:
+    """Return whether a text is a name of a topic, service or namespace."""
+    return _NAME.fullmatch(name) is not None
+
+
+def _require_name(name: str) -> str:
+    if not is_ros_name(name):
+        raise ValueError(f"{name!r} is not a name of ROS (letters, digits and _, joined by /)")
+    return name
+
+
+RosName = Annotated[str, AfterValidator(_require_name)]
+"""Name of a topic, service, node or namespace."""
 
 
 class Naming(StrEnum):
@@ -29,19 +44,7 @@ class RosSettings(Settings):
     naming: Naming = Field(default=Naming.BRIDGE, strict=False)
     domain: Annotated[int, Field(ge=0, le=232)] = 0
     """ROS_DOMAIN_ID; rmw_zenoh has it in each key."""
-    namespace: str = ""
+    namespace: RosName | Literal[""] = ""
     """Namespace before each relative name, such as "robot1"."""
-    node: str = "kurt2rt"
+    node: RosName = "kurt2rt"
     """Name of this program's node in `ros2 node list` (rmw_zenoh alone)."""
-
-    @field_validator("namespace", "node")
-    @classmethod
-    def _is_a_name(cls, name: str) -> str:
-        if name and not is_ros_name(name):
-            raise ValueError(f"{name!r} is not a name of ROS (letters, digits and _, joined by /)")
-        return name
-
-
-def is_ros_name(name: str) -> bool:
-    """Return whether a text is a name of a topic, service or namespace."""
-    return _NAME.fullmatch(name) is not None

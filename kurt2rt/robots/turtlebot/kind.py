@@ -21,19 +21,14 @@ class TurtlebotKind:
 
         Raises hal.bus.BusError if nothing answers there, hal.settings.SettingsError for a tap, which sees CAN frames.
         """
-        from hal.bus import BusError
         from hal.linked_robot import LinkedRobot
         from kurt2rt.robots.turtlebot.link import TurtlebotLink
-        from kurt2rt.ros.port import RosConnectionError
         from kurt2rt.ros.session import ZenohSession
 
         checked = require_turtlebot(settings)
         if tap is not None:
             raise SettingsError("has no CAN frames to be seen", where=f"robot {settings.name}", do="leave it out")
-        try:
-            session = ZenohSession(checked.ros, connect=[address])
-        except RosConnectionError as error:
-            raise BusError(str(error), do=TurtlebotLink.remedy) from error
+        session = ZenohSession(checked.ros, connect=[address])
         return LinkedRobot(checked, TurtlebotLink(checked, session, session.name))
 
     def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
@@ -45,28 +40,19 @@ class TurtlebotKind:
         return LinkSimulationFactory(settings, wire, open_link=LocalLink, make_sensors=lidar_of)
 
     def serve(self, settings: RobotSettings, address: str) -> object:
-        """Return the end of a simulated base that listens at a locator, such as tcp/127.0.0.1:7447, for other programs.
+        """Return a simulated robot's end of topics at the locator `address`, such as tcp/127.0.0.1:7447.
 
         Raises hal.bus.BusError if nothing can listen there.
         """
-        from hal.bus import BusError
         from kurt2rt.robots.turtlebot.lidar import lidar_of
-        from kurt2rt.robots.turtlebot.link import MachineClock
         from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
-        from kurt2rt.ros.port import RosConnectionError
+        from kurt2rt.ros.inbox import MachineClock
         from kurt2rt.ros.session import ZenohSession
         from simbridge.robot_end import LinkRobotEnd
 
-        checked = require_turtlebot(settings)
-        try:
-            session = ZenohSession(checked.ros, listen=[address])
-        except RosConnectionError as error:
-            raise BusError(str(error), do="give another locator, such as tcp/127.0.0.1:7447") from error
-
-        def electronics(*_: object) -> TurtlebotElectronics:
-            return TurtlebotElectronics(checked, session, MachineClock())
-
-        return LinkRobotEnd(checked, session, electronics, lidar_of)
+        checked, clock = require_turtlebot(settings), MachineClock()
+        session = ZenohSession(checked.ros, listen=[address])
+        return LinkRobotEnd(checked, session, lambda *_: TurtlebotElectronics(checked, session, clock), lidar_of)
 
 
 TURTLEBOT = TurtlebotKind()

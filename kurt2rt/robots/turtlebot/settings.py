@@ -2,35 +2,23 @@
 
 from typing import Annotated
 
-from pydantic import Field, field_validator
+from pydantic import Field
 
 from hal.robot_settings import RobotSettings, Seconds
 from hal.settings import Settings, SettingsError
-from kurt2rt.ros.settings import RosSettings, is_ros_name
+from kurt2rt.ros.settings import RosName, RosSettings
+from kurt2rt.ros.twist_settings import TwistSettings
 
 
 class TopicSettings(RosSettings):
     """Topics of the base."""
 
-    scan: str
-    odom: str
-    cmd_vel: str
-    diagnostics: str
-    stamped_cmd_vel: bool
-    """True for geometry_msgs/TwistStamped, as turtlebot3_bringup of Jazzy sets it; False for Twist."""
+    scan: RosName
+    odom: RosName
+    cmd_vel: RosName
+    diagnostics: RosName
     stops_on_errors_of: tuple[str, ...]
     """Beginnings of the names in /diagnostics whose level ERROR stops the robot."""
-    linear_step_m_s: Annotated[float, Field(gt=0, le=0.1)]
-    """Steps to which the base cuts speeds off."""
-    angular_step_rad_s: Annotated[float, Field(gt=0, le=0.1)]
-    maximum_turn_rad_s: Annotated[float, Field(gt=0, le=10)]
-
-    @field_validator("scan", "odom", "cmd_vel", "diagnostics")
-    @classmethod
-    def _is_a_topic(cls, name: str) -> str:
-        if not is_ros_name(name):
-            raise ValueError(f"{name!r} is not a name of ROS (letters, digits and _, joined by /)")
-        return name
 
 
 class LidarSettings(Settings):
@@ -50,6 +38,7 @@ class TurtlebotSettings(RobotSettings):
     """Settings of the base."""
 
     ros: TopicSettings
+    twist: TwistSettings
     lidar: LidarSettings
     odometry_period_s: Seconds
     """Period of the simulated base's /odom."""

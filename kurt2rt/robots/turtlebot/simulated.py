@@ -1,55 +1,38 @@
 """Simulated base: its electronics at the other end of the topics, in memory or over zenoh."""
 
-import math
 from collections.abc import Sequence
 
-import numpy as np
-
+from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
-from kurt2rt.robots.turtlebot.lidar import ScanReadings, scan_message
+from kurt2rt.robots.turtlebot.lidar import ScanReadings
 from kurt2rt.robots.turtlebot.link import TurtlebotLink
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings, require_turtlebot
 from kurt2rt.ros.inbox import Clock, Inbox
-from kurt2rt.ros.messages import (
-    Header,
-    LaserScan,
-    Message,
-    Odometry,
-    Point,
-    Pose,
-    PoseWithCovariance,
-    Quaternion,
-    Twist,
-    TwistStamped,
-    TwistWithCovariance,
-    Vector3,
-    to_time,
-)
+from kurt2rt.ros.laser_scan import full_turn_scan
+from kurt2rt.ros.messages import LaserScan, Odometry
+from kurt2rt.ros.odometry import odometry_message
 from kurt2rt.ros.port import LocalTopics, RosPort
 from kurt2rt.ros.topic import topic_of
+from kurt2rt.ros.twist import PlaneTwist, Twists
 from simbridge.controller.controller import MOTORS_BRAKED, MotorCommands
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_link import InstantLink
 
-_ORIGIN = Vector3(0.0, 0.0, 0.0)
-_NO_COVARIANCE = np.zeros(36)
-
 
 class SimulatedClock:
-    """Clock that the electronics advance (kurt2rt.ros.inbox.Clock); a robot in memory stamps by it too."""
+    """Clock that the electronics advances (kurt2rt.ros.inbox.Clock); a robot in memory stamps by it too."""
 
     def __init__(self) -> None:
-        self.time_s = 0.0
+        self.time_s = 1.0
+        """Simulated time; a stamp of 0 would mean none."""
 
     def now_s(self) -> float:
         """Return the simulated time in s."""
         return self.time_s
 
-    def wall_s(self) -> float:
-        """Return the time of stamps in s; 0 would mean none."""
-        return 1.0 + self.time_s
+    wall_s = now_s
 
 
 class TurtlebotElectronics:
@@ -63,8 +46,9 @@ class TurtlebotElectronics:
     def __init__(self, settings: TurtlebotSettings, port: RosPort, clock: Clock) -> None:
         """Use `port`, and stamp by `clock`. Raises kurt2rt.ros.port.RosConnectionError."""
         topics, self._settings, self._clock = settings.ros, settings, clock
-        twist: type[Message] = TwistStamped if topics.stamped_cmd_vel else Twist
-        self._inbox: Inbox[Message] = Inbox(port, topic_of(topics.cmd_vel, twist), twist, clock)
+        self._twists, self._odometry = Twists(settings.twist, settings), WheelOdometry(settings.geometry)
+        kind = self._twists.message_class
+        self._inbox = Inbox(port, topic_of(topics.cmd_vel, kind), kind, clock)
         self._scan = port.publisher(topic_of(topics.scan, LaserScan))
         self._odom = port.publisher(topic_of(topics.odom, Odometry))
         self._fresh: ScanReadings | None = None
@@ -77,17 +61,17 @@ class TurtlebotElectronics:
         self.commands = MOTORS_BRAKED
         self._silent_cycles = self._watchdog_cycles
         self._cycles = self._left_ticks = self._right_ticks = self.control_frames = 0
-        self._x_m = self._y_m = self._heading_rad = 0.0
-
-    @property
-    def watchdog_expired(self) -> bool:
-        """Return whether no valid /cmd_vel has arrived for the watchdog's time."""
-        return self._silent_cycles >= self._watchdog_cycles
+        self._pose = PlanePose()
 
     @property
     def junk_frames(self) -> int:
         """Number of twists that could not be read."""
         return self._inbox.junk
+
+    @property
+    def watchdog_expired(self) -> bool:
+        """Return whether no valid /cmd_vel has arrived for the watchdog's time."""
+        return self._silent_cycles >= self._watchdog_cycles
 
     @property
     def state(self) -> tuple[int, ...]:
@@ -97,14 +81,11 @@ class TurtlebotElectronics:
     def receive(self) -> None:
         """Run the first half of a cycle: obey the twists that arrived."""
         self._silent_cycles += 1
-        for message, _ in self._inbox.take():
-            twist = message.twist if isinstance(message, TwistStamped) else message
-            assert isinstance(twist, Twist)
-            forward_m_s, turn_rad_s = twist.linear.x, twist.angular.z
-            if math.isfinite(forward_m_s) and math.isfinite(turn_rad_s):
-                self.commands = self._commands_of(forward_m_s, turn_rad_s)
-                self._silent_cycles = 0
-                self.control_frames += 1
+        for twist in self._inbox.take(lambda message, _: self._twists.obeyed(message)):
+            stands = twist == PlaneTwist(0.0, 0.0)
+            self.commands = MOTORS_BRAKED if stands else MotorCommands(*self._twists.to_wheels(twist))
+            self._silent_cycles = 0
+            self.control_frames += 1
         if self.watchdog_expired:
             self.commands = MOTORS_BRAKED
 
@@ -120,41 +101,18 @@ class TurtlebotElectronics:
         self._cycles += 1
         if isinstance(self._clock, SimulatedClock):
             self._clock.time_s += self._settings.cycle_s
+        stamp_s, lidar = self._clock.wall_s(), self._settings.lidar
         if self._fresh is not None:
-            self._scan.publish(scan_message(self._settings, self._fresh.ranges_m, self._clock.wall_s()))
+            limits_m = (lidar.nearest_m, lidar.farthest_m)
+            self._scan.publish(full_turn_scan(self._fresh.ranges_m, limits_m, lidar.period_s, stamp_s))
             self._fresh = None
         if self._cycles % self._odometry_cycles == 0:
-            self._odom.publish(self._next_odometry())
-
-    def _commands_of(self, forward_m_s: float, turn_rad_s: float) -> MotorCommands:
-        """Return commands by the base's own limits, which cut off as its firmware does."""
-        topics, fastest_m_s = self._settings.ros, self._settings.motors.maximum_speed_m_s
-        forward_m_s = max(-fastest_m_s, min(fastest_m_s, forward_m_s))
-        turn_rad_s = max(-topics.maximum_turn_rad_s, min(topics.maximum_turn_rad_s, turn_rad_s))
-        half_m_s = turn_rad_s * self._settings.geometry.effective_track_m / 2
-        if forward_m_s == half_m_s == 0.0:
-            return MOTORS_BRAKED
-        return MotorCommands(forward_m_s - half_m_s, forward_m_s + half_m_s)
-
-    def _next_odometry(self) -> Odometry:
-        geometry = self._settings.geometry
-        left_m, right_m = (ticks * geometry.metres_per_tick for ticks in (self._left_ticks, self._right_ticks))
-        self._left_ticks = self._right_ticks = 0
-        forward_m, turn_rad = (left_m + right_m) / 2, (right_m - left_m) / geometry.effective_track_m
-        middle_rad = self._heading_rad + turn_rad / 2
-        self._x_m += forward_m * math.cos(middle_rad)
-        self._y_m += forward_m * math.sin(middle_rad)
-        self._heading_rad += turn_rad
-        elapsed_s = self._odometry_cycles * self._settings.cycle_s
-        half_rad = self._heading_rad / 2
-        pose = Pose(Point(self._x_m, self._y_m, 0.0), Quaternion(0.0, 0.0, math.sin(half_rad), math.cos(half_rad)))
-        twist = Twist(Vector3(forward_m / elapsed_s, 0.0, 0.0), Vector3(0.0, 0.0, turn_rad / elapsed_s))
-        return Odometry(
-            Header(to_time(self._clock.wall_s()), "odom"),
-            "base_footprint",
-            PoseWithCovariance(pose, _NO_COVARIANCE),
-            TwistWithCovariance(twist, _NO_COVARIANCE),
-        )
+            motion = self._odometry.motion(self._left_ticks, self._right_ticks)
+            self._left_ticks = self._right_ticks = 0
+            self._pose = self._pose.moved(motion.forward_m, motion.turn_rad)
+            period_s = self._settings.odometry_period_s
+            speeds = (motion.forward_m / period_s, motion.turn_rad / period_s)
+            self._odom.publish(odometry_message(self._pose, *speeds, stamp_s))
 
 
 class LocalLink(InstantLink):

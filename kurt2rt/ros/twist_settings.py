@@ -1,0 +1,18 @@
+"""Settings of the twists that a base takes."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from hal.settings import Settings
+
+
+class TwistSettings(Settings):
+    """Kind and steps of twists."""
+
+    stamped: bool
+    """True for geometry_msgs/TwistStamped, False for geometry_msgs/Twist."""
+    linear_step_m_s: Annotated[float, Field(gt=0, le=0.1)]
+    """Steps to which the base cuts speeds off."""
+    angular_step_rad_s: Annotated[float, Field(gt=0, le=0.1)]
+    maximum_rad_s: Annotated[float, Field(gt=0, le=20)]
