@@ -66,9 +66,9 @@ def claim_table(league: League) -> Table:
     """Return whether a rival comes close to the RLA system as shipped, task by task, at the end of the lessons."""
     rows = []
     for task in league.plan.tasks:
-        shipped = league.shipped(task.name)
-        own = (row for row in league.rows if row.entry.task == task.name and row.entry.rival.is_learner)
-        best = max((row for row in own if row.judged), key=_share_at_end, default=None)
+        shipped, others = league.of_task(task.name)
+        rivals = (row for row in others if row.judged and not row.entry.rival.is_rla_system)
+        best = max(rivals, key=_share_at_end, default=None)
         if best is None or not shipped.judged:
             continue
         ours, theirs = _share_at_end(shipped), _share_at_end(best)
@@ -100,8 +100,7 @@ def comparison_table(league: League) -> Table:
     """Return the paired comparison of each rival with the RLA system as shipped, at the end of the lessons."""
     rows = []
     for task in league.plan.tasks:
-        shipped = league.shipped(task.name)
-        others = [row for row in league.rows if row.entry.task == task.name and row is not shipped]
+        shipped, others = league.of_task(task.name)
         pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
         p_values = [mcnemar_p(each) for each in pairs]
         for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
@@ -152,13 +151,24 @@ def _tick_p99_ms(row: Row) -> str:
     return f"{median(measured) / 1000:.2f}" if measured else "-"
 
 
+def _change_ticks(row: Row) -> str:
+    """Return median and 95th percentile over all corrections of all robots."""
+    ticks = sorted(each for outcome in row.outcomes for each in outcome.change_ticks)
+    return f"{median(ticks):.0f} ({ticks[int(0.95 * (len(ticks) - 1))]})" if ticks else "-"
+
+
+def _followed(row: Row) -> str:
+    shares = [each.followed_share for each in row.outcomes if each.followed_share is not None]
+    return f"{median(shares):.0%}" if shares else "-"
+
+
 def machine_table(league: League) -> Table:
     """Return what learners take of the machine, and the undo of their last lesson."""
     return Table(
         "Machine and undo",
         (
             *("task", "learner", "retraining, s", "longest decision, ms", "p99 of a tick, ms", "knowledge, kB"),
-            *("undo, ms", "undo restores"),
+            *("undo, ms", "undo restores", "correction acts, ticks", "lessons followed"),
         ),
         tuple(
             (
@@ -168,6 +178,8 @@ def machine_table(league: League) -> Table:
                 f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
                 f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
                 f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",
+                _change_ticks(row),
+                _followed(row),
             )
             for row in league.rows
         ),
@@ -176,7 +188,9 @@ def machine_table(league: League) -> Table:
         "Retraining: all lessons, each with the decision after it. The robot's clock stands still meanwhile: the guard "
         "of a real robot would refuse a decision that takes longer than 20 ms, and the robot would stand for a moment. "
         "Undo: of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those "
-        "of a robot that never got it.",
+        "of a robot that never got it. A correction acts with the first tick of another action: median and 95th "
+        "percentile; a hold acts at once, whatever was learned. Lessons followed: the next decision is as told, in the "
+        "situation of the lesson.",
     )
 
 

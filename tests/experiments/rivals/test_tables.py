@@ -1,9 +1,11 @@
+from dataclasses import replace
 from pathlib import Path
 
 from matplotlib.image import imread
 
 from kurt2rt.experiments.rivals.figures import draw_curves
 from kurt2rt.experiments.rivals.report import write_report
+from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
     claim_table,
@@ -45,6 +47,13 @@ def test_claim_is_refuted_by_a_learner_that_comes_close(tmp_path: Path) -> None:
     assert claim_table(league_of(results, stuck, stuck)).rows[0][4:] == ("-", "refuted")
 
 
+def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    ours, theirs = league.rows
+    variant = replace(theirs, entry=replace(theirs.entry, rival=Rival("rla-vote")))
+    assert claim_table(replace(league, rows=(ours, variant))).rows == ()
+
+
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
     table = comparison_table(league_of(Results(tmp_path), OURS, THEIRS))
     assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500"),)
@@ -58,7 +67,7 @@ def test_effort_tells_collisions_of_all_robots(tmp_path: Path) -> None:
 
 def test_machine_leaves_times_of_a_learner_out_for_rlas(tmp_path: Path) -> None:
     ours, theirs = machine_table(league_of(Results(tmp_path), OURS, THEIRS)).rows
-    assert ours[2:] == ("", "", "0.80", "5", "2.0", "3 of 3")
+    assert ours[2:] == ("", "", "0.80", "5", "2.0", "3 of 3", "1 (4)", "97%")
     assert theirs[2:4] == ("0.50", "3.0")
 
 
