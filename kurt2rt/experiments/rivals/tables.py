@@ -3,15 +3,14 @@
 from collections.abc import Callable, Iterator, Sequence
 from statistics import median
 
-from kurt2rt.experiments.lockstep.report import wilson_interval
+from kurt2rt.experiments.rivals.cells import heading, share_text
+from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
 from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
-_CLAIMED = 0.9
-"""Part of the success of the RLA system that refutes the claim."""
 _GATES = (
     "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
 )
@@ -32,6 +31,8 @@ def all_tables(league: League) -> Iterator[Table]:
     """Yield all tables: success by presses, the comparison, the effort, the machine, and failures if there are any."""
     yield success_table(league)
     yield claim_table(league)
+    if any(entry.rival.is_held for entry in league.plan.entries):
+        yield hands_table(league)
     yield comparison_table(league)
     yield effort_table(league)
     yield machine_table(league)
@@ -48,8 +49,8 @@ def success_table(league: League) -> Table:
         ("task", "learner", *(f"after {presses}" for presses in after), "at the end", "mean"),
         tuple(
             (
-                *_heading(row),
-                *(_share(row.passed(place), len(row.judged)) for place in places),
+                *heading(row),
+                *(share_text(row.passed(place), len(row.judged)) for place in places),
                 f"{row.mean_share:.0%}" if row.judged else "",
             )
             for row in league.rows
@@ -62,40 +63,6 @@ def success_table(league: League) -> Table:
     )
 
 
-def claim_table(league: League) -> Table:
-    """Return whether a rival comes close to the RLA system as shipped, task by task, at the end of the lessons."""
-    rows = []
-    for task in league.plan.tasks:
-        shipped, others = league.of_task(task.name)
-        rivals = (row for row in others if row.judged and not row.entry.rival.is_rla_system)
-        best = max(rivals, key=_share_at_end, default=None)
-        if best is None or not shipped.judged:
-            continue
-        ours, theirs = _share_at_end(shipped), _share_at_end(best)
-        rows.append(
-            (
-                task.name,
-                _share(shipped.passed(-1), len(shipped.judged)),
-                best.entry.rival.title,
-                _share(best.passed(-1), len(best.judged)),
-                f"{theirs / ours:.2f}" if ours else "-",
-                "refuted" if theirs >= _CLAIMED * ours else "stands",
-            )
-        )
-    return Table(
-        f"Claim: no other learner reaches {_CLAIMED:g} of the success of the RLA system",
-        ("task", "RLA system", "best other", "passes", "of the RLA system's", "claim"),
-        tuple(rows),
-        words=1,
-        note="At the end of the lessons, with the same teacher's effort for all. The best of many rows is chosen after "
-        "the fact, which favours it. Other rows of the RLA system do not count.",
-    )
-
-
-def _share_at_end(row: Row) -> float:
-    return row.passed(-1) / len(row.judged)
-
-
 def comparison_table(league: League) -> Table:
     """Return the paired comparison of each rival with the RLA system as shipped, at the end of the lessons."""
     rows = []
@@ -104,7 +71,7 @@ def comparison_table(league: League) -> Table:
         pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
         p_values = [mcnemar_p(each) for each in pairs]
         for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
-            rows.append((*_heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
+            rows.append((*heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
     return Table(
         "Compared with the RLA system as shipped, robot by robot",
         ("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
@@ -130,7 +97,7 @@ def effort_table(league: League) -> Table:
         ("task", "learner", *(name for name, _ in columns), "collisions", "alarms", "rescues"),
         tuple(
             (
-                *_heading(row),
+                *heading(row),
                 *(f"{median(map(value, row.outcomes)):.0f}" for _, value in columns),
                 str(sum(each.collisions for each in row.outcomes)),
                 str(sum(each.alarms for each in row.outcomes)),
@@ -172,7 +139,7 @@ def machine_table(league: League) -> Table:
         ),
         tuple(
             (
-                *_heading(row),
+                *heading(row),
                 *_of_learner(row),
                 _tick_p99_ms(row),
                 f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
@@ -200,7 +167,7 @@ def failure_table(league: League) -> Table:
         "Failures of learners",
         ("task", "learner", "robot", "failure"),
         tuple(
-            (*_heading(row), str(each.seed), each.failure)
+            (*heading(row), str(each.seed), each.failure)
             for row in league.rows
             for each in row.outcomes
             if each.failure
@@ -216,13 +183,3 @@ def _of_learner(row: Row) -> tuple[str, str]:
         f"{median(each.retraining_s for each in row.outcomes):.2f}",
         f"{median(each.longest_decision_ms for each in row.outcomes):.1f}",
     )
-
-
-def _heading(row: Row) -> tuple[str, str]:
-    return row.entry.task, row.entry.rival.title
-
-
-def _share(count: int, of: int) -> str:
-    if not of:
-        return "none judged"
-    return "{} of {} ({:.0%} to {:.0%})".format(count, of, *wilson_interval(count, of))

@@ -3,12 +3,13 @@ from pathlib import Path
 
 from matplotlib.image import imread
 
+from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.figures import draw_curves
+from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.report import write_report
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
-    claim_table,
     comparison_table,
     effort_table,
     machine_table,
@@ -52,6 +53,22 @@ def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
     ours, theirs = league.rows
     variant = replace(theirs, entry=replace(theirs.entry, rival=Rival("rla-vote")))
     assert claim_table(replace(league, rows=(ours, variant))).rows == ()
+
+
+def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
+    right, stuck = (tuple(robot(seed, *[end] * 3) for seed in (1, 2)) for end in ("right", "stuck"))
+    league = league_of(Results(tmp_path), right, right)
+    ours, theirs = league.rows
+
+    def claim(seconds: float, outcomes: tuple[RivalOutcome, ...]) -> tuple[str, ...]:
+        driven = tuple(each.model_copy(update={"driven_s": seconds}) for each in outcomes)
+        held = replace(theirs, entry=replace(theirs.entry, rival=Rival("hg-dagger")), outcomes=driven)
+        return hands_table(replace(league, rows=(ours, held))).rows[0]
+
+    assert claim(17.0, right) == ("wall_following", "6", "HG-DAgger", "17", "2.8", "refuted")
+    assert claim(18.0, right)[4:] == ("3.0", "stands")
+    assert claim(1.0, stuck) == ("wall_following", "6", "none", "-", "-", "stands")
+    assert hands_table(league).rows[0][2] == "none"  # 1-NN is not driven by hand
 
 
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
