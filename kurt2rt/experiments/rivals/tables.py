@@ -30,7 +30,9 @@ def tuning_text(league: League) -> str:
 def all_tables(league: League) -> Iterator[Table]:
     """Yield all tables: success by presses, the comparison, the effort, the machine, and failures if there are any."""
     yield success_table(league)
-    yield claim_table(league)
+    claim = claim_table(league)
+    if claim.rows:
+        yield claim
     if any(entry.rival.is_held for entry in league.plan.entries):
         yield hands_table(league)
     yield comparison_table(league)

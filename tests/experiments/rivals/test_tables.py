@@ -52,7 +52,9 @@ def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
     league = league_of(Results(tmp_path), OURS, THEIRS)
     ours, theirs = league.rows
     variant = replace(theirs, entry=replace(theirs.entry, rival=Rival("rla-vote")))
-    assert claim_table(replace(league, rows=(ours, variant))).rows == ()
+    own = replace(league, rows=(ours, variant))
+    assert claim_table(own).rows == ()
+    assert len(list(all_tables(own))) == len(list(all_tables(league))) - 1
 
 
 def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
