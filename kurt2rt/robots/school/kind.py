@@ -1,5 +1,6 @@
 """The school robot as a kind of robot (hal.robot_kind.RobotKind)."""
 
+import time
 from pathlib import Path
 from secrets import randbelow
 
@@ -51,7 +52,7 @@ class SchoolKind:
         from simbridge.robot_end import LinkRobotEnd
 
         port = PtyPort(address)
-        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port))
+        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port, time.monotonic))
 
 
 SCHOOL = SchoolKind()
