@@ -26,9 +26,7 @@ class SchoolLink:
 
     def __init__(self, port: BytePort, sensors: int, first_number: int = 0) -> None:
         """Own `port`; `first_number`: of the own lines, not the same for two programs, which tells them apart."""
-        self.name = port.name
-        self._port = port
-        self._sensors = sensors
+        self.name, self._port, self._sensors = port.name, port, sensors
         self._lines = Lines(port, first_number)
         self._last_command = first_number
         self._begin()
