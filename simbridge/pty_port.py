@@ -53,7 +53,8 @@ class PtyPort:
         if self._closed:
             return
         self._closed = True
+        own, link = os.ttyname(self._slave), self._link
         os.close(self._master)
         os.close(self._slave)
-        if self._link is not None:
-            self._link.unlink(missing_ok=True)
+        if link is not None and link.is_symlink() and str(link.readlink()) == own:  # not the link of a later program
+            link.unlink()

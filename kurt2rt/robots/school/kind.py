@@ -1,5 +1,6 @@
 """The school robot as a kind of robot (hal.robot_kind.RobotKind)."""
 
+import time
 from pathlib import Path
 from secrets import randbelow
 
@@ -17,10 +18,9 @@ class SchoolKind:
     folder: Path = Path(__file__).parent / "data"
 
     def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
-        """Return the driver of the robot on the serial port `address`, after it has greeted.
+        """Return the driver on the serial port `address`, after the robot has greeted. A tap would see no CAN frames.
 
-        Raises hal.bus.BusError for a port that cannot be opened and for another device, hal.settings.SettingsError for
-        a tap, which sees CAN frames.
+        Raises hal.bus.BusError, also for another device, hal.settings.SettingsError for a tap.
         """
         from hal.linked_robot import LinkedRobot
         from hal.serial_port import SerialPort
@@ -51,7 +51,7 @@ class SchoolKind:
         from simbridge.robot_end import LinkRobotEnd
 
         port = PtyPort(address)
-        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port))
+        return LinkRobotEnd(settings, port, lambda *_: SchoolElectronics(settings, port, time.monotonic))
 
 
 SCHOOL = SchoolKind()

@@ -3,7 +3,6 @@
 import re
 from binascii import crc_hqx
 from itertools import count
-from typing import NamedTuple
 
 from hal.byte_port import BytePort
 
@@ -20,11 +19,8 @@ _LONGEST = 160
 _LINE = re.compile(rb"([a-z]+)((?: -?\d{1,10})+)\*([0-9A-F]{4})", re.ASCII)
 
 
-class Message(NamedTuple):
-    """Content of one valid line."""
-
-    word: str
-    numbers: tuple[int, ...]
+Message = tuple[str, tuple[int, ...]]
+"""Word and numbers of one valid line."""
 
 
 def encode(word: str, *numbers: int) -> bytes:
@@ -53,13 +49,13 @@ class Lines:
         if len(self._rest) > _LONGEST:
             self._rest = b""
             self.junk += 1
-        messages = []
+        messages: list[Message] = []
         for line in lines:
             match = _LINE.fullmatch(line)
             if match is None or int(match[3], 16) != crc_hqx(line[: match.end(2)], 0):
                 self.junk += 1
             else:
-                messages.append(Message(match[1].decode(), tuple(map(int, match[2].split()))))
+                messages.append((match[1].decode(), tuple(map(int, match[2].split()))))
         return messages
 
     def write(self, word: str, *numbers: int) -> int:

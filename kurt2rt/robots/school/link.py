@@ -9,7 +9,7 @@ from hal.byte_port import BytePort
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
 from hal.robot_link import ForeignCommandReport, RangeReport, Report, WheelReport
 from kurt2rt.robots.school import lines
-from kurt2rt.robots.school.lines import Lines, Message, difference
+from kurt2rt.robots.school.lines import Lines, difference
 
 _HELLO_EVERY_S = 0.5
 _GREETED_WITHIN_S = 2.0
@@ -26,9 +26,7 @@ class SchoolLink:
 
     def __init__(self, port: BytePort, sensors: int, first_number: int = 0) -> None:
         """Own `port`; `first_number`: of the own lines, not the same for two programs, which tells them apart."""
-        self.name = port.name
-        self._port = port
-        self._sensors = sensors
+        self.name, self._port, self._sensors = port.name, port, sensors
         self._lines = Lines(port, first_number)
         self._last_command = first_number
         self._begin()
@@ -57,11 +55,11 @@ class SchoolLink:
         Raises hal.bus.BusError for a lost line, and for a device that is no school robot of this version.
         """
         reports: list[Report] = []
-        for message in self._lines.read():
-            if message.word == lines.HELLO:
-                self._check_greeting(message)
+        for word, numbers in self._lines.read():
+            if word == lines.HELLO:
+                self._check_greeting(numbers[1:])
             elif self.greeted:
-                reports += self._reports_of(message, now_s)
+                reports += self._reports_of(word, numbers, now_s)
         if not self.greeted and not 0.0 <= now_s - self._hello_at_s < _HELLO_EVERY_S:
             self._hello_at_s = now_s
             self._lines.write(lines.HELLO, lines.VERSION)
@@ -102,22 +100,19 @@ class SchoolLink:
         """Close the line; may be called twice."""
         self._port.close()
 
-    def _check_greeting(self, message: Message) -> None:
-        if message.numbers[1:] != (lines.VERSION, self._sensors):
-            raise BusError(
-                f"the robot greets with version and sensors {message.numbers[1:]}, "
-                f"allowed is {(lines.VERSION, self._sensors)}",
-                where=self.name,
-                do="load a robot file for it, or other firmware into it",
-            )
+    def _check_greeting(self, got: tuple[int, ...]) -> None:
+        allowed = (lines.VERSION, self._sensors)
+        if got != allowed:
+            told = f"the robot greets with version and sensors {got}, allowed is {allowed}"
+            raise BusError(told, where=self.name, do="load a robot file for it, or other firmware into it")
         self.greeted = True
         self._last = None
 
-    def _reports_of(self, message: Message, now_s: float) -> list[Report]:
-        if message.word != lines.SENSE or len(message.numbers) != 5 + self._sensors:
+    def _reports_of(self, word: str, numbers: tuple[int, ...], now_s: float) -> list[Report]:
+        if word != lines.SENSE or len(numbers) != 5 + self._sensors:
             self._lines.junk += 1
             return []
-        (number, time_ms, left, right, command), counts = message.numbers[:5], message.numbers[5:]
+        (number, time_ms, left, right, command), counts = numbers[:5], numbers[5:]
         last_ms, last_left, last_right = self._last or (time_ms, left, right)
         elapsed_ms = difference(time_ms, last_ms)
         begins = self._last is None or (number == 0 and elapsed_ms < 0)  # switched off and on

@@ -1,6 +1,8 @@
 """Simulated school robot: its electronics at the far end of the same lines."""
 
-from collections.abc import Sequence
+import time
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 
 from hal.byte_port import BytePort, MemoryPort
 from hal.robot_link import RobotLink
@@ -21,8 +23,9 @@ class SchoolElectronics:
 
     crashed = False
 
-    def __init__(self, settings: RobotSettings, port: BytePort) -> None:
-        self._port = port
+    def __init__(self, settings: RobotSettings, port: BytePort, clock: Callable[[], float] | None = None) -> None:
+        """`clock`: of the robot, in s; None: simulated time, in which no cycle is missed."""
+        self._port, self.clock = port, clock
         self._cycle_s = settings.cycle_s
         self._line_cycles = round(LINE_PERIOD_S / settings.cycle_s)
         self._watchdog_cycles = round(settings.motors.controller_watchdog_s / settings.cycle_s)
@@ -77,7 +80,8 @@ class SchoolElectronics:
         self._left, self._right = difference(self._left, -left_ticks), difference(self._right, -right_ticks)
         self._cycles += 1
         if self._cycles % self._line_cycles == 0:
-            time_ms = round(self._cycles * self._cycle_s * 1000) % lines.COUNTERS
+            time_s = self._cycles * self._cycle_s if self.clock is None else self.clock()
+            time_ms = round(time_s * 1000) % lines.COUNTERS
             self._lines.write(lines.SENSE, time_ms, self._left, self._right, self._command, *self._counts)
 
     def _obey(self, number: int, commands: MotorCommands) -> None:
@@ -91,8 +95,13 @@ class MemoryLine(InstantLink):
     def __init__(self, settings: RobotSettings) -> None:
         self.port, self._robot_port = MemoryPort.pair()
         self.runtime_end: RobotLink = SchoolLink(self.port, len(settings.infrared.sensors))
-        self._settings = settings
+        self._electronics = SchoolElectronics(settings, self._robot_port)
 
     def make_controller(self, body: Body, wheels: Wheels) -> SchoolElectronics:  # noqa: ARG002 - they need neither
         """Return the electronics at the robot's end."""
-        return SchoolElectronics(self._settings, self._robot_port)
+        return self._electronics
+
+    def live(self) -> AbstractContextManager[None]:
+        """Let the robot's clock go on while cycles are missed."""
+        self._electronics.clock = time.monotonic
+        return super().live()

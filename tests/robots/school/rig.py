@@ -1,5 +1,6 @@
 """Simulated school robots: on a line in memory in simulated time, and on a pseudo-terminal in real time."""
 
+import time
 from pathlib import Path
 from typing import Self
 
@@ -19,11 +20,9 @@ FORWARD = WheelSpeeds(0.08, 0.08)
 class MemoryRig:
     """Robot and driver, one tick of the runtime after each cycle of the robot."""
 
-    def __init__(self, driver_settings: RobotSettings = SETTINGS) -> None:
-        self.line = MemoryLine(driver_settings)
-        self.simulated = SimulatedRobot(
-            SETTINGS, load_world("school/a", SETTINGS), lambda *_: SchoolElectronics(SETTINGS, self.line._robot_port), 1
-        )
+    def __init__(self) -> None:
+        self.line = MemoryLine(SETTINGS)
+        self.simulated = SimulatedRobot(SETTINGS, load_world("school/a", SETTINGS), self.line.make_controller, 1)
         self.now_s = 100.0
         self.robot = LinkedRobot(SETTINGS, self.line.runtime_end, lambda: self.now_s)
 
@@ -45,7 +44,10 @@ class PtyRobot:
     def __init__(self, device: Path | str = "") -> None:
         self.port = PtyPort(str(device))
         self.simulated = SimulatedRobot(
-            SETTINGS, load_world("school/a", SETTINGS), lambda *_: SchoolElectronics(SETTINGS, self.port), 1
+            SETTINGS,
+            load_world("school/a", SETTINGS),
+            lambda *_: SchoolElectronics(SETTINGS, self.port, time.monotonic),
+            1,
         )
         self.thread = RealtimeSimulation(self.simulated, SETTINGS.cycle_s)
 

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.byte_port import MemoryPort
-from kurt2rt.robots.school.lines import COUNTERS, NUMBERS, Lines, Message, difference, encode
+from kurt2rt.robots.school.lines import COUNTERS, NUMBERS, Lines, difference, encode
 
 NUMBER = st.integers(-9_999_999_999, 9_999_999_999)
 
@@ -21,7 +21,7 @@ def test_lines_in_any_pieces_are_read_as_written(word: str, numbers: list[int], 
     for begin in range(0, len(line), piece):
         far_end.write(line[begin : begin + piece])
         got += lines.read()
-    assert got == [Message(word, tuple(numbers))]
+    assert got == [(word, tuple(numbers))]
     assert lines.junk == 0
 
 
@@ -43,7 +43,7 @@ def test_lines_after_noise_are_read_again() -> None:
     far_end.write(bytes(range(256)) * 4)
     lines.read()
     far_end.write(b"\n" + encode("brake", 1))
-    assert lines.read() == [Message("brake", (1,))]
+    assert lines.read() == [("brake", (1,))]
     assert lines.junk > 0
 
 

@@ -1,6 +1,7 @@
 """The school robot's link in simulated time: greeting, ages, restarts, foreign commands, the robot's own watchdog."""
 
 import math
+import time
 
 import pytest
 
@@ -11,6 +12,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_link import ForeignCommandReport, RangeReport, WheelReport
 from kurt2rt.robots.school.lines import encode
 from kurt2rt.robots.school.link import SchoolLink
+from kurt2rt.robots.school.simulated import SchoolElectronics
 from tests.robots.school.rig import FORWARD, SETTINGS, MemoryRig
 
 READINGS = (812, 40, 0, 0, 0, 0, 0)
@@ -215,3 +217,16 @@ def test_robot_too_fast_command_is_not_obeyed() -> None:
     rig.line.port.write(encode("drive", 1, 2000, 2000))
     rig.simulated.step()
     assert rig.simulated.controller.commands.left_m_s == pytest.approx(0.08)
+
+
+def test_live_robot_that_misses_cycles_is_not_old() -> None:
+    rig = MemoryRig()
+    with rig.line.live():
+        electronics = rig.simulated.controller
+        assert isinstance(electronics, SchoolElectronics)
+        assert electronics.clock is time.monotonic
+        electronics.clock = lambda: rig.now_s
+        rig.run(0.5)
+        rig.now_s += 0.3  # the simulation's thread was not run for so long
+        rig.run(0.02)
+        assert rig.robot.sense(rig.now_s).infrared_age_s < 0.05

@@ -130,3 +130,13 @@ def test_pty_link_of_a_killed_program_is_replaced(tmp_path: Path) -> None:
     assert path.exists()
     port.close()
     assert not path.is_symlink()
+
+
+def test_pty_link_of_a_later_program_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "robot"
+    port = PtyPort(str(path))
+    path.unlink()
+    later = PtyPort(str(path))
+    port.close()
+    assert path.exists()
+    later.close()
