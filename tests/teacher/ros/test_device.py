@@ -105,7 +105,7 @@ async def test_zero_twists_do_not_take_the_wheels_of_a_taught_robot(desk: RobotI
 
 @in_ros
 async def test_refused_twist_ends_the_drive_until_twists_cease(desk: RobotInRos) -> None:
-    for wrong in (twist(math.nan), twist(math.inf), twist(3.0), twist(0.1, 60.0), _sideways()):
+    for wrong in (twist(math.nan), twist(math.inf), twist(1.5), twist(3.0), twist(0.1, 60.0), _sideways()):
         await desk.call("take")
         await desk.drive(0.2, 0.0, 0.5)
         assert desk.at_work.records[-1].decision.wheel_speeds == WheelSpeeds(0.2, 0.2)
@@ -144,9 +144,16 @@ async def test_stop_of_another_teacher_holds_against_twists(desk: RobotInRos) ->
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(desk.drive, 0.2, 0.0, 2.0)
             await anyio.sleep(0.2)
+            assert desk.at_work.records[-1].guard_result.wheel_speeds != STANDSTILL
             await other.stop()
             stopped = desk.at_work.tick
+            await anyio.sleep(0.5)
+            # The robot may drive again, but not by twists from before.
+            assert (await desk.call("resume"))[0]
         assert desk.moved_after(stopped) <= 1
+        await anyio.sleep(LEASE_S + 0.1)
+        await desk.drive(0.2, 0.0, 0.5)
+        assert desk.at_work.records[-1].guard_result.wheel_speeds != STANDSTILL
 
 
 @in_ros
@@ -228,18 +235,33 @@ async def test_too_many_requests_are_refused_but_a_stop_is_not(desk: RobotInRos)
 
 
 def test_stamped_twists_drive_while_they_are_young(tmp_path: Path) -> None:
-    def stamped(age_s: float, now_s: float) -> ros.TwistStamped:
-        return ros.TwistStamped(ros.Header(ros.to_time(EPOCH_S + now_s - age_s), ""), twist(0.2))
+    async def drive(desk: RobotInRos, age_s: float) -> None:
+        for _ in range(25):
+            stamp = ros.to_time(EPOCH_S + anyio.current_time() - age_s)
+            await desk.send("cmd_vel", ros.TwistStamped(ros.Header(stamp, ""), twist(0.2)), 0.05)
 
     async def story(desk: RobotInRos) -> None:
         await desk.call("take")
-        for age_s, drives in ((0.0, True), (0.1, True), (0.3, False), (0.0, True)):
-            for _ in range(10):
-                await desk.send("cmd_vel", stamped(age_s, anyio.current_time()), 0.05)
-            assert (desk.at_work.records[-1].guard_result.wheel_speeds != STANDSTILL) is drives, age_s
+        for age_s, says in ((0.0, "drives"), (0.1, "drives"), (0.3, "the twist is 0.30 s old, allowed is 0.25")):
+            begun = desk.at_work.tick
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(drive, desk, age_s)
+                await anyio.sleep(0.2)
+                assert (await desk.statuses())["cmd_vel"][1] == says
+            assert (desk.moved_after(begun) > 0) is (says == "drives"), age_s
             await anyio.sleep(2.0)
 
     told(tmp_path, story, stamped=True)
+
+
+@in_ros
+async def test_request_without_a_robot_is_answered_with_no(desk: RobotInRos) -> None:
+    desk.at_work.end()
+    await desk.at_work.until(lambda: desk.at_work.ended)
+    success, text = await desk.call("stop")
+    assert not success
+    assert "the stop is not answered" in text
+    assert (await desk.statuses())["teacher's channel"][0] == ERROR
 
 
 @in_ros
