@@ -48,9 +48,10 @@ def lerobot(
 ) -> None:
     """Write recorded runs as a data set for LeRobot (LeRobotDataset v3.0), an episode for each run.
 
-    A frame holds the sensor readings and wheel speeds (observation.state), the
-    speeds that were decided (action), the teacher's rewards (next.reward), and
-    whether a teacher drove by hand. docs/lerobot.md explains each column.
+    A frame holds wheel speeds (observation.state), sensor readings
+    (observation.environment_state), the speeds that were decided (action), the
+    teacher's rewards (next.reward), and whether a teacher drove by hand.
+    docs/lerobot.md explains each column.
 
         kurt2rt export lerobot
         kurt2rt export lerobot var/runs/*-wall_following --fps 20

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
+from kurt2rt.runs.recording.recording import LAYOUT
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.service.settings import load_service
 
@@ -20,7 +21,8 @@ def recover(
 
     A file that a power cut tore lacks its index, and so does the one that a
     robot is recording to: replay and why read them, a viewer refuses them. The
-    run itself stays as it is.
+    run itself stays as it is. Import the layout that this names into Foxglove
+    once.
 
         kurt2rt recover copies
         kurt2rt recover copies 20261122T031005Z-wall_following
@@ -41,3 +43,4 @@ def recover(
             continue
         typer.echo(truncated or f"{segment} is whole")
         typer.echo(f"copied to {folder / segment.name}")
+    typer.echo(f"layout for Foxglove: {LAYOUT}")

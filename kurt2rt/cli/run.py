@@ -282,8 +282,8 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
         phones=options.phone,
         browser=not options.no_open,
     )
-    if not recorded and not options.no_record:
-        screen.print_line(_NOT_RECORDED, "yellow")
+    if run_options.unrecorded:
+        screen.print_line(run_options.unrecorded, "yellow")
     return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
 
 
@@ -306,6 +306,7 @@ def _run_options(
         page_port=options.page_port,
         can_log=options.can_log,
         record=recorded,
+        unrecorded="" if recorded or options.no_record else _NOT_RECORDED,
         live_view=live_view,
         seconds=options.seconds,
         seed=options.seed,

@@ -12,6 +12,7 @@ from hal.settings import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import EarlierBus, bus_of
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
 from kurt2rt.service.systemd.access_text import access_text
@@ -19,6 +20,7 @@ from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
 from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.plugin_modules import plugins_of_this_folder
 from kurt2rt.service.systemd.unit import STATE, Unit, build_unit, require_name
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
@@ -164,6 +166,10 @@ def _unit(options: _UnitOptions) -> tuple[Unit, RequiredAccess]:
     state = STATE / name
     files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
     files.append(_as_the_service_finds("task", loaded.task, state))
+    load_task(loaded.task)  # with the plug-ins that it names
+    for each in plugins_of_this_folder():
+        where, module = f"{each.group} {each.name}", each.name.partition(":")[0]
+        raise UnitError(UnitCode.MODULE_OF_THIS_FOLDER, where=where, module=module, file=each.source)
     folders = (Path(loaded.knowledge).parent, *map(Path, (loaded.teachers, loaded.devices, loaded.recordings)))
     wanted = RequiredAccess(
         tuple(each for each in files if not each.is_relative_to(state)),

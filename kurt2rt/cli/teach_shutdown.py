@@ -14,17 +14,18 @@ from kurt2rt.channel.security.pairing import Device, read_device
 _POLL_PAIRING_S = 1.0
 
 
-async def until_teaching_ends(device: Device, *, while_stdin: bool) -> str:
+async def until_teaching_ends(device: Device, *, while_stdin: bool, command: str = "teach") -> str:
     """Wait for a signal, the end of the input (`while_stdin`) or of the device's pairing.
 
-    Returns the reason in a line for the user; empty if the user asked for the end.
+    Returns the reason in a line for the user, which names the `command` to start again; empty if the user asked for
+    the end.
     """
     reason = ""
     async with anyio.create_task_group() as tasks:
 
         async def pairing_ends() -> None:
             nonlocal reason
-            reason = await _until_pairing_ends(device)
+            reason = await _until_pairing_ends(device, command)
             tasks.cancel_scope.cancel()
 
         tasks.start_soon(pairing_ends)
@@ -48,7 +49,7 @@ async def until_ended(*, while_stdin: bool) -> None:
                 tasks.cancel_scope.cancel()
 
 
-async def _until_pairing_ends(device: Device) -> str:
+async def _until_pairing_ends(device: Device, command: str) -> str:
     """Wait until the pairing is renewed or revoked; return the reason in a line for the user."""
     while True:
         await anyio.sleep(_POLL_PAIRING_S)
@@ -57,7 +58,7 @@ async def _until_pairing_ends(device: Device) -> str:
         except CredentialsError:
             return f"{device.name}: its pairing was revoked; pair it again: kurt2rt pair {device.name}"
         if now.token != device.token:
-            return f"{device.name}: its pairing was renewed; start kurt2rt teach again"
+            return f"{device.name}: its pairing was renewed; start kurt2rt {command} again"
 
 
 async def _until_input_ends() -> None:

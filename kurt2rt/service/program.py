@@ -248,7 +248,7 @@ class RobotProgram:
     def _probes(self, opened: OpenedRobot) -> Probes:
         log = self._can_log
         drops = {"lines for the terminal": lambda: self._printer.dropped}
-        errors = {"companions": lambda: self._children.trouble}
+        errors = {"companions": lambda: self._children.trouble, "recording": lambda: self._options.unrecorded}
         if log is not None:
             drops["frames for the CAN log"], errors["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._options.record else {}

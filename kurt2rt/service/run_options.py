@@ -36,6 +36,8 @@ class RunOptions:
     """New file for all frames; None: frames are not logged."""
     record: bool = True
     """True if the run is recorded to the folder that the settings name."""
+    unrecorded: str = ""
+    """Reason that a run is not recorded although it should be, and what to do, in a line; empty without one."""
     live_view: tuple[str, int] | None = None
     """Host and port of the live view; None: no live view."""
     seconds: float | None = None

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
+from kurt2rt.runs.recording.recording import LAYOUT
 from tests.cli.helpers import CommandLine
 from tests.runs.replay.stored_runs import STORED
 
@@ -17,6 +18,8 @@ def test_recover_copies_a_torn_run_with_an_index(kurt2rt: CommandLine, tmp_path:
     copy = tmp_path / "copies" / "walls.mcap"
     assert f"{truncated}: " in said.out
     assert str(copy) in said.out
+    assert LAYOUT.is_file()
+    assert said.out.endswith(f"layout for Foxglove: {LAYOUT}\n")
     with copy.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None

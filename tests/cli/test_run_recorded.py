@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording import LAYOUT
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
@@ -59,6 +60,7 @@ def test_no_record_leaves_no_recording(kurt2rt: CommandLine, folder: Path) -> No
 def test_a_live_view_needs_no_recording(kurt2rt: CommandLine, folder: Path) -> None:
     said = kurt2rt(*WORDS, "--no-record", "--live-view", "0")
     assert " ws://127.0.0.1:" in said.out
+    assert f"import its layout once: {LAYOUT}\n" in said.out
     assert "recorded" not in said.out
     assert not (folder / "var").exists()
 

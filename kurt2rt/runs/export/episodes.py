@@ -58,13 +58,14 @@ class Episode:
 def features_of(robot: RobotSettings) -> dict[str, Feature]:
     """Return the features of every episode of a robot, by LeRobot's names."""
     sides = ("left_m_s", "right_m_s")
-    state = (
+    sensors = (
         *(f"{name}_counts" for name in robot.infrared.names),
-        *sides,
         *(f"bumper_{each.name}" for each in robot.bumpers),
     )
+    # LeRobot's policies want a picture or a state of the environment next to that of the robot.
     return {
-        "observation.state": Feature("float32", state),
+        "observation.state": Feature("float32", sides),
+        "observation.environment_state": Feature("float32", sensors),
         "action": Feature("float32", sides),
         "next.reward": Feature("float32"),
         "next.done": Feature("bool"),
@@ -186,7 +187,8 @@ class _Stretch:
         np.logical_or.at(asks, frame_of, rows["asks"])
         np.add.at(lessons, frame_of, rows["lessons"])
         columns = {
-            "observation.state": np.hstack([at["counts"], speeds, bits], dtype=np.float32),
+            "observation.state": speeds,
+            "observation.environment_state": np.hstack([at["counts"], bits], dtype=np.float32),
             "action": at["asked"],
             "next.reward": reward,
             "next.done": np.arange(frames) == frames - 1,

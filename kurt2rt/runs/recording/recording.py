@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from hal.plugins import loaded_plugins
 from hal.robot_settings import RobotSettings
+from hal.settings import SHIPPED_DIR
 from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing_text import stop_text
@@ -24,6 +25,9 @@ from kurt2rt.runs.recording.run_head import RunHead
 if TYPE_CHECKING:
     from kurt2rt.runs.recording.live_view import LiveView
     from kurt2rt.runs.recording.recorder import RunRecorder
+
+LAYOUT = SHIPPED_DIR / "foxglove" / "kurt2.json"
+"""Layout of panels for recordings and live views in Foxglove."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,4 +122,4 @@ class Recording:
             self.notify(f"the run is recorded in {recorder.run}")
 
     def _opened(self, view: "LiveView") -> None:
-        self.notify(f"a live view for Foxglove is on {view.address}")
+        self.notify(f"a live view for Foxglove is on {view.address}; import its layout once: {LAYOUT}")

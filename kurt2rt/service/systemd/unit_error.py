@@ -16,6 +16,11 @@ class UnitCode(ErrorCode):
         "{given}: the service would look for it in {state}",
         "give its whole path in the settings",
     )
+    MODULE_OF_THIS_FOLDER = (
+        "module of this folder",
+        "the service would not find {module}: it is in {file}, and is not installed",
+        "make a package of it and install it next to kurt2rt: kurt2rt plugin new begins one",
+    )
     NO_ACCESS = ("no access", "{says}", "")
     """A path that the unit's user cannot use; `says` is the text of the access finding."""
     NAME_TAKEN = ("name taken", "is another program's", _OTHER_NAME)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.ros.messages import Twist
 from kurt2rt.teacher.client.client import TeacherClient
 
@@ -83,10 +84,7 @@ class TwistDrive:
         if speeds == STANDSTILL and not self._on:
             self._unblock()
         elif not self._blocked:
-            self.trouble = ""
-            self._on = self._robot.press(*speeds)
-            if not self._on:
-                self._note_end()
+            self._press(speeds, arrived_s)
 
     def refuse(self, why: str, arrived_s: float) -> None:
         """Refuse what came in place of a twist, which ends a press that is on. `arrived_s`: its time by `now`."""
@@ -108,6 +106,17 @@ class TwistDrive:
         if self._on:
             self._on = False
             self._let_go()
+
+    def _press(self, speeds: WheelSpeeds, arrived_s: float) -> None:
+        try:
+            pressing = self._robot.press(*speeds)
+        except WireError as error:  # faster than the channel carries, for a robot that may drive faster
+            self.refuse(str(error), arrived_s)
+            return
+        self._on = pressing
+        self.trouble = ""
+        if not pressing:
+            self._note_end()
 
     def _unblock(self) -> None:
         self._blocked = False

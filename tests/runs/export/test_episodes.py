@@ -13,7 +13,7 @@ from kurt2rt.runs.replay.run import Run, RunSource
 from tests.runs.replay.stored_runs import stored
 
 ENTRIES = tuple(stored("walls").entries())
-STATE, ACTION = "observation.state", "action"
+STATE, SENSORS, ACTION = "observation.state", "observation.environment_state", "action"
 
 
 def run_of(entries: tuple[TickEntry, ...]) -> Run:
@@ -32,10 +32,10 @@ def test_frames_of_each_tick_hold_readings_and_speeds() -> None:
     assert episode.frames == len(ENTRIES) == 4400
     assert episode.tasks == ("wall following",)
     for at in (0, 500, 4399):
-        entry, state = ENTRIES[at], episode.columns[STATE][at]
-        assert state[:18].tolist() == list(entry.readings.infrared_counts)
+        entry = ENTRIES[at]
+        assert episode.columns[SENSORS][at, :18].tolist() == list(entry.readings.infrared_counts)
         left_m_s = entry.readings.encoder_left_ticks * robot.geometry.metres_per_tick / robot.cycle_s
-        assert state[18] == pytest.approx(left_m_s)
+        assert episode.columns[STATE][at, 0] == pytest.approx(left_m_s)
         assert episode.columns[ACTION][at] == pytest.approx(entry.decision.wheel_speeds)
         assert episode.columns["complementary_info.applied"][at] == pytest.approx(entry.grant.wheel_speeds)
     by_hand = [entry.decision.cause is DecisionCause.TEACHER for entry in ENTRIES]
@@ -56,10 +56,10 @@ def test_rewards_stand_at_the_decision_that_they_are_about() -> None:
 def test_thinned_frames_keep_way_lessons_and_interventions() -> None:
     every, thin = only_episode(ENTRIES), only_episode(ENTRIES, 20)
     assert thin.frames == 220
-    assert (thin.columns[STATE][:, :18] == every.columns[STATE][::20, :18]).all()
+    assert (thin.columns[SENSORS] == every.columns[SENSORS][::20]).all()
     # Each frame has the mean speed since the frame before, so no way is lost.
-    way_m = every.columns[STATE][1:4381, 18:20].sum(axis=0) * 0.01
-    assert thin.columns[STATE][1:, 18:20].sum(axis=0) * 0.2 == pytest.approx(way_m, rel=1e-4)
+    way_m = every.columns[STATE][1:4381].sum(axis=0) * 0.01
+    assert thin.columns[STATE][1:].sum(axis=0) * 0.2 == pytest.approx(way_m, rel=1e-4)
     lessons, by_hand = "complementary_info.lessons", "complementary_info.is_intervention"
     assert thin.columns[lessons].sum() == every.columns[lessons].sum() > 40
     assert (thin.columns[by_hand] == every.columns[by_hand].reshape(-1, 20).any(axis=1)).all()

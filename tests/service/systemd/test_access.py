@@ -1,6 +1,7 @@
 """Access of the service's user: obstacles are found before the unit is installed."""
 
 import getpass
+import shutil
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from kurt2rt.service.systemd.access import AccessCode, AccessFinding, RequiredAc
 from kurt2rt.service.systemd.access_text import access_text
 from kurt2rt.service.systemd.installation import start_command
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
+from tests import plugin_parts
 from tests.cli.helpers import CommandLine
 
 
@@ -88,11 +90,45 @@ def test_a_robot_beside_the_terminal_is_not_beside_the_service(
     assert str(error) in said
 
 
+def test_task_of_a_module_of_this_folder_is_refused(kurt2rt: CommandLine, plugin_folder: Path) -> None:
+    text = (CONFIG_DIR / "tasks" / "fleeing.yaml").read_text(encoding="utf-8")
+    (plugin_folder / "task.yaml").write_text(text, encoding="utf-8")
+    (plugin_folder / "my_tasks.py").write_text(
+        "from pathlib import Path\nFLEE = Path(__file__).with_name('task.yaml')\n"
+    )
+    settings = settings_in(plugin_folder, task="my_tasks:FLEE")
+    for command in ("show", "check", "install"):
+        said = kurt2rt.refused("service", command, "--name", "nosuch-robot", "--settings", settings)
+        assert f"would not find my_tasks: it is in {plugin_folder / 'my_tasks.py'}" in said
+
+
+def test_policy_of_a_module_of_this_folder_is_refused(kurt2rt: CommandLine, plugin_folder: Path) -> None:
+    shutil.copy(Path(plugin_parts.__file__), plugin_folder / "my_parts.py")
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "fleeing.yaml").read_text(encoding="utf-8"))
+    (plugin_folder / "task.yaml").write_text(yaml.safe_dump(task | {"policy": {"kind": "my_parts:Turning"}}))
+    settings = settings_in(plugin_folder, task=str(plugin_folder / "task.yaml"))
+    said = kurt2rt.refused("service", "show", "--settings", settings)
+    assert "policies my_parts:Turning: the service would not find my_parts" in said
+
+
+def test_module_that_is_installed_is_found_by_a_service(
+    kurt2rt: CommandLine, plugin_folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    site = plugin_folder / "site"
+    site.mkdir()
+    monkeypatch.syspath_prepend(str(site))
+    shutil.copy(Path(plugin_parts.__file__), site / "my_parts.py")
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "fleeing.yaml").read_text(encoding="utf-8"))
+    (site / "task.yaml").write_text(yaml.safe_dump(task | {"policy": {"kind": "my_parts:Turning"}}))
+    settings = settings_in(site, task=str(site / "task.yaml"))
+    assert "ExecStart=" in kurt2rt("service", "show", "--settings", settings).out
+
+
 def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine) -> None:
     said = kurt2rt("service", "show", "--bus", "can1", "--page")
     assert f"ExecStart={start_command()[0]} " in said.out
     assert " run --service --bus can1 --settings default --page\n" in said.out
-    assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")
+    assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "task.yaml")
 
 
 def test_show_with_the_earlier_name_of_bus_prints_one_unit(kurt2rt: CommandLine) -> None:
