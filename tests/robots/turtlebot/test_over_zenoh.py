@@ -5,18 +5,24 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
+import zenoh
 
 from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.settings import SettingsError
 from kurt2rt.robots.turtlebot.kind import TURTLEBOT
-from simbridge.robot_end import RobotEnd
+from kurt2rt.robots.turtlebot.lidar import lidar_of
+from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
+from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
+from kurt2rt.ros.inbox import MachineClock
+from kurt2rt.ros.session import ZenohSession
+from simbridge.robot_end import LinkRobotEnd, RobotEnd
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
 from tests.cli.helpers import started
@@ -29,9 +35,8 @@ RMW_SETTINGS = SETTINGS.model_copy(update={"ros": SETTINGS.ros.model_copy(update
 
 
 @contextmanager
-def base_at(locator: str, settings: object = SETTINGS) -> Iterator[StandaloneRobot]:
+def base_at(locator: str, settings: TurtlebotSettings = SETTINGS) -> Iterator[StandaloneRobot]:
     """Run a simulated base in real time, which listens at a locator."""
-    assert isinstance(settings, type(SETTINGS))
     end = TURTLEBOT.serve(settings, locator)
     world = load_world("turtlebot/a", settings)
     with StandaloneRobot(world, _end(end), 1, cycle_s=settings.cycle_s) as standalone:
@@ -51,10 +56,11 @@ def drive(robot: GuardedRobot) -> "tuple[bool, tuple[GuardReason, ...], float]":
     return result.latched, result.reasons, result.wheel_speeds.left_m_s
 
 
-def test_zenoh_base_drives_is_lost_and_found_again() -> None:
+@pytest.mark.parametrize("settings", [SETTINGS, RMW_SETTINGS], ids=["bridge", "rmw_zenoh"])
+def test_zenoh_base_drives_is_lost_and_found_again(settings: TurtlebotSettings) -> None:
     locator = free_locator()
-    with base_at(locator) as base:
-        robot = TURTLEBOT.open(SETTINGS, locator)
+    with base_at(locator, settings) as base:
+        robot = TURTLEBOT.open(settings, locator)
         wait_for(lambda: drive(robot)[2] == FORWARD.left_m_s)
         wait_for(lambda: drive(robot)[0] or base.robot.wheel_speeds.left_m_s > 0.09)
         assert robot.health.junk == 0
@@ -62,7 +68,7 @@ def test_zenoh_base_drives_is_lost_and_found_again() -> None:
         wait_for(lambda: drive(robot)[0])
         assert drive(robot)[1] == (GuardReason.BUS_LOST,)
         assert "no robot is connected" in robot.health.bus_trouble
-        with base_at(locator):
+        with base_at(locator, settings):
 
             def drives_again() -> bool:
                 robot.release()
@@ -78,6 +84,29 @@ def test_zenoh_base_brakes_when_the_runtime_dies() -> None:
         wait_for(lambda: drive(robot)[0] or base.robot.wheel_speeds.left_m_s > 0.09)
         robot._close_link()  # as the end of a process does, without a brake
         wait_for(lambda: base.robot.controller.watchdog_expired and base.robot.wheel_speeds.left_m_s == 0.0)
+
+
+def test_zenoh_base_gone_behind_a_router_stops_the_robot() -> None:
+    locator = free_locator()
+    with ExitStack() as stack:
+        stack.enter_context(zenoh.open(_router_at(locator)))
+        session = ZenohSession(SETTINGS.ros, connect=[locator])
+        electronics = lambda *_: TurtlebotElectronics(SETTINGS, session, MachineClock())  # noqa: E731
+        end = LinkRobotEnd(SETTINGS, session, electronics, lidar_of)
+        base = StandaloneRobot(load_world("turtlebot/a", SETTINGS), end, 1, cycle_s=SETTINGS.cycle_s)
+        robot = stack.enter_context(closing(TURTLEBOT.open(SETTINGS, locator)))
+        with base:
+            wait_for(lambda: drive(robot)[2] == FORWARD.left_m_s)
+        wait_for(lambda: drive(robot)[2] == 0.0)  # the router is still there, but no message comes
+        assert drive(robot)[1][0] in (GuardReason.ENCODER_STALE, GuardReason.INFRARED_STALE)
+
+
+def _router_at(locator: str) -> zenoh.Config:
+    config = zenoh.Config()
+    config.insert_json5("mode", '"router"')
+    config.insert_json5("listen/endpoints", f'["{locator}"]')
+    config.insert_json5("scouting/multicast/enabled", "false")
+    return config
 
 
 def test_zenoh_nothing_at_the_address_is_one_line() -> None:
