@@ -59,16 +59,17 @@ class SectorReduction:
         return tuple(nearest.tolist())
 
     def _vanished(self, nearest_m: NDArray[np.float64], least_m: float) -> NDArray[np.bool_]:
-        """Return the sectors, (sectors,), in which something close is no longer seen, nor two sectors to either side.
+        """Return the sectors, (sectors,), in which something close is no longer seen.
 
-        A driver that sends 0 for nothing sends it for what is too near as well.
+        A driver that sends 0 for nothing sends it for what is too near as well. What appears in that moment up to two
+        sectors farther on was taken there by a turn.
         """
-        close_m = _CLOSE_FACTOR * least_m
-        ring = nearest_m[self._order] <= close_m
-        around = np.any([np.roll(ring, shift) for shift in (-2, -1, 1, 2)], axis=0)
-        turned_there = np.zeros(len(ring), dtype=np.bool_)
-        turned_there[self._order] = around
-        return np.isinf(nearest_m) & (self._last_m <= close_m) & ~turned_there
+        was_close, is_close = (each[self._order] <= _CLOSE_FACTOR * least_m for each in (self._last_m, nearest_m))
+        appeared = is_close & ~was_close
+        turned_there = np.any([np.roll(appeared, shift) for shift in (-2, -1, 1, 2)], axis=0)
+        vanished = np.zeros(len(nearest_m), dtype=np.bool_)
+        vanished[self._order] = np.isinf(nearest_m[self._order]) & was_close & ~turned_there
+        return vanished
 
     def _lay_out(self, number: int, first_rad: float, step_rad: float) -> None:
         """Find the sector of each ray, if the scan is of another layout than the previous one."""
