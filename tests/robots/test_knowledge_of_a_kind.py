@@ -42,9 +42,7 @@ def test_first_task_of_a_robot_is_wall_following() -> None:
 
 
 def test_file_that_a_robot_lacks_is_refused_with_those_it_has() -> None:
-    with pytest.raises(
-        SettingsError, match=r"the robot school has no such file in tasks; it has: school/circle"
-    ):
+    with pytest.raises(SettingsError, match=r"the robot school has no such file in tasks; it has: school/circle"):
         find_config("tasks", "school/nope")
     with pytest.raises(SettingsError, match="no such file in tasks"):
         find_config("tasks", "nope/nope")
@@ -53,9 +51,7 @@ def test_file_that_a_robot_lacks_is_refused_with_those_it_has() -> None:
 def test_robot_of_an_unknown_kind_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text("kind: nope\n", encoding="utf-8")
-    with pytest.raises(
-        SettingsError, match=r"kind: there is no such robot \(found .nope.\); .*kurt2, school"
-    ):
+    with pytest.raises(SettingsError, match=r"kind: there is no such robot \(found .nope.\); .*kurt2, school"):
         load_robot(str(path))
     path.write_text("kind: [1]\n", encoding="utf-8")
     with pytest.raises(SettingsError, match=r"kind: Input should be a valid string"):
