@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails
 
 from config import CONFIG_DIR
 from hal.errors import UserError
-from hal.plugins import PluginError, PluginKind, UnknownPluginError, settings_from_elsewhere
+from hal.plugins import PluginError, PluginKind, UnknownPluginError, import_target, settings_from_elsewhere
 
 SHIPPED_DIR: Final = CONFIG_DIR
 """Folder of the files that ship with the project."""
@@ -296,17 +296,29 @@ def find_task_of_robot(robot: str) -> str | None:
     return f"{robot}/{_FIRST_TASK if _FIRST_TASK in names else names[0]}"
 
 
-def robots_task(name: str) -> str | None:
-    """Return the task of a robot's plug-in, such as `school/fleeing`, whose settings give it a name.
+def robots_tasks() -> list[tuple[str, str]]:
+    """Return the tasks in the folders of robots' plug-ins, such as `school/fleeing`, each with its distribution.
 
-    None if there is none. A plug-in that cannot be imported, and a file that cannot be read, offer no task.
+    A plug-in that cannot be imported offers none. Those of the project's own folder go by their names alone.
     """
+    found = []
     for plugin in ROBOTS.installed():
+        with suppress(PluginError):
+            # Not by `find_robot_kind`: a recording names the plug-ins that were loaded, and these are only looked at.
+            kind = cast("RobotParts", import_target(plugin.target, plugin.name))
+            if (folder := kind.folder) != CONFIG_DIR:
+                paths = sorted((folder / TASKS.group).glob("*.yaml"))
+                found += [(f"{plugin.name}/{path.stem}", plugin.source) for path in paths]
+    return found
+
+
+def robots_task(name: str) -> str | None:
+    """Return the task of a robot's plug-in, such as `school/fleeing`, whose settings give it a name; or None."""
+    for task, _ in robots_tasks():
         with suppress(SettingsError):
-            for path in sorted((find_robot_kind(plugin.name).folder / TASKS.group).glob("*.yaml")):
-                content = content_of(path)
-                if isinstance(content, dict) and content.get("name") == name:
-                    return f"{plugin.name}/{path.stem}"
+            content = content_of(find_config(TASKS.group, task))
+            if isinstance(content, dict) and content.get("name") == name:
+                return task
     return None
 
 

@@ -119,6 +119,11 @@ class Simulation(Protocol):
         ...
 
     @property
+    def sensed_counts(self) -> tuple[int, ...]:
+        """Newest readings of the simulated sensors, in counts, before they go over the link."""
+        ...
+
+    @property
     def touching(self) -> bool:
         """True while the robot touches something."""
         ...

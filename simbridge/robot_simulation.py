@@ -67,6 +67,11 @@ class RobotSimulation:
         return self.simulated_robot.collisions
 
     @property
+    def sensed_counts(self) -> tuple[int, ...]:
+        """Newest readings of the simulated sensors, in counts."""
+        return self.simulated_robot.infrared_counts
+
+    @property
     def touching(self) -> bool:
         """True while the robot touches something."""
         return self.simulated_robot.touching

@@ -25,6 +25,8 @@ class PolicySettings(KindSettings):
 
     behaviours: ClassVar[tuple[str, ...] | None] = None
     """Taught behaviours that the policy distinguishes; None if it ignores the selection."""
+    chooses_among: ClassVar[tuple[str, ...] | None] = None
+    """Names of the actions that the policy chooses among; None if that is not known before it drives."""
 
     @abstractmethod
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:

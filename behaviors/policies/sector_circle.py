@@ -8,6 +8,8 @@ from hal.robot_settings import InfraredSettings
 class SectorCircleSettings(PolicySettings):
     """Sectors and thresholds."""
 
+    chooses_among = ("spin_right", "curve_right", "forward", "sharp_left")
+
     front: Sector
     left: Sector
     """Sector in which the post appears before it is abeam."""

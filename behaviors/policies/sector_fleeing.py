@@ -8,6 +8,8 @@ from hal.robot_settings import InfraredSettings
 class SectorFleeingSettings(PolicySettings):
     """Sectors and thresholds."""
 
+    chooses_among = ("whirl_left", "curve_left", "curve_right", "flee")
+
     front: Sector
     left: Sector
     right: Sector

@@ -12,6 +12,8 @@ from hal.robot_settings import InfraredSettings
 class SectorWallFollowingSettings(PolicySettings):
     """Sectors and thresholds."""
 
+    chooses_among = ("spin_right", "curve_left", "curve_right", "bear_left", "bear_right", "forward")
+
     front: Sector
     left: Sector
     """Sector that sees the wall before the robot is next to it, so that its distance tells the heading, too."""

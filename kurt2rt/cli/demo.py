@@ -25,7 +25,7 @@ from kurt2rt.cli.options import (
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
 from kurt2rt.experiments.lockstep.seed_result import seed_result
@@ -76,6 +76,7 @@ def demo(options: _Options) -> None:
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
+    require_actions(taught, settings)
     options.out.mkdir(parents=True, exist_ok=True)
     stem = options.out / f"{taught.name}-{options.seed}"
     knowledge, picture = Path(f"{stem}.knowledge"), Path(f"{stem}.png")

@@ -22,7 +22,7 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
@@ -124,6 +124,7 @@ def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
     worlds = (task.teaching.world, *(task.exam.worlds if options.seeds is not None else ()))
     setup.factory.require_worlds(*worlds)
     require_course(setup.factory, task, worlds)
+    require_actions(task, setup.robot)
     if options.seeds is None:
         _one_seed(setup, options, out)
     else:

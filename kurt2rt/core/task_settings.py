@@ -168,13 +168,26 @@ class ExamSettings(Settings):
 class PaperResult(Settings):
     """Results of the paper for this task (section VII)."""
 
-    rlas: int
+    rlas: int = 0
+    """0 if the paper has no such task."""
     teaching_s: Seconds = 0.0
     """0 if the paper does not report it."""
 
     @property
+    def rlas_text(self) -> str:
+        """Return the number of RLAs for tables; a dash for a task that the paper does not have."""
+        return str(self.rlas) if self.rlas else "-"
+
+    @property
+    def teacher_text(self) -> str:
+        """Return the teacher for tables; a dash for a task that the paper does not have."""
+        return "a person" if self.rlas else "-"
+
+    @property
     def teaching_time_text(self) -> str:
-        """Return the teaching time for tables, in whole seconds."""
+        """Return the teaching time for tables, in whole seconds; a dash for a task that the paper does not have."""
+        if not self.rlas:
+            return "-"
         return f"{self.teaching_s:.0f}" if self.teaching_s else "not told"
 
 
@@ -211,7 +224,7 @@ class TaskSettings(Settings):
     course: AnyMetricSettings
     teaching: TeachingSettings
     exam: ExamSettings
-    paper: PaperResult
+    paper: PaperResult = PaperResult()
 
     @property
     def sentence(self) -> str:

@@ -11,7 +11,7 @@ from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
 from hal.errors import UserError
 from hal.plugins import Plugin, PluginKind, import_target, is_target
-from hal.settings import ROBOTS, TASKS, WORLDS, SettingsError, content_of
+from hal.settings import ROBOTS, TASKS, WORLDS, SettingsError, content_of, robot_of_task, robots_tasks
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
 
@@ -60,10 +60,12 @@ class Listed(NamedTuple):
 
 
 def list_parts(kind: PluginKind) -> list[Listed]:
-    """Return the shipped and the installed parts of a kind; nothing is imported."""
+    """Return the shipped and the installed parts of a kind; nothing is imported, except robots for their tasks."""
     shipped, installed = sorted(kind.shipped()), kind.installed()
     names = [each.name for each in installed]
     listed = [Listed(kind.group, name, "kurt2rt", "") for name in shipped]
+    if kind is TASKS:
+        listed += [Listed(kind.group, name, source, "") for name, source in robots_tasks()]
     return [*listed, *(Listed(kind.group, each.name, each.source, _note(each, shipped, names)) for each in installed)]
 
 
@@ -85,6 +87,8 @@ def find_subjects(name_or_path: str, group: str | None = None) -> list[Subject]:
         return [Subject(group, name_or_path)]
     if is_target(name_or_path):
         return [Subject(_group_of_part(name_or_path), name_or_path)]
+    if robot_of_task(name_or_path) is not None:
+        return [Subject(TASKS.group, name_or_path)]
     found = [each for kind in KINDS.values() for each in list_parts(kind) if each.name == name_or_path]
     groups = {each.kind for each in found}
     if not groups:

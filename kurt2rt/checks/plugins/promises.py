@@ -39,7 +39,7 @@ def broken_of_policy(
     return broken_among(
         (
             ("its settings are the same once they were written as JSON", lambda: _survives_json(settings)),
-            ("`choose` names an action of the repertoire", lambda: set(chosen(views)) <= set(actions)),
+            ("`choose` names an action of the repertoire", lambda: _all_known(chosen(views), actions)),
             ("`choose` has no memory", lambda: _has_no_memory(chosen, views)),
         )
     )
@@ -145,6 +145,11 @@ def broken_of_action(settings: PluginAction, robot: RobotSettings) -> list[str]:
             ("`finished` and `lost` are True or False", ends_in_words),
         )
     )
+
+
+def _all_known(chosen: Sequence[str], actions: Collection[str]) -> bool | str:
+    unknown = ", ".join(sorted(set(chosen) - set(actions)))
+    return not unknown or f"it names {unknown}, and the repertoire has {', '.join(actions)}"
 
 
 def _survives_json(settings: Settings) -> bool:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_kind import NO_WIRE, RobotKind
-from hal.robot_settings import RobotSettings
+from hal.robot_settings import BumperEnd, RobotSettings
 from hal.settings import SettingsError, content_of, settings_of, shipped_names
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.learner.conformance import broken_among
@@ -31,6 +31,9 @@ class _Tick(NamedTuple):
 class _Drive:
     """Drive of a simulated robot, tick by tick, after it stood for a second."""
 
+    newest: _Tick
+    """Newest tick."""
+
     def __init__(self, simulation: Simulation, settings: RobotSettings) -> None:
         self.simulation, self.robot = simulation, simulation.robot
         self._cycle_s = settings.cycle_s
@@ -47,7 +50,14 @@ class _Drive:
                 self.simulation.step()
             readings = self.robot.sense(self.now_s)
             result = self.robot.drive(wanted, self.now_s - decided_ago_s, self.now_s)
-        return _Tick(readings, result)
+            self.newest = _Tick(readings, result)
+        return self.newest
+
+    def told(self) -> str:
+        """Return what the guard made of the newest tick."""
+        applied, reasons, _ = self.newest.result
+        why = f" ({', '.join(reasons)})" if reasons else ""
+        return f"the guard applied {applied.left_m_s:+.2f} and {applied.right_m_s:+.2f} m/s in the newest tick{why}"
 
     def left_alone(self, seconds: float) -> None:
         """Let the robot go on without a runtime."""
@@ -90,10 +100,11 @@ def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str
     slow_m_s = _SLOW * fastest_m_s
     ahead, to_left = WheelSpeeds(slow_m_s, slow_m_s), WheelSpeeds(-slow_m_s / 2, slow_m_s / 2)
 
-    def tried(promise: Callable[[_Drive], bool]) -> Callable[[], bool]:
-        def keeps() -> bool:
+    def tried(promise: Callable[[_Drive], bool]) -> Callable[[], bool | str]:
+        def keeps() -> bool | str:
             with closing(factory.open(world, _SEED, _PURPOSE)) as simulation:
-                return promise(_Drive(simulation, settings))
+                drive = _Drive(simulation, settings)
+                return promise(drive) or drive.told()
 
         return keeps
 
@@ -159,6 +170,36 @@ def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str
         drive.robot.release()
         return stopped and drive.tick(to_left).result.wheel_speeds != STANDSTILL
 
+    def sends_the_brake(drive: _Drive) -> bool:
+        drive.tick(to_left)
+        drive.robot.emergency_stop(GuardReason.OTHER)
+        watchdog_s = settings.motors.controller_watchdog_s
+        drive.left_alone(0.5 * watchdog_s)
+        half_way = drive.pose
+        drive.left_alone(0.25 * watchdog_s)
+        turned_rad = abs(drive.pose.heading_rad - half_way.heading_rad)
+        return turned_rad < 0.25 * watchdog_s * slow_m_s / settings.geometry.effective_track_m / 2
+
+    def reads_what_is_there(drive: _Drive) -> bool:
+        """Compare readings with those of the simulated sensors, which may be a measurement newer."""
+        drive.tick(to_left, 3 * _TICKS)
+        counts = drive.tick(STANDSTILL, 2 * _TICKS).readings.infrared_counts
+        there = drive.simulation.sensed_counts
+        return all(abs(told - true) <= 30 + 0.15 * true for told, true in zip(counts, there, strict=True))
+
+    def feels(end: BumperEnd) -> Callable[[_Drive], bool]:
+        against, reason = (1, GuardReason.FRONT_BUMPER) if end is BumperEnd.FRONT else (-1, GuardReason.REAR_BUMPER)
+        wanted = WheelSpeeds(against * slow_m_s, against * slow_m_s)
+
+        def keeps(drive: _Drive) -> bool:
+            for _ in range(_TICKS):
+                drive.tick(wanted, _TICKS)
+                if drive.simulation.touching:
+                    return reason in drive.tick(wanted, 5).result.reasons
+            return False
+
+        return keeps
+
     def brakes_by_itself(drive: _Drive) -> bool:
         drive.tick(to_left)
         drive.left_alone(settings.motors.controller_watchdog_s + 1.0)
@@ -179,6 +220,7 @@ def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str
                 drives.append((drive.tick(to_left), drive.pose))
         return drives[0] == drives[1]
 
+    ends = [end for end in BumperEnd if any(bumper.end is end for bumper in settings.bumpers)]
     return broken_among(
         (
             ("it senses with each sensor of its table, in counts", tried(reads)),
@@ -192,6 +234,9 @@ def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str
             ("a stop lasts until it is released", tried(stays_stopped)),
             ("it brakes by itself when no command comes", tried(brakes_by_itself)),
             ("it stands after it was closed, which may be twice", tried(brakes_when_closed)),
+            ("its readings are those of its sensors, in the order of the table", tried(reads_what_is_there)),
+            ("a stop sends the brake", tried(sends_the_brake)),
+            *((f"a {end} bumper that touches blocks that way", tried(feels(end))) for end in ends),
             ("equal seeds give equal drives", drives_the_same_again),
         )
     )

@@ -34,10 +34,10 @@ def broken_promises(make: LearnerFactory, setting: LearnerSetting) -> list[str]:
     )
 
 
-def broken_among(promises: Iterable[tuple[str, Callable[[], bool]]]) -> list[str]:
+def broken_among(promises: Iterable[tuple[str, Callable[[], bool | str]]]) -> list[str]:
     """Return the promises that do not hold, each in a sentence; an error of a check is told with its promise.
 
-    `promises`: each promise with a function that returns whether it holds.
+    `promises`: each promise with a function that returns whether it holds, or else a text that says what happened.
     """
     broken = []
     for promise, holds in promises:
@@ -46,8 +46,8 @@ def broken_among(promises: Iterable[tuple[str, Callable[[], bool]]]) -> list[str
         except Exception as error:  # noqa: BLE001 - any error of another author's code is a finding about it
             broken.append(f"{promise}: raised {type(error).__name__}: {error}")
         else:
-            if not kept:
-                broken.append(f"{promise}: it does not")
+            if kept is not True:
+                broken.append(f"{promise}: {kept or 'it does not'}")
     return broken
 
 

@@ -3,9 +3,11 @@
 from collections.abc import Iterable
 
 from behaviors.metrics.task_metric import RouteMetric, TaskMetric
+from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 
 def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
@@ -18,6 +20,21 @@ def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Itera
             task.course.require(factory.plan_of(world), task.behaviours)
         except SettingsError as error:
             raise SettingsError(str(error), where=f"task {task.name}") from error
+
+
+def require_actions(task: TaskSettings, robot: RobotSettings) -> None:
+    """Check, before any training, that the repertoire has the actions that the policy chooses among.
+
+    Raises hal.settings.SettingsError that names the task and the missing actions.
+    """
+    repertoire = load_task_repertoire(task, robot)
+    missing = [name for name in task.policy.chooses_among or () if name not in repertoire]
+    if missing:
+        raise SettingsError(
+            f"the policy {task.policy.kind} may say {', '.join(missing)}, which repertoire {task.repertoire} lacks",
+            where=f"task {task.name}",
+            do=f"add to its actions, which are {', '.join(repertoire)}",
+        )
 
 
 def route_of(course: TaskMetric, task: TaskSettings) -> RouteMetric:

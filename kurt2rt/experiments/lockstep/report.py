@@ -30,8 +30,8 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     taught.add_column("")
     taught.add_column("here", number=True)
     taught.add_column("paper", number=True)
-    taught.add_row("teacher", lesson.teacher, "a person")
-    taught.add_row("RLAs", str(len(lesson.rlas)), str(task.paper.rlas))
+    taught.add_row("teacher", lesson.teacher, task.paper.teacher_text)
+    taught.add_row("RLAs", str(len(lesson.rlas)), task.paper.rlas_text)
     taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", task.paper.teaching_time_text)
     taught.add_row("asks", str(lesson.asks), "")
     taught.add_row("corrections", str(lesson.corrections), "")
@@ -221,7 +221,7 @@ def _render_medians(results: Sequence[SeedResult], task: TaskSettings) -> TextTa
     for heading in ("", "median", "quartiles", "paper"):
         summary.add_column(heading, number=bool(heading))
     counted = (
-        ("RLAs", [result.lesson.rlas for result in results], str(task.paper.rlas)),
+        ("RLAs", [result.lesson.rlas for result in results], task.paper.rlas_text),
         ("asks", [result.lesson.asks for result in results], ""),
         ("corrections", [result.lesson.corrections for result in results], ""),
         ("presses", [result.lesson.presses for result in results], ""),

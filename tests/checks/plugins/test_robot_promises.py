@@ -94,6 +94,27 @@ class IgnoresSilence(Wrapped):
         return GuardResult(wanted, (), latched=False) if GuardReason.INFRARED_STALE in result.reasons else result
 
 
+class ReversesItsTable(Wrapped):
+    def sense(self, now_s: float) -> SensorReadings:
+        readings = super().sense(now_s)
+        return readings._replace(infrared_counts=readings.infrared_counts[::-1])
+
+
+class SendsNoBrake(Wrapped):
+    def emergency_stop(self, reason: GuardReason) -> None:
+        pass
+
+
+class FeelsTheOtherEnd(Wrapped):
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        result = super().drive(wanted, decided_at_s, now_s)
+        other = {
+            GuardReason.FRONT_BUMPER: GuardReason.REAR_BUMPER,
+            GuardReason.REAR_BUMPER: GuardReason.FRONT_BUMPER,
+        }
+        return result._replace(reasons=tuple(other.get(each, each) for each in result.reasons))
+
+
 class ReleasesItself(Wrapped):
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         self.robot.release()
@@ -163,6 +184,10 @@ def test_kurt2_keeps_all_promises() -> None:
         (TakesOldForNew, "too old"),
         (IgnoresSilence, "senses are silent"),
         (ReleasesItself, "lasts until it is released"),
+        (ReversesItsTable, "in the order of the table"),
+        (SendsNoBrake, "a stop sends the brake"),
+        (FeelsTheOtherEnd, "a front bumper that touches"),
+        (FeelsTheOtherEnd, "a rear bumper that touches"),
         (CannotBeClosedTwice, "closed, which may be twice"),
     ],
 )
