@@ -63,6 +63,7 @@ def test_rewards_stand_at_the_decision_that_they_are_about() -> None:
 def test_lesson_of_the_critic_is_none_of_a_teacher() -> None:
     (entry,) = [each for each in ENTRIES if len(each.events) == 1 and isinstance(each.events[0], RlaRewarded)][:1]
     event = entry.events[0]
+    assert isinstance(event, RlaRewarded)
     by_critic = replace(event, origin=replace(event.origin, teacher=CRITIC))
     for events, lessons in (((event,), 1), ((by_critic,), 0), ((event, by_critic), 1)):
         episode = only_episode((entry._replace(events=events),))
