@@ -218,7 +218,7 @@ class GuardedRobot(ABC):
             encoder_right_ticks=arrivals.right_ticks,
             encoder_age_s=now_s - self._encoder_at_s,
             bumpers=self._bumpers,
-            bumper_age_s=now_s - self._bumpers_at_s,
+            bumper_age_s=now_s - self._bumpers_at_s if self._bumper_mask else 0.0,  # without bumpers none are missed
         )
 
     def _lose_link(self, error: BusError, now_s: float) -> None:

@@ -9,7 +9,7 @@ from hal.bus import BusError
 from hal.guarded_robot import Arrivals, GuardedRobot
 from hal.infrared_watch import InfraredWatch
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
-from hal.robot_link import BumperReport, ForeignCommandReport, RangeReport, Report, RobotLink, WheelReport
+from hal.robot_link import BumperReport, RangeReport, Report, RobotLink, WheelReport
 from hal.robot_settings import RobotSettings
 from hal.wheel_port import WheelCommand
 
@@ -102,7 +102,7 @@ class LinkedRobot(GuardedRobot):
             case BumperReport(pressed=pressed):
                 self._bumpers = pressed & self._bumper_mask
                 self._bumpers_at_s = at_s
-            case ForeignCommandReport():
+            case _:
                 arrivals.foreign_control += 1
         return True
 

@@ -4,7 +4,7 @@ import hashlib
 import json
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
 from difflib import get_close_matches
 from functools import cache, lru_cache
@@ -299,13 +299,14 @@ def find_task_of_robot(robot: str) -> str | None:
 def robots_task(name: str) -> str | None:
     """Return the task of a robot's plug-in, such as `school/fleeing`, whose settings give it a name.
 
-    None if there is none. Raises SettingsError for a plug-in that cannot be imported, and for a task that is no YAML.
+    None if there is none. A plug-in that cannot be imported, and a file that cannot be read, offer no task.
     """
     for plugin in ROBOTS.installed():
-        for path in sorted((find_robot_kind(plugin.name).folder / TASKS.group).glob("*.yaml")):
-            content = content_of(path)
-            if isinstance(content, dict) and content.get("name") == name:
-                return f"{plugin.name}/{path.stem}"
+        with suppress(SettingsError):
+            for path in sorted((find_robot_kind(plugin.name).folder / TASKS.group).glob("*.yaml")):
+                content = content_of(path)
+                if isinstance(content, dict) and content.get("name") == name:
+                    return f"{plugin.name}/{path.stem}"
     return None
 
 

@@ -31,6 +31,7 @@ from kurt2rt.service.settings import ServiceSettings
 from simbridge.worlds.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine, started
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
+from tests.plugin_packages import install
 from tests.runs.replay.stored_runs import STORED
 from tests.runs.replay.stories import slim
 
@@ -301,6 +302,23 @@ def test_added_policy_is_checked_refused_and_taught_as_printed(kurt2rt: CommandL
     said = kurt2rt("demo", "--task", "my_flight.yaml", *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
     assert Path("results/demo/fleeing-0.knowledge").is_file()
+
+
+def test_robot_of_the_docs_is_made_checked_and_taught(kurt2rt: CommandLine, plugin_folder: Path) -> None:
+    text = (ROOT / "docs/teach-another-robot.md").read_text(encoding="utf-8")
+    made, installed, checked, taught = re.findall(r"^\$ (.+)$", text, re.MULTILINE)[:4]
+    assert kurt2rt(*shlex.split(made)[1:]).exit_code == 0
+    assert installed == "pip install -e rover"
+    project = tomllib.loads(Path("rover/pyproject.toml").read_text(encoding="utf-8"))["project"]
+    install(plugin_folder / "rover", "rover", {"robots": project["entry-points"]["kurt2rt.robots"]})
+    said = kurt2rt(*shlex.split(checked)[1:])
+    assert f"$ {checked}\n{said.out}" in text
+    short = ("teaching.supervised_s=20", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
+    said = kurt2rt(*shlex.split(taught)[1:], *(word for each in short for word in ("--set", each)))
+    assert said.exit_code in (0, 1), said.err
+    assert Path("results/demo/rover_fleeing-620.knowledge").is_file()
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in Path("rover/rover").glob("*.py"))
+    assert lines <= 300
 
 
 @pytest.mark.deep

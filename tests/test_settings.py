@@ -86,7 +86,7 @@ def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) 
     for missing in ("kurt3", str(tmp_path / "other.yaml"), str(tmp_path), ""):
         with pytest.raises(
             SettingsError,
-            match=r"\brobots\b.*: kurt2(;.* kurt2\?)?$",
+            match=r"\brobots\b.*: kurt2(, \w+)*(;.* kurt2\?)?$",
         ):
             find_config("robots", missing)
 
@@ -319,7 +319,8 @@ def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, 
 def test_task_as_json_keeps_every_key_of_policy_and_course(name: str) -> None:
     written = json.loads(load_task(name).model_dump_json())
     file = yaml.safe_load((CONFIG_DIR / "tasks" / f"{name}.yaml").read_text())
-    assert (written["policy"], written["course"]) == (file["policy"], file["course"])
+    for part in ("policy", "course"):
+        assert file[part].items() <= written[part].items()  # a key that the file leaves out has its default
 
 
 def test_task_without_behaviours_has_one_without_a_name(tmp_path: Path) -> None:
@@ -371,7 +372,7 @@ def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
         (
             "kind: wall_following",
             "kind: wall_folowing",
-            r"^policy\.kind: .*'wall_folowing'; .*: circle, eight, fleeing, streets, wall",
+            r"^policy\.kind: .*'wall_folowing'; .*: circle, eight, fleeing, .*streets, wall",
         ),
         ("kind: wall_following", "kind: policy", r"^policy\.kind: .*'policy'; .*: circle, eight"),
         ("kind: wall_following", "kind: 7", r"^policy\.kind: .*7\)"),

@@ -104,9 +104,10 @@ def rivals(options: _Options) -> None:
     collisions while it was taught, the machine's time, and what an undo
     restores; each row is compared with the RLA system robot by robot.
 
-    For example, all of the league; one with another gate; and your own:
+    For example, the league with the settings that an equal tuning found;
+    another league; one learner with another gate; and your own:
 
-        kurt2rt rivals
+        kurt2rt rivals --tuned presses
         kurt2rt rivals --league holds
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
         kurt2rt rivals --learner mine:Mine --check

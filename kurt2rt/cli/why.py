@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from hal.robot_settings import RobotSettings, load_robot
-from hal.settings import SettingsError
+from hal.settings import SettingsError, robot_of_task, robots_task
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
@@ -210,8 +210,12 @@ def _show_live(
     as_json: bool,
 ) -> None:
     device = _device(service, name or ONLOOKER)
-    robot = load_robot(service.robot)
-    facts, found = ask_why(device, host or device.host, port or device.port, robot)
+
+    def robot_of(task: str) -> RobotSettings:
+        noted, other = load_robot(service.robot), robot_of_task(robots_task(task) or "")
+        return noted if other in (None, noted.kind) else load_robot(other)
+
+    facts, found, robot = ask_why(device, host or device.host, port or device.port, robot_of)
     where = f"now: {facts.task} on {facts.robot}, tick {facts.tick}"
     if as_json:
         print_json({"facts": facts, "tips": found, "picture": picture})

@@ -1,11 +1,12 @@
 """Explanation of the newest decision of a running robot for `kurt2rt why --live`."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import anyio
 
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
+from hal.settings import SettingsError, robots_task
 from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation
@@ -24,10 +25,16 @@ class LiveQuestion(NamedTuple):
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]
     """Counterfactuals among the reported RLAs; empty for a task that is unknown here."""
+    robot: RobotSettings
 
 
 def ask_why(
-    device: Device, host: str, port: int, robot: RobotSettings, *, patience_s: float = ANSWER_WITHIN_S
+    device: Device,
+    host: str,
+    port: int,
+    robot_of: Callable[[str], RobotSettings],
+    *,
+    patience_s: float = ANSWER_WITHIN_S,
 ) -> LiveQuestion:
     """Ask a robot, as a client that does not teach, for the facts behind its newest decision.
 
@@ -35,7 +42,7 @@ def ask_why(
         device: paired device of this machine.
         host: address of the robot.
         port: UDP port of the robot.
-        robot: settings, for the sensors.
+        robot_of: returns the settings of the robot that a task of this name is taught to.
         patience_s: time to wait for the answer, in s.
 
     Raises:
@@ -54,7 +61,8 @@ def ask_why(
         facts = anyio.run(ask)
     except NoAnswerError as error:
         raise no_robot(host, port, device.name) from error
-    return LiveQuestion(facts, _counterfactuals_of(facts, robot))
+    robot = robot_of(facts.task)
+    return LiveQuestion(facts, _counterfactuals_of(facts, robot), robot)
 
 
 def _counterfactuals_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[SensorCounterfactual, ...]:
@@ -63,7 +71,7 @@ def _counterfactuals_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[Sen
     Unless all RLAs were reported, an unreported one may answer instead of a question.
     """
     try:
-        definition = load_situation(load_task(facts.task).situation, robot.infrared.names)
+        definition = load_situation(load_task(robots_task(facts.task) or facts.task).situation, robot.infrared.names)
     except SettingsError:  # the task is unknown on this machine
         return ()
     if definition.names != facts.basic.names or len(facts.infrared_counts) != len(robot.infrared.sensors):

@@ -51,10 +51,13 @@ class Inbox(Generic[MessageT]):
         port.subscribe(topic, self._keep)
 
     def take(self, read: Callable[[MessageT, float], ResultT]) -> Iterator[ResultT]:
-        """Yield what `read` makes of each message that waits, oldest first, and of its age in s.
+        """Return what `read` makes of each message that waits, oldest first, and of its age in s.
 
         A message for which it raises kurt2rt.ros.messages.InvalidMessageError is junk as well.
         """
+        return self._read(read) if self._waiting else iter(())  # most ticks find none
+
+    def _read(self, read: Callable[[MessageT, float], ResultT]) -> Iterator[ResultT]:
         for _ in range(len(self._waiting)):
             payload, arrived_s, wall_s = self._waiting.popleft()
             try:

@@ -107,3 +107,32 @@ def test_sectors_any_headings_get_the_rays_nearest(headings: list[int], angle_de
     (sector,) = (index for index, distance in enumerate(found) if not math.isnan(distance))
     apart = [abs((angle_deg - heading + 180) % 360 - 180) for heading in headings]
     assert apart[sector] == min(apart)
+
+
+def test_sectors_thing_that_came_too_near_stays_near() -> None:
+    reduction = SectorReduction(HEADINGS, zero_is_far=True)
+    gone, wall = [0.0] * RAYS, [0.0] * 80 + [0.15] * 20 + [0.0] * 260
+    assert reduction.distances_m(scan(gone))[6] == math.inf
+    assert reduction.distances_m(scan(wall))[6] == pytest.approx(0.15)
+    for _ in range(3):
+        assert reduction.distances_m(scan(gone))[6] == pytest.approx(NEAR)
+    assert reduction.distances_m(scan([1.0] * RAYS))[6] == 1.0
+    assert reduction.distances_m(scan(gone))[6] == math.inf
+
+
+def test_sectors_thing_that_a_turn_took_along_does_not_stay() -> None:
+    reduction = SectorReduction(HEADINGS, zero_is_far=True)
+    post = [0.0] * 85 + [0.15] * 10 + [0.0] * 265
+    reduction.distances_m(scan(post))
+    found = reduction.distances_m(scan([*post[25:], *post[:25]]))  # a turn of 25 degrees to the left
+    assert [index for index, distance in enumerate(found) if distance < math.inf] == [4, 5]
+
+
+def test_sectors_wall_that_is_driven_into_stays_near() -> None:
+    reduction = SectorReduction(HEADINGS, zero_is_far=True)
+    for distance_m in (0.22, 0.19, 0.16, 0.13, 0.1, 0.07):
+        exact = [distance_m / max(1e-9, math.cos(math.radians(angle))) for angle in range(RAYS)]
+        found = reduction.distances_m(scan([each if NEAR <= each <= FAR else 0.0 for each in exact]))
+        assert found[0] == pytest.approx(max(NEAR, distance_m), rel=0.02)
+        assert found[1] < 0.25
+        assert found[12] == math.inf

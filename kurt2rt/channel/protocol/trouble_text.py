@@ -6,7 +6,7 @@ from typing import Final
 
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 
-_SWITCH_ON = "look whether the robot is switched on and its CAN cable sits; the robot stands until they are back"
+_SWITCH_ON = "look whether the robot is switched on and its cable sits; the robot stands until they are back"
 _END_OTHER_WORK = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"
 _CHECK_CABLE = "check cable, termination and bit rate"
 _CHECK_SENSOR = "check its plug and its lens; until then the sensors next to it stand in for it"

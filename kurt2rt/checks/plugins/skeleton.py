@@ -9,7 +9,7 @@ from string import Template
 
 from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
-from hal.settings import TASKS, WORLDS
+from hal.settings import ROBOTS, TASKS, WORLDS
 from kurt2rt.checks.plugins.kinds import KINDS, NoPluginError
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
@@ -26,7 +26,19 @@ _USES = {
     BEHAVIOURS.group: "\nA repertoire takes it in its file: `{kind: $name, name: my_action}` with its settings.\n",
     TASKS.group: "\n`kurt2rt demo --task $name` teaches it.\n",
     WORLDS.group: "\n`kurt2rt run --world $name` drives in it.\n",
+    ROBOTS.group: "\n`kurt2rt demo --task $name/fleeing` teaches it, once it is installed.\n"
+    "`docs/teach-another-robot.md` of kurt2rt explains its files.\n",
 }
+_FILES_OF_A_ROBOT = {
+    "__init__.py": "__init__.py",
+    "link.py": "link.py",
+    "simulated.py": "simulated.py",
+    "data/robots/{name}.yaml": "robot.yaml",
+    "data/situations/basic.yaml": "situation.yaml",
+    "data/repertoires/basic.yaml": "repertoire.yaml",
+    "data/tasks/fleeing.yaml": "fleeing.yaml",
+}
+"""Templates in the folder of robots by the files that are made of them."""
 
 
 def write_skeleton(group: str, name: str, folder: Path) -> list[Path]:
@@ -40,16 +52,21 @@ def write_skeleton(group: str, name: str, folder: Path) -> list[Path]:
     if folder.exists():
         raise NoPluginError("is there already", where=folder, do="give another name or --out, or remove it")
     class_name = "".join(each.capitalize() for each in name.split("_"))
-    part = {TASKS.group: "TASK", WORLDS.group: "world"}.get(group, class_name)
+    part = {TASKS.group: "TASK", WORLDS.group: "world", ROBOTS.group: name.upper()}.get(group, class_name)
     values = {"name": name, "group": group, "part": part, "distribution": name.replace("_", "-")}
     values["use"] = Template(_USES[group]).substitute(values)
     templates = {
         folder / "pyproject.toml": "pyproject.toml.txt",
         folder / "README.md": "README.md.txt",
         folder / f"test_{name}.py": "test.py.txt",
-        folder / name / "__init__.py": f"{group}.py.txt",
-        **({folder / name / f"{name}.yaml": "task.yaml.txt"} if group == TASKS.group else {}),
     }
+    if group == ROBOTS.group:
+        parts = {path.format(name=name): f"{group}/{template}.txt" for path, template in _FILES_OF_A_ROBOT.items()}
+    else:
+        parts = {"__init__.py": f"{group}.py.txt"}
+    if group == TASKS.group:
+        parts[f"{name}.yaml"] = "task.yaml.txt"
+    templates |= {folder / name / path: template for path, template in parts.items()}
     for path, template in templates.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         text = files("kurt2rt.checks.plugins").joinpath("templates", template).read_text(encoding="utf-8")

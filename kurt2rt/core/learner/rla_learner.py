@@ -21,27 +21,27 @@ class RlaLearner:
     """
 
     def __init__(self, setting: LearnerSetting) -> None:
-        self._setting = setting
+        self.setting = setting
         self._lessons = 0
-        self._system = self._empty()
+        self.system = self._empty()
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
         """Return the action of the RLA nearest to a situation (d,); None outside R, or its share while `taught`."""
-        self._system.radius_share = self._setting.asks_beyond_share if taught else 1.0
-        match = self._system.match(situation)
+        self.system.radius_share = self.setting.asks_beyond_share if taught else 1.0
+        match = self.system.match(situation)
         return match.rla.action if match is not None and match.known else None
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
         """Insert an RLA at a situation (d,), or replace the action of the one that is near."""
-        nearest = self._system.match(situation)
+        nearest = self.system.match(situation)
         if nearest is not None:
             says_so = nearest.rla.action == action
             if says_so and nearest.known and why in _ESTIMATED:
                 return
-            share = 0.0 if why is Why.ANSWER else self._setting.insert_beyond_share
-            if nearest.distance <= share * self._system.whole_radius(nearest.rla):
+            share = 0.0 if why is Why.ANSWER else self.setting.insert_beyond_share
+            if nearest.distance <= share * self.system.whole_radius(nearest.rla):
                 if not says_so:
-                    self._system.apply(
+                    self.system.apply(
                         ActionReplaced(nearest.rla.rla_id, action, nearest.rla.action, self._next_origin())
                     )
                 return
@@ -49,23 +49,23 @@ class RlaLearner:
 
     def snapshot(self) -> bytes:
         """Return conditions and actions of the RLAs."""
-        rlas = self._system.rlas
-        conditions = np.array([rla.condition for rla in rlas]).reshape(len(rlas), self._setting.dimensions)
+        rlas = self.system.rlas
+        conditions = np.array([rla.condition for rla in rlas]).reshape(len(rlas), self.setting.dimensions)
         return pack(conditions, [rla.action for rla in rlas])
 
     def restore(self, data: bytes) -> None:
         """Hold the RLAs of a snapshot. Raises ValueError for bytes that are none."""
-        conditions, actions = unpack(data, self._setting.dimensions)
-        self._system = self._empty()
+        conditions, actions = unpack(data, self.setting.dimensions)
+        self.system = self._empty()
         for condition, action in zip(conditions, actions, strict=True):
             self.insert(tuple(condition.tolist()), action)
 
     def insert(self, condition: tuple[float, ...], action: str) -> None:
         """Add an RLA with a condition of d numbers."""
-        self._system.apply(RlaCreated(Rla(self._system.next_id, condition, action, None, self._next_origin())))
+        self.system.apply(RlaCreated(Rla(self.system.next_id, condition, action, None, self._next_origin())))
 
     def _empty(self) -> RlaSystem:
-        return RlaSystem(self._setting.dimensions, self._setting.radius, self._setting.weights)
+        return RlaSystem(self.setting.dimensions, self.setting.radius, self.setting.weights)
 
     def _next_origin(self) -> Origin:
         self._lessons += 1

@@ -1,7 +1,7 @@
 """Training run: a scripted teacher teaches the robot in lockstep."""
 
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import accumulate
 
@@ -198,6 +198,11 @@ class TrainingRun(Episode):
     def presses(self) -> int:
         """Number of presses that the teacher has sent."""
         return len(self._workload.press_ticks)
+
+    @property
+    def correction_ticks(self) -> Sequence[int]:
+        """Ticks in which the teacher sent a correction, or began to hold an action."""
+        return self._workload.correction_ticks
 
     async def drive(self) -> None:
         """Teach all phases of the plan."""

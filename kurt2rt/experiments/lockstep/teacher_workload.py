@@ -66,6 +66,8 @@ class TeacherWorkload:
         self._confirmed = False
         self.press_ticks: list[int] = []
         """Tick of each press, in order; one tick may have several."""
+        self.correction_ticks: list[int] = []
+        """Tick of each correction, and of the begin of each hold."""
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
@@ -111,7 +113,9 @@ class TeacherWorkload:
         self._set(place, now._replace(**{what: getattr(now, what) + 1}), tick)
 
     def _set(self, place: int, minute: WorkloadMinute, tick: int) -> None:
-        self.press_ticks.extend([tick] * (minute.presses - self._minutes[place].presses))
+        before = self._minutes[place]
+        self.press_ticks.extend([tick] * (minute.presses - before.presses))
+        self.correction_ticks.extend([tick] * (minute.corrections - before.corrections))
         self._minutes[place] = minute
 
     def _place(self, tick: int) -> int:

@@ -1,27 +1,33 @@
 """Jobs of a league: drives of the policy, and lesson and exams of one robot with one rival."""
 
-from collections.abc import Callable, Sequence
-from contextlib import closing
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
-from hal.batch_lesson import LessonFactory
-from hal.batch_refusal import BatchRefusedError
 from hal.simulation import Simulation
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.learner.learner import OWN, Label, Signal
+from kurt2rt.core.learner.learner import OWN, Label, LearnerFactory, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, DriveLoops
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.rivals.following import followed_by_rlas
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
-from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival, teach_rival_in_batch
+from kurt2rt.experiments.rivals.lesson import (
+    OnProgress,
+    RivalLesson,
+    RivalSetup,
+    give_lesson,
+    in_batch_or_on_bus,
+    teach_rival,
+)
 from kurt2rt.experiments.rivals.marks import Mark
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalCheckpoint, RivalOutcome
 from kurt2rt.experiments.rivals.rival import Rival
@@ -29,7 +35,7 @@ from kurt2rt.experiments.rivals.undo import Undo, undo_of_learner, undo_of_rlas
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.transfer.jobs import verdict_by
 from kurt2rt.experiments.transfer.outcome import Drive, drive_of
-from kurt2rt.runtime import Runtime, empty_system
+from kurt2rt.runtime import empty_system
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -103,18 +109,16 @@ class RivalJob(StudyJob):
 
         Raises NoLearnerError, SettingsError, LessonLostError, and StudyError without the drives of the policy.
         """
-        try:
-            return await self._measure(self.loops, report)
-        except BatchRefusedError:  # a learner failed, or the batch does not know the task
-            return await self._measure(ON_BUS, report)
+        return await in_batch_or_on_bus(lambda loops: self._measure(loops, report), self.loops)
 
     async def _measure(self, loops: DriveLoops, report: Report) -> RivalOutcome:
         clock = LearnerClock()
-        lesson, runtime, team = await self._teach(loops.lesson, clock, report)
+        lesson = await self._teach(loops.lesson, clock, report)
+        team = lesson.setup.team
         failures = [team.failure if team is not None else ""]
         checkpoints = await self._checkpoints(lesson.marks, clock, failures, loops.exams, report)
         result = lesson.result
-        undo = self._undo(lesson, runtime, team)
+        undo = self._undo(lesson)
         return RivalOutcome(
             made_of=self.made_of,
             seed=self.seed,
@@ -136,48 +140,39 @@ class RivalJob(StudyJob):
             tick_p99_us=result.ledger.tick().p99_us if result.ledger.ticks else None,
             undo_s=undo.seconds,
             undo_restores=undo.restores,
+            change_ticks=lesson.change_ticks,
+            followed_share=self._followed_share(lesson, clock),
         )
 
-    async def _teach(
-        self, loop: DriveLoop, clock: LearnerClock, report: Report
-    ) -> tuple[RivalLesson, Runtime, LearnerTeam | None]:
-        """Give the lesson; return it with the runtime and the learners that were taught; None: RLAs were."""
-        seconds, what = self.task.teaching.duration_s, f"teaching in world {self.task.teaching.world}"
-
-        def on_progress(done_s: float) -> None:
-            report(what, done_s, seconds)
-
-        team = self._new_team(clock)
-        if loop is DriveLoop.BATCH and isinstance(self.factory, LessonFactory):
-            given = teach_rival_in_batch(
-                self.factory, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
-            )
-            if given is not None:
-                on_progress(seconds)
-                return *given, team
+    async def _teach(self, loop: DriveLoop, clock: LearnerClock, report: Report) -> RivalLesson:
+        def new_setup() -> RivalSetup:
             clock.restart()
             team = self._new_team(clock)
-        with closing(self.factory.open(self.task.teaching.world, self.seed, "lesson")) as simulation:
-            given = await self._teach_on_bus(simulation, team, clock, on_progress)
-        on_progress(seconds)
-        return *given, team
+            return RivalSetup(robot=self.robot, task=self.task, seed=self.seed, team=team, after=self.after)
+
+        async def on_bus(simulation: Simulation, setup: RivalSetup, on_progress: OnProgress) -> RivalLesson:
+            return await self._teach_on_bus(simulation, setup, clock, on_progress)
+
+        return await give_lesson(self.factory, new_setup, loop, report, on_bus)
 
     async def _teach_on_bus(
         self,
         simulation: Simulation,
-        team: LearnerTeam | None,
+        setup: RivalSetup,
         clock: LearnerClock,  # noqa: ARG002 - for other teachers
-        on_progress: Callable[[float], None],
-    ) -> tuple[RivalLesson, Runtime]:
+        on_progress: OnProgress,
+    ) -> RivalLesson:
         """Give the lesson over the CAN bus; a subclass has another teacher."""
-        return await teach_rival(
-            simulation, self.robot, self.task, team, self.after, seed=self.seed, on_progress=on_progress
-        )
+        return await teach_rival(simulation, setup, on_progress)
 
     def _new_team(self, clock: LearnerClock) -> LearnerTeam | None:
         if not self.rival.is_learner:
             return None
-        return self.rival.new_team(self.task, self.robot, self.seed, clock.timed(self.rival.factory()))
+        return self._team_of(clock.timed(self.rival.factory()))
+
+    def _team_of(self, make: LearnerFactory) -> LearnerTeam:
+        """Return learners that know nothing; a subclass has another team."""
+        return self.rival.new_team(self.task, self.robot, self.seed, make)
 
     async def _checkpoints(
         self, marks: Sequence[Mark], clock: LearnerClock, failures: list[str], loop: DriveLoop, report: Report
@@ -204,29 +199,37 @@ class RivalJob(StudyJob):
         report: Report,
     ) -> tuple[Drive, ...]:
         """Return the drives in each world, up to the first that failed: one failure decides the success."""
-        team = self._new_team(clock)
+        task, team = self.rival.examined(self.task), self._new_team(clock)
         if team is not None:
             team.teach_all(mark.lessons)
         drives: list[Drive] = []
-        for world, policy in zip(self.task.exam.worlds, policies, strict=True):
+        for world, policy in zip(task.exam.worlds, policies, strict=True):
             setup = ExamSetup(world, self.seed, learners=team)
             exams = [BatchExam(setup, mark.events)]
-            (exam,) = await run_drives(self.factory, self.robot, self.task, exams, report, loop)
-            drives.append(drive_of(exam, verdict_by(policy, exam, self.task.exam.success)))
+            (exam,) = await run_drives(self.factory, self.robot, task, exams, report, loop)
+            drives.append(drive_of(exam, verdict_by(policy, exam, task.exam.success)))
             if team is not None:
                 failures.append(team.failure)
             if drives[-1].judged and not drives[-1].passed:
                 break
         return tuple(drives)
 
-    def _undo(self, lesson: RivalLesson, runtime: Runtime, team: LearnerTeam | None) -> Undo:
+    def _undo(self, lesson: RivalLesson) -> Undo:
+        team = lesson.setup.team
         if team is not None:
             other = self._new_team(LearnerClock())
             assert other is not None
             return undo_of_learner(team, other)
+        return undo_of_rlas(lesson.runtime.level.system, self._empty_system(lesson), lesson.marks[-1].events)
+
+    def _followed_share(self, lesson: RivalLesson, clock: LearnerClock) -> float | None:
+        if lesson.setup.team is not None:
+            return clock.followed / clock.lessons if clock.lessons else None
+        return followed_by_rlas(self._empty_system(lesson), lesson.marks[-1].events)
+
+    def _empty_system(self, lesson: RivalLesson) -> RlaSystem:
         mid = None if self.task.mid is None else load_mid_level(self.task.mid)
-        other_system = empty_system(runtime.task, runtime.definition, load_critic(self.task.critic), mid)
-        return undo_of_rlas(runtime.level.system, other_system, lesson.marks[-1].events)
+        return empty_system(self.task, lesson.runtime.definition, load_critic(self.task.critic), mid)
 
 
 def _labels_by_teacher(lessons: Sequence[Label | Signal]) -> int:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
-from kurt2rt.experiments.rivals.rival import PLAIN, SHIPPED, TUNED
+from kurt2rt.experiments.rivals.rival import ACTS, ASKS_AT_RANDOM, PLAIN, SHIPPED, TUNED
 from kurt2rt.experiments.rivals.signals.rows import TITLES as SIGNALS
 
 
@@ -24,9 +24,12 @@ ROWS: Mapping[LeagueName, tuple[str, ...]] = {
         SHIPPED,
         TUNED,
         PLAIN,
+        ACTS,
         "1-nn",
         "k-nn",
         "weighted-vote",
+        "vote-without-gate",
+        ASKS_AT_RANDOM,
         "gp",
         "svm",
         "tree",

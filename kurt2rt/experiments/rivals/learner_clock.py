@@ -1,4 +1,4 @@
-"""Clock of a learner: the processor time of its lessons and decisions, which other work does not lengthen."""
+"""Clock of a learner: the processor time of its lessons and decisions, and how many lessons act at once."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -6,21 +6,25 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.learner.learner import Driven, Learner, LearnerFactory, LearnerSetting, SignalLearner, Why
+from kurt2rt.core.learner.learner import OWN, Driven, Learner, LearnerFactory, LearnerSetting, SignalLearner, Why
 
 
 class LearnerClock:
-    """Processor time of all learners that were made with it."""
+    """Processor time of all learners that were made with it, which other work does not lengthen."""
 
     def __init__(self) -> None:
+        self.lessons = 0
+        """Number of lessons with an action."""
+        self.followed = 0
+        """Number of these that the first decision after them follows in their situation."""
         self.retraining_ns = 0
         """Time of all lessons, each with the first decision after it, which may fit the learner to it."""
         self.longest_ns = 0
         """Time of the longest decision."""
 
     def restart(self) -> None:
-        """Forget all times, because the lesson begins again."""
-        self.retraining_ns = self.longest_ns = 0
+        """Forget all times and counts, because the lesson begins again."""
+        self.retraining_ns = self.longest_ns = self.lessons = self.followed = 0
 
     @property
     def retraining_s(self) -> float:
@@ -56,6 +60,8 @@ class _TimedLearner:
         self.learner = learner
         self._clock = clock
         self._is_taught_since = False
+        self._given: list[tuple[NDArray[np.float64], str]] = []
+        """Lessons since the last decision: situation (d,) and action."""
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
         began_ns = time.thread_time_ns()
@@ -65,10 +71,18 @@ class _TimedLearner:
         if self._is_taught_since:
             self._clock.retraining_ns += took_ns
             self._is_taught_since = False
+            self._count_followed()
         return action
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
         self._learn(lambda: self.learner.lesson(situation, action, why))
+        if why not in OWN:
+            self._given.append((situation, action))
+
+    def _count_followed(self) -> None:
+        self._clock.lessons += len(self._given)
+        self._clock.followed += sum(self.learner.decide(there, taught=True) == action for there, action in self._given)
+        self._given.clear()
 
     def _learn(self, lesson: Callable[[], None]) -> None:
         began_ns = time.thread_time_ns()

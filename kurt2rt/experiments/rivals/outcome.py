@@ -72,3 +72,10 @@ class RivalOutcome(Settings):
     """Processor time of the undo of the last lesson, with a decision after it."""
     undo_restores: bool
     """True if that undo restores the decisions of before in the situations of all lessons."""
+    change_ticks: tuple[int, ...]
+    """Ticks from each correction of a robot that drove to the first tick of another action, or of none."""
+    followed_share: float | None
+    """Share of lessons after which the next decision is as told, in the situation of the lesson, 0 to 1.
+
+    None without a lesson that names an action.
+    """

@@ -10,7 +10,8 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.rivals.holds.jobs import HeldRivalJob
 from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
-from kurt2rt.experiments.rivals.rival import SHIPPED, TUNED, Rival
+from kurt2rt.experiments.rivals.random_questions import RandomQuestionsJob
+from kurt2rt.experiments.rivals.rival import ASKS_AT_RANDOM, SHIPPED, TUNED, Rival
 from kurt2rt.experiments.rivals.signals.jobs import RewardedRivalJob
 from kurt2rt.experiments.rivals.tuned import TunedRivals
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
@@ -18,7 +19,7 @@ from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopCho
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 
-DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob)
+DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob, RandomQuestionsJob)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -129,6 +130,8 @@ def make_plan(
 
 
 def _job_class(rival: Rival) -> type[RivalJob]:
+    if rival.name == ASKS_AT_RANDOM:
+        return RandomQuestionsJob
     if rival.is_held:
         return HeldRivalJob
     return RewardedRivalJob if rival.is_rewarded else RivalJob
@@ -167,9 +170,11 @@ class League:
     policies: tuple[PolicyOutcome, ...]
     rows: tuple[Row, ...]
 
-    def shipped(self, task: str) -> Row:
-        """Return the row of the RLA system as shipped, in a task of the league."""
-        return next(row for row in self.rows if row.entry.task == task and row.entry.rival.name == SHIPPED)
+    def of_task(self, task: str) -> tuple[Row, tuple[Row, ...]]:
+        """Return the row of the RLA system as shipped in a task of the league, and the other rows."""
+        own = [row for row in self.rows if row.entry.task == task]
+        shipped = next(row for row in own if row.entry.rival.name == SHIPPED)
+        return shipped, tuple(row for row in own if row is not shipped)
 
 
 def read_league(plan: LeaguePlan, results: Results) -> League:

@@ -9,9 +9,12 @@ from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNAL_TARGETS
 _ROOM = "kurt2rt.experiments.rivals.learners"
 _BUILTIN = {
     "rla-door": "kurt2rt.core.learner.rla_learner:RlaLearner",
+    "rla-vote": f"{_ROOM}.rla_vote:RlaVote",
     "1-nn": f"{_ROOM}.nearest_neighbour:NearestNeighbour",
     "k-nn": f"{_ROOM}.k_nearest:KNearest",
     "weighted-vote": f"{_ROOM}.weighted_vote:WeightedVote",
+    "vote-without-gate": f"{_ROOM}.vote_without_gate:VoteWithoutGate",
+    "vote-asks-at-random": f"{_ROOM}.vote_without_gate:VoteWithoutGate",
     "gp": f"{_ROOM}.gaussian_process:GaussianProcess",
     "svm": f"{_ROOM}.support_vectors:SupportVectors",
     "tree": f"{_ROOM}.decision_tree:DecisionTree",

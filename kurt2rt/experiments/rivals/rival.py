@@ -20,15 +20,27 @@ SHIPPED = "rla"
 PLAIN = "rla-plain"
 TUNED = "rla-tuned"
 """Name of the RLA system with as much tuning as the learners, and the weights of the task, as they have."""
+ACTS = "rla-acts"
+"""Name of the RLA system as shipped that acts beyond R in exams, where the shipped one stands."""
+ASKS_AT_RANDOM = "vote-asks-at-random"
+"""Name of the vote without a gate whose robot asks at random."""
+_FAR = 1000.0
+"""Factor of R in exams of `ACTS`: farther than any situation."""
+_DOOR = ("rla-door", "rla-vote")
+"""Variants of the RLA system that are taught through the door of the learners."""
 _LEARNING = "learning."
 _TITLES = {
     SHIPPED: "RLA, as shipped",
     PLAIN: "RLA, plain reading of the paper",
     TUNED: "RLA, tuned as the others",
+    ACTS: "RLA, acts beyond R in exams",
     "rla-door": "RLA through the door",
+    "rla-vote": "RLA through the door, vote of RLAs within R",
     "1-nn": "1-NN without R",
     "k-nn": "5-NN with R",
     "weighted-vote": "locally weighted vote with R",
+    "vote-without-gate": "weighted vote, never asks",
+    ASKS_AT_RANDOM: "weighted vote, asks at random",
     "gp": "Gaussian process, variance gate",
     "svm": "RBF-SVM, margin gate",
     "tree": "decision tree, refitted",
@@ -76,7 +88,12 @@ class Rival:
     @property
     def is_learner(self) -> bool:
         """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
-        return self.name not in (SHIPPED, PLAIN, TUNED, HELD, REWARDED)
+        return self.name not in (SHIPPED, PLAIN, TUNED, ACTS, HELD, REWARDED)
+
+    @property
+    def is_rla_system(self) -> bool:
+        """Return whether the rival is a variant of the RLA system, so that no claim counts it as another learner."""
+        return not self.is_learner or self.name in _DOOR
 
     @property
     def is_held(self) -> bool:
@@ -116,6 +133,13 @@ class Rival:
         if self.name != PLAIN:
             return task
         return taught_by(task.model_copy(update={"learning": task.plain}), task.teaching.profile)
+
+    def examined(self, task: TaskSettings) -> TaskSettings:
+        """Return the task with the settings of this rival's exams."""
+        if self.name != ACTS:
+            return task
+        far = task.learning.model_copy(update={"radius": _FAR * task.learning.radius})
+        return task.model_copy(update={"learning": far})
 
     def tuned_by(self, found: TunedRival | None) -> "Rival":
         """Return the rival with tuned settings; a gate that was asked for stays. None: as it is."""

@@ -3,15 +3,14 @@
 from collections.abc import Callable, Iterator, Sequence
 from statistics import median
 
-from kurt2rt.experiments.lockstep.report import wilson_interval
+from kurt2rt.experiments.rivals.cells import heading, share_text
+from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
 from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
 
-_CLAIMED = 0.9
-"""Part of the success of the RLA system that refutes the claim."""
 _GATES = (
     "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
 )
@@ -31,7 +30,11 @@ def tuning_text(league: League) -> str:
 def all_tables(league: League) -> Iterator[Table]:
     """Yield all tables: success by presses, the comparison, the effort, the machine, and failures if there are any."""
     yield success_table(league)
-    yield claim_table(league)
+    claim = claim_table(league)
+    if claim.rows:
+        yield claim
+    if any(entry.rival.is_held for entry in league.plan.entries):
+        yield hands_table(league)
     yield comparison_table(league)
     yield effort_table(league)
     yield machine_table(league)
@@ -48,8 +51,8 @@ def success_table(league: League) -> Table:
         ("task", "learner", *(f"after {presses}" for presses in after), "at the end", "mean"),
         tuple(
             (
-                *_heading(row),
-                *(_share(row.passed(place), len(row.judged)) for place in places),
+                *heading(row),
+                *(share_text(row.passed(place), len(row.judged)) for place in places),
                 f"{row.mean_share:.0%}" if row.judged else "",
             )
             for row in league.rows
@@ -62,50 +65,15 @@ def success_table(league: League) -> Table:
     )
 
 
-def claim_table(league: League) -> Table:
-    """Return whether a rival comes close to the RLA system as shipped, task by task, at the end of the lessons."""
-    rows = []
-    for task in league.plan.tasks:
-        shipped = league.shipped(task.name)
-        own = (row for row in league.rows if row.entry.task == task.name and row.entry.rival.is_learner)
-        best = max((row for row in own if row.judged), key=_share_at_end, default=None)
-        if best is None or not shipped.judged:
-            continue
-        ours, theirs = _share_at_end(shipped), _share_at_end(best)
-        rows.append(
-            (
-                task.name,
-                _share(shipped.passed(-1), len(shipped.judged)),
-                best.entry.rival.title,
-                _share(best.passed(-1), len(best.judged)),
-                f"{theirs / ours:.2f}" if ours else "-",
-                "refuted" if theirs >= _CLAIMED * ours else "stands",
-            )
-        )
-    return Table(
-        f"Claim: no other learner reaches {_CLAIMED:g} of the success of the RLA system",
-        ("task", "RLA system", "best other", "passes", "of the RLA system's", "claim"),
-        tuple(rows),
-        words=1,
-        note="At the end of the lessons, with the same teacher's effort for all. The best of many rows is chosen after "
-        "the fact, which favours it. Other rows of the RLA system do not count.",
-    )
-
-
-def _share_at_end(row: Row) -> float:
-    return row.passed(-1) / len(row.judged)
-
-
 def comparison_table(league: League) -> Table:
     """Return the paired comparison of each rival with the RLA system as shipped, at the end of the lessons."""
     rows = []
     for task in league.plan.tasks:
-        shipped = league.shipped(task.name)
-        others = [row for row in league.rows if row.entry.task == task.name and row is not shipped]
+        shipped, others = league.of_task(task.name)
         pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
         p_values = [mcnemar_p(each) for each in pairs]
         for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
-            rows.append((*_heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
+            rows.append((*heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
     return Table(
         "Compared with the RLA system as shipped, robot by robot",
         ("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
@@ -131,7 +99,7 @@ def effort_table(league: League) -> Table:
         ("task", "learner", *(name for name, _ in columns), "collisions", "alarms", "rescues"),
         tuple(
             (
-                *_heading(row),
+                *heading(row),
                 *(f"{median(map(value, row.outcomes)):.0f}" for _, value in columns),
                 str(sum(each.collisions for each in row.outcomes)),
                 str(sum(each.alarms for each in row.outcomes)),
@@ -152,22 +120,35 @@ def _tick_p99_ms(row: Row) -> str:
     return f"{median(measured) / 1000:.2f}" if measured else "-"
 
 
+def _change_ticks(row: Row) -> str:
+    """Return median and 95th percentile over all corrections of all robots."""
+    ticks = sorted(each for outcome in row.outcomes for each in outcome.change_ticks)
+    return f"{median(ticks):.0f} ({ticks[int(0.95 * (len(ticks) - 1))]})" if ticks else "-"
+
+
+def _followed(row: Row) -> str:
+    shares = [each.followed_share for each in row.outcomes if each.followed_share is not None]
+    return f"{median(shares):.0%}" if shares else "-"
+
+
 def machine_table(league: League) -> Table:
     """Return what learners take of the machine, and the undo of their last lesson."""
     return Table(
         "Machine and undo",
         (
             *("task", "learner", "retraining, s", "longest decision, ms", "p99 of a tick, ms", "knowledge, kB"),
-            *("undo, ms", "undo restores"),
+            *("undo, ms", "undo restores", "correction acts, ticks", "lessons followed"),
         ),
         tuple(
             (
-                *_heading(row),
+                *heading(row),
                 *_of_learner(row),
                 _tick_p99_ms(row),
                 f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
                 f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
                 f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",
+                _change_ticks(row),
+                _followed(row),
             )
             for row in league.rows
         ),
@@ -176,7 +157,9 @@ def machine_table(league: League) -> Table:
         "Retraining: all lessons, each with the decision after it. The robot's clock stands still meanwhile: the guard "
         "of a real robot would refuse a decision that takes longer than 20 ms, and the robot would stand for a moment. "
         "Undo: of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those "
-        "of a robot that never got it.",
+        "of a robot that never got it. A correction acts with the first tick of another action: median and 95th "
+        "percentile; a hold acts at once, whatever was learned. Lessons followed: the next decision is as told, in the "
+        "situation of the lesson.",
     )
 
 
@@ -186,7 +169,7 @@ def failure_table(league: League) -> Table:
         "Failures of learners",
         ("task", "learner", "robot", "failure"),
         tuple(
-            (*_heading(row), str(each.seed), each.failure)
+            (*heading(row), str(each.seed), each.failure)
             for row in league.rows
             for each in row.outcomes
             if each.failure
@@ -202,13 +185,3 @@ def _of_learner(row: Row) -> tuple[str, str]:
         f"{median(each.retraining_s for each in row.outcomes):.2f}",
         f"{median(each.longest_decision_ms for each in row.outcomes):.1f}",
     )
-
-
-def _heading(row: Row) -> tuple[str, str]:
-    return row.entry.task, row.entry.rival.title
-
-
-def _share(count: int, of: int) -> str:
-    if not of:
-        return "none judged"
-    return "{} of {} ({:.0%} to {:.0%})".format(count, of, *wilson_interval(count, of))

@@ -38,6 +38,8 @@ def robot(seed: int, *there: str, failure: str = "", collisions: int = 0) -> Riv
         tick_p99_us=800.0,
         undo_s=0.002,
         undo_restores=True,
+        change_ticks=(1, 1, 4),
+        followed_share=0.97,
     )
 
 

@@ -24,7 +24,7 @@ from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.experiments.rivals.jobs import RivalJob
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
-from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival
+from kurt2rt.experiments.rivals.lesson import RivalLesson, RivalSetup, teach_rival
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.plan import League, read_league
 from kurt2rt.experiments.rivals.registry import NoLearnerError
@@ -97,6 +97,14 @@ def test_only_learners_have_times_of_their_own(done: Done) -> None:
     assert done.outcome("weighted-vote").longest_decision_ms > 0.0
 
 
+def test_lessons_of_rlas_are_followed_at_once(done: Done) -> None:
+    assert [done.outcome(name).followed_share for name in (SHIPPED, "rla-door")] == [1.0, 1.0]
+    share = done.outcome("weighted-vote").followed_share
+    assert share is not None
+    assert 0.5 < share <= 1.0
+    assert all(ticks >= 1 for row in done.league.rows for ticks in row.outcomes[0].change_ticks)
+
+
 def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Done) -> None:
     failed = done.outcome(f"{__name__}:Breaking")
     assert failed.failure == f"{__name__}:Breaking: RuntimeError: four are too many"
@@ -121,8 +129,8 @@ def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
 def lesson_of(task: TaskSettings, team: LearnerTeam | None) -> RivalLesson:
     async def lesson() -> RivalLesson:
         with closing(STAGE.open(task.teaching.world, 3903, "lesson")) as simulation:
-            given, _ = await teach_rival(simulation, ROBOT, task, team, AFTER, seed=3903, on_progress=lambda _: None)
-            return given
+            setup = RivalSetup(robot=ROBOT, task=task, seed=3903, team=team, after=AFTER)
+            return await teach_rival(simulation, setup, lambda _: None)
 
     return anyio.run(lesson)
 

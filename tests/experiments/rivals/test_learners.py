@@ -20,7 +20,7 @@ from tests.experiments.helpers import ROBOT
 
 SETTING = learner_setting(load_task("wall_following"), ROBOT, seed=7)
 FLAT = LearnerSetting(2, np.ones(2), 10.0, 0.5, 0.1, ("a", "b", "c"), 1)
-NEVER_ASK = ("1-nn", "tree")
+NEVER_ASK = ("1-nn", "tree", "vote-without-gate", "vote-asks-at-random")
 SLOWLY_FITTED = (*HOLDS, "mlp-ensemble", "forest", "arf", "svm", "hoeffding")
 """Learners whose check takes seconds, because it fits them forty times and more."""
 PRESSED = [name for name in learner_names() if name not in (*HOLDS, *SIGNALS)]
@@ -109,6 +109,14 @@ def test_weighted_vote_follows_the_near_label_of_many() -> None:
     labels = [(9.0, 0.0, "b")] * 9 + [(0.0, 0.0, "a")]
     assert says(taught("weighted-vote", *labels), 1.0, 0.0) == "a"
     assert says(taught("k-nn", *labels), 1.0, 0.0) == "b"
+
+
+def test_rlas_within_r_outvote_a_nearer_one() -> None:
+    labels = [*GROUPS, (0.2, 0.2, "c"), (9.0, 9.0, "b")]
+    assert says(taught("rla-door", *labels), 0.2, 0.2) == "c"
+    voting = taught("rla-vote", *labels)
+    assert says(voting, 0.2, 0.2) == "a"
+    assert says(voting, 9.0, 9.0) == "b"
 
 
 @pytest.mark.parametrize("classes", [2, 3, 6])

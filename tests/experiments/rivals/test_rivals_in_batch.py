@@ -18,7 +18,7 @@ from kurt2rt.experiments.rivals.jobs import RivalJob
 from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.plan import make_plan
-from kurt2rt.experiments.rivals.rival import Rival
+from kurt2rt.experiments.rivals.rival import ASKS_AT_RANDOM, TUNED, Rival
 from kurt2rt.experiments.rivals.signals.jobs import RewardedRivalJob
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
@@ -26,6 +26,8 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.rivals.test_league import Breaking
 
 IN_BATCH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
+IN_BATCH_TOO = [each for each in ROWS[LeagueName.PRESSES] if each not in (TUNED, ASKS_AT_RANDOM)]
+"""Rows with a lesson in the batch: one row has settings of a tuning, and one counts ticks of the CAN loop."""
 
 
 def short(exam_s: float = 6.0) -> TaskSettings:
@@ -57,7 +59,7 @@ def require_equal(folder: Path, rival: Rival, task: TaskSettings, seed: int = 39
     return batch
 
 
-@pytest.mark.parametrize("name", ["rla", "weighted-vote"])
+@pytest.mark.parametrize("name", ["rla", "rla-vote", "rla-acts", "weighted-vote"])
 def test_rival_is_equal_in_batch_and_on_the_bus(name: str, tmp_path: Path) -> None:
     outcome = require_equal(tmp_path, Rival(name), short())
     assert outcome.tick_p99_us is None  # it did not leave the batch
@@ -72,7 +74,7 @@ def test_rival_that_fails_is_driven_on_the_bus(tmp_path: Path) -> None:
 
 @pytest.mark.deep
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight", "streets"])
-@pytest.mark.parametrize("name", [name for name in ROWS[LeagueName.PRESSES] if name != "rla-tuned"])
+@pytest.mark.parametrize("name", IN_BATCH_TOO)
 def test_whole_lesson_of_a_rival_is_equal(name: str, task: str, tmp_path: Path) -> None:
     taught = taught_by_named(load_task(task, changes={"exam.duration_s": "40"}), "ordinary")
     require_equal(tmp_path, Rival(name), taught, seed=3904)

@@ -1,12 +1,15 @@
+from dataclasses import replace
 from pathlib import Path
 
 from matplotlib.image import imread
 
+from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.figures import draw_curves
+from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.report import write_report
+from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
-    claim_table,
     comparison_table,
     effort_table,
     machine_table,
@@ -45,6 +48,31 @@ def test_claim_is_refuted_by_a_learner_that_comes_close(tmp_path: Path) -> None:
     assert claim_table(league_of(results, stuck, stuck)).rows[0][4:] == ("-", "refuted")
 
 
+def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    ours, theirs = league.rows
+    variant = replace(theirs, entry=replace(theirs.entry, rival=Rival("rla-vote")))
+    own = replace(league, rows=(ours, variant))
+    assert claim_table(own).rows == ()
+    assert len(list(all_tables(own))) == len(list(all_tables(league))) - 1
+
+
+def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
+    right, stuck = (tuple(robot(seed, *[end] * 3) for seed in (1, 2)) for end in ("right", "stuck"))
+    league = league_of(Results(tmp_path), right, right)
+    ours, theirs = league.rows
+
+    def claim(seconds: float, outcomes: tuple[RivalOutcome, ...]) -> tuple[str, ...]:
+        driven = tuple(each.model_copy(update={"driven_s": seconds}) for each in outcomes)
+        held = replace(theirs, entry=replace(theirs.entry, rival=Rival("hg-dagger")), outcomes=driven)
+        return hands_table(replace(league, rows=(ours, held))).rows[0]
+
+    assert claim(17.0, right) == ("wall_following", "6", "HG-DAgger", "17", "2.8", "refuted")
+    assert claim(18.0, right)[4:] == ("3.0", "stands")
+    assert claim(1.0, stuck) == ("wall_following", "6", "none", "-", "-", "stands")
+    assert hands_table(league).rows[0][2] == "none"  # 1-NN is not driven by hand
+
+
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
     table = comparison_table(league_of(Results(tmp_path), OURS, THEIRS))
     assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500"),)
@@ -58,7 +86,7 @@ def test_effort_tells_collisions_of_all_robots(tmp_path: Path) -> None:
 
 def test_machine_leaves_times_of_a_learner_out_for_rlas(tmp_path: Path) -> None:
     ours, theirs = machine_table(league_of(Results(tmp_path), OURS, THEIRS)).rows
-    assert ours[2:] == ("", "", "0.80", "5", "2.0", "3 of 3")
+    assert ours[2:] == ("", "", "0.80", "5", "2.0", "3 of 3", "1 (4)", "97%")
     assert theirs[2:4] == ("0.50", "3.0")
 
 

@@ -74,6 +74,17 @@ def test_tuned_rival_has_the_numbers_of_its_best_trial() -> None:
     assert Rival(SHIPPED).tuned_by(None) == Rival(SHIPPED)
 
 
+def test_shipped_settings_lie_within_what_was_searched() -> None:
+    shipped = load_tuned("presses")
+    assert shipped.seeds == f"{SHIPPED_TUNING.seeds.seeds[0]}-{SHIPPED_TUNING.seeds.seeds[-1]}"
+    for each in shipped.rivals:
+        search = SHIPPED_TUNING.search(each.task, each.rival, shipped.trials)
+        assert set(each.values) == {dimension.key for dimension in search.space}
+        assert all(dimension.low <= each.values[dimension.key] <= dimension.high for dimension in search.space)
+        assert 0 <= each.trial < shipped.trials
+        assert each.score >= each.first_score
+
+
 def test_search_of_a_gate_needs_its_learner(tmp_path: Path) -> None:
     learner = {"name": "k-nn", "gate": 1.0}
     space = [{"key": "gate", "low": 0.5, "high": 1.5}]

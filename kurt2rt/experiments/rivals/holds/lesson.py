@@ -3,11 +3,10 @@
 import random
 import time
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
@@ -15,7 +14,6 @@ from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import HoldAction
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
@@ -24,7 +22,7 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_
 from kurt2rt.experiments.rivals.holds.hold_learner import HoldLearner
 from kurt2rt.experiments.rivals.holds.pupil import LearnerPupil, RlaPupil
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock, untimed
-from kurt2rt.experiments.rivals.lesson import MarkedRun, RivalLesson, session_of
+from kurt2rt.experiments.rivals.lesson import MarkedRun, OnProgress, RivalLesson, RivalSetup, session_of
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.build import build_teacher_in_charge
 from kurt2rt.teacher.scripted.teacher_in_charge import Charge
@@ -58,42 +56,28 @@ class _Own(NamedTuple):
 
 
 async def teach_by_holds(
-    simulation: Simulation,
-    settings: RobotSettings,
-    task: TaskSettings,
-    team: LearnerTeam | None,
-    clock: LearnerClock,
-    after: Sequence[int],
-    *,
-    seed: int,
-    on_progress: Callable[[float], None],
-    times: FitTimes = TIMES,
-) -> tuple[RivalLesson, Runtime]:
-    """Give a lesson as long as the task's, with a teacher in charge; return it with the runtime that was taught.
+    simulation: Simulation, setup: RivalSetup, clock: LearnerClock, on_progress: OnProgress, times: FitTimes = TIMES
+) -> RivalLesson:
+    """Give a lesson as long as the task's, with a teacher in charge.
 
     Args:
         simulation: that the robot drives in.
-        settings: of the robot.
-        task: to teach.
-        team: learners to teach; None: the RLAs.
+        setup: of robot and teacher; its seed also draws DAgger's mixing.
         clock: gets the processor time of the fits.
-        after: numbers of presses after which the knowledge is marked, ascending.
-        seed: random choices of the teacher, and of DAgger's mixing.
-        on_progress: called once a second with the simulated seconds.
+        on_progress: gets the simulated seconds.
         times: of the fits.
 
     Raises:
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
     """
-    store = InMemoryEventStore()
-    runtime = build_training_runtime(simulation, settings, task, TrainingStore(store, learners=team))
-    learners = {} if team is None else _hold_learners(team, task.behaviours)
-    run = _HoldRun(
-        simulation, runtime, store, team, learners, clock, after, seed=seed, on_progress=on_progress, times=times
-    )
+    store, team = InMemoryEventStore(), setup.team
+    training = TrainingStore(store, learners=team)
+    runtime = build_training_runtime(simulation, setup.robot, setup.task, training)
+    learners = {} if team is None else _hold_learners(team, setup.task.behaviours)
+    run = _HoldRun(simulation, runtime, store, setup, learners, clock, on_progress=on_progress, times=times)
     await run.drive()
-    return run.lesson(), runtime
+    return run.lesson()
 
 
 def _hold_learners(team: LearnerTeam, behaviours: Sequence[str]) -> dict[str, HoldLearner]:
@@ -111,17 +95,15 @@ class _HoldRun(MarkedRun):
         simulation: Simulation,
         runtime: Runtime,
         store: InMemoryEventStore,
-        team: LearnerTeam | None,
+        setup: RivalSetup,
         learners: Mapping[str, HoldLearner],
         clock: LearnerClock,
-        after: Sequence[int],
         *,
-        seed: int,
-        on_progress: Callable[[float], None],
+        on_progress: OnProgress,
         times: FitTimes,
     ) -> None:
         task, period_s = runtime.task, runtime.robot.cycle_s
-        self._team, self._learners, self._clock = team, dict(learners), clock
+        self._team, self._learners, self._clock = setup.team, dict(learners), clock
         for learner in self._learners.values():
             learner.fits_at_intervals = True
         self._lessons = LearnerPupil(self._learners, round(times.first_s / period_s)) if learners else None
@@ -133,24 +115,16 @@ class _HoldRun(MarkedRun):
             runtime.robot,
             tuple(runtime.level.repertoire),
             self._pupil.charge,
-            seed=seed,
-            session=session_of(plan, seed),
+            seed=setup.seed,
+            session=session_of(plan, setup.seed),
         )
         super().__init__(
-            simulation,
-            runtime,
-            store,
-            team,
-            after,
-            seed=seed,
-            on_progress=on_progress,
-            plan=plan,
-            answering=self._in_charge,
+            simulation, runtime, store, setup, on_progress=on_progress, plan=plan, answering=self._in_charge
         )
         self._every, self._takes, self._overruled = (
             round(each / period_s) for each in (times.every_s, times.takes_s, times.overruled_s)
         )
-        self._chance = random.Random(f"mixing of {session_of(plan, seed)}")
+        self._chance = random.Random(f"mixing of {session_of(plan, setup.seed)}")
         self._named: deque[tuple[int, Label]] = deque(maxlen=200)
         self._own: deque[_Own] = deque()
         self._was_in_charge = self._was_named = self._by_teacher = self._was_asking = False

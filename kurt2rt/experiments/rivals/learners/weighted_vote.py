@@ -25,10 +25,12 @@ class WeightedVote(LabelLearner):
     def choose(self, point: Points, *, taught: bool) -> str | None:
         """Return the action with the heaviest votes of the labels near a point (d,); None if all are far."""
         distances = self.distances(point)
+        far = distances.min() > self.gate(1.0) * self.stricter(taught=taught) * self.setting.radius
+        return None if far else self.vote(distances)
+
+    def vote(self, distances: Points) -> str:
+        """Return the action with the heaviest votes of the labels at the distances (n,), in counts."""
         nearest = np.argsort(distances, kind="stable")[:_K]
-        closest = distances[nearest[0]]
-        if closest > self.gate(1.0) * self.stricter(taught=taught) * self.setting.radius:
-            return None
         # Relative to the nearest, because far from all labels every weight would round to 0.
-        weights = np.exp(-_SHARPNESS * (distances[nearest] - closest) / self.setting.radius)
+        weights = np.exp(-_SHARPNESS * (distances[nearest] - distances[nearest[0]]) / self.setting.radius)
         return self._known[int(np.bincount(self._class_of[nearest], weights).argmax())]

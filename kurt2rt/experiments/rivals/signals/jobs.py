@@ -1,17 +1,14 @@
 """Job of a rival that is taught by rewards."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from hal.simulation import Simulation
-from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.phases.steps import reward_plan
 from kurt2rt.experiments.rivals.jobs import RivalJob
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock
-from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival
-from kurt2rt.runtime import Runtime
+from kurt2rt.experiments.rivals.lesson import OnProgress, RivalLesson, RivalSetup, teach_rival
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,17 +29,8 @@ class RewardedRivalJob(RivalJob):
     async def _teach_on_bus(
         self,
         simulation: Simulation,
-        team: LearnerTeam | None,
+        setup: RivalSetup,
         clock: LearnerClock,  # noqa: ARG002 - learners of rewards are fitted at once
-        on_progress: Callable[[float], None],
-    ) -> tuple[RivalLesson, Runtime]:
-        return await teach_rival(
-            simulation,
-            self.robot,
-            self.task,
-            team,
-            self.after,
-            seed=self.seed,
-            on_progress=on_progress,
-            plan=self.plan,
-        )
+        on_progress: OnProgress,
+    ) -> RivalLesson:
+        return await teach_rival(simulation, setup, on_progress, self.plan)

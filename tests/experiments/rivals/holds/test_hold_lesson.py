@@ -14,7 +14,7 @@ from kurt2rt.experiments.rivals.holds.hold_learner import HoldLearner
 from kurt2rt.experiments.rivals.holds.lesson import FitTimes, teach_by_holds
 from kurt2rt.experiments.rivals.holds.rows import HELD
 from kurt2rt.experiments.rivals.learner_clock import LearnerClock, untimed
-from kurt2rt.experiments.rivals.lesson import RivalLesson
+from kurt2rt.experiments.rivals.lesson import RivalLesson, RivalSetup
 from kurt2rt.experiments.rivals.rival import Rival
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
@@ -46,10 +46,8 @@ def lesson_by(name: str, seed: int = 3905) -> Done:
 
     async def teach() -> RivalLesson:
         with closing(STAGE.open("a", seed, "lesson")) as simulation:
-            lesson, _ = await teach_by_holds(
-                simulation, ROBOT, TASK, team, clock, (1,), seed=seed, on_progress=lambda _: None, times=TIMES
-            )
-            return lesson
+            setup = RivalSetup(robot=ROBOT, task=TASK, seed=seed, team=team, after=(1,))
+            return await teach_by_holds(simulation, setup, clock, lambda _: None, TIMES)
 
     return Done(anyio.run(teach), team, clock)
 

@@ -10,7 +10,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.learner.learner import Driven, LearnerSetting
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.steps import reward_plan
-from kurt2rt.experiments.rivals.lesson import RivalLesson, teach_rival
+from kurt2rt.experiments.rivals.lesson import RivalLesson, RivalSetup, teach_rival
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.signals.coach import Coach
 from kurt2rt.experiments.rivals.signals.deep_tamer import DeepTamer
@@ -31,10 +31,8 @@ def lesson_by(name: str, task: TaskSettings) -> RivalLesson:
 
     async def teach() -> RivalLesson:
         with closing(STAGE.open(task.teaching.world, 3920, "lesson")) as simulation:
-            lesson, _ = await teach_rival(
-                simulation, ROBOT, task, team, (1,), seed=3920, on_progress=lambda _: None, plan=plan
-            )
-            return lesson
+            setup = RivalSetup(robot=ROBOT, task=task, seed=3920, team=team, after=(1,))
+            return await teach_rival(simulation, setup, lambda _: None, plan)
 
     return anyio.run(teach)
 

@@ -1,0 +1,80 @@
+"""Claims about the RLA system that a league may refute."""
+
+from collections.abc import Iterable
+from statistics import median
+
+from kurt2rt.experiments.rivals.cells import share_text
+from kurt2rt.experiments.rivals.plan import League, Row
+from kurt2rt.experiments.study.table import Table
+
+_CLAIMED = 0.9
+"""Part of the success of the RLA system that refutes the claim about success."""
+_TIMES = 3.0
+"""Factor of the seconds in charge below which the claim about seconds is refuted."""
+
+
+def claim_table(league: League) -> Table:
+    """Return whether a rival comes close to the RLA system as shipped, task by task, at the end of the lessons."""
+    rows = []
+    for task in league.plan.tasks:
+        shipped, others = league.of_task(task.name)
+        best = max(_rivals(others), key=_share_at_end, default=None)
+        if best is None or not shipped.judged:
+            continue
+        ours, theirs = _share_at_end(shipped), _share_at_end(best)
+        rows.append(
+            (
+                task.name,
+                share_text(shipped.passed(-1), len(shipped.judged)),
+                best.entry.rival.title,
+                share_text(best.passed(-1), len(best.judged)),
+                f"{theirs / ours:.2f}" if ours else "-",
+                "refuted" if theirs >= _CLAIMED * ours else "stands",
+            )
+        )
+    return Table(
+        f"Claim: no other learner reaches {_CLAIMED:g} of the success of the RLA system",
+        ("task", "RLA system", "best other", "passes", "of the RLA system's", "claim"),
+        tuple(rows),
+        words=1,
+        note="At the end of the lessons, with the same teacher's effort for all. The best of many rows is chosen after "
+        "the fact, which favours it. Other rows of the RLA system do not count.",
+    )
+
+
+def hands_table(league: League) -> Table:
+    """Return the seconds in charge of the RLA system as shipped, and of the rival that needs fewest, task by task."""
+    rows = []
+    for task in league.plan.tasks:
+        shipped, others = league.of_task(task.name)
+        if not shipped.judged:
+            continue
+        enough, ours_s = _CLAIMED * _share_at_end(shipped), _seconds(shipped)
+        close = (row for row in _rivals(others) if row.entry.rival.is_held and _share_at_end(row) >= enough)
+        best = min(close, key=_seconds, default=None)
+        found = ("none", "-", "-", "stands")
+        if best is not None:
+            theirs_s = _seconds(best)
+            verdict = "refuted" if theirs_s < _TIMES * ours_s else "stands"
+            found = (best.entry.rival.title, f"{theirs_s:.0f}", f"{theirs_s / ours_s:.1f}" if ours_s else "-", verdict)
+        rows.append((task.name, f"{ours_s:.0f}", *found))
+    return Table(
+        f"Claim: a rival that is driven by hand needs {_TIMES:g} times the seconds in charge",
+        ("task", "RLA system, s", "fewest", "s", "times the RLA system's", "claim"),
+        tuple(rows),
+        words=1,
+        note=f"Among rivals with a teacher in charge that reach {_CLAIMED:g} of the success of the RLA system as "
+        "shipped. Seconds in which the teacher drives, the median robot's. Presses are in the table of the effort.",
+    )
+
+
+def _rivals(rows: Iterable[Row]) -> list[Row]:
+    return [row for row in rows if row.judged and not row.entry.rival.is_rla_system]
+
+
+def _share_at_end(row: Row) -> float:
+    return row.passed(-1) / len(row.judged)
+
+
+def _seconds(row: Row) -> float:
+    return median(each.driven_s for each in row.outcomes)

@@ -1,0 +1,59 @@
+"""Simulated lidar: as far as the simulator's ray caster sees, with its period, limits and noise."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+
+from hal.simulation import Pose
+from kurt2rt.robots.turtlebot.lidar import Lidar, distances_m
+from simbridge.robot.noise import Noise
+from simbridge.robot.ray_caster import RayCaster
+from simbridge.robot.world import World
+from simbridge.worlds.world_loading import load_world
+from tests.robots.turtlebot.rig import SETTINGS
+
+
+@pytest.mark.parametrize("name", ["turtlebot/a", "turtlebot/b", "turtlebot/c", "turtlebot/post"])
+def test_distances_are_those_of_the_ray_caster(name: str) -> None:
+    settings, chance = load_world(name, SETTINGS), random.Random(name)
+    caster = RayCaster(World(settings), 10.0)
+    for start in settings.start_poses:
+        pose = start.pose
+        headings = [chance.uniform(-math.pi, math.pi) for _ in range(40)]
+        caster.set_origin(pose.x_m, pose.y_m)
+        expected = [caster.distance_m(pose.x_m, pose.y_m, math.cos(each), math.sin(each), 10.0) for each in headings]
+        assert distances_m(settings, pose, np.array(headings)) == pytest.approx(expected, abs=1e-9)
+
+
+def lidar_in(name: str) -> Lidar:
+    return Lidar(SETTINGS, World(load_world(name, SETTINGS)), Noise(1, "lidar"))
+
+
+def test_lidar_measures_all_sectors_once_in_each_period() -> None:
+    lidar = lidar_in("turtlebot/a")
+    pose = Pose(0.75, 0.5, 0.0)
+    fresh = [len(lidar.measure(pose)) for _ in range(100)]
+    places = [place for place, number in enumerate(fresh) if number]
+    assert set(fresh) == {0, 24}
+    assert np.diff(places).tolist() == [20] * (len(places) - 1)
+
+
+def test_lidar_noise_is_that_of_the_settings() -> None:
+    lidar, pose = lidar_in("turtlebot/a"), Pose(0.75, 0.5, 0.3)
+    headings = 0.3 + math.tau / 360 * np.arange(360, dtype=np.float64)
+    exact = distances_m(load_world("turtlebot/a", SETTINGS), pose, headings)
+    errors = []
+    for _ in range(20):
+        lidar.measure_all(pose)
+        errors.append(lidar.counts.ranges_m - exact)
+    assert np.std(errors) == pytest.approx(SETTINGS.lidar.noise_m, rel=0.05)
+
+
+def test_lidar_ranges_out_of_its_limits_are_infinite() -> None:
+    lidar = lidar_in("turtlebot/a")
+    lidar.measure_all(Pose(0.05, 0.05, 0.0))
+    assert lidar.counts.ranges_m[180] == -math.inf
+    assert lidar.counts[12] == 550
+    assert np.isfinite(lidar.counts.ranges_m[0])

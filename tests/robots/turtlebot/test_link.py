@@ -1,0 +1,266 @@
+"""Link to the base: sectors, encoders, ages, junk, foreign commands, errors of the base, and loss."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hal.guard_reason import GuardReason
+from hal.odometry import PlanePose
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.robot_link import RangeReport, Report, WheelReport
+from kurt2rt.robots.turtlebot.link import TurtlebotLink
+from kurt2rt.robots.turtlebot.simulated import SimulatedClock
+from kurt2rt.ros.laser_scan import full_turn_scan
+from kurt2rt.ros.messages import (
+    DiagnosticArray,
+    DiagnosticStatus,
+    Header,
+    LaserScan,
+    Odometry,
+    Time,
+    TwistStamped,
+    decode,
+    encode,
+)
+from kurt2rt.ros.odometry import odometry_message
+from kurt2rt.ros.port import LocalTopics
+from kurt2rt.ros.topic import topic_of
+from tests.robots.turtlebot.rig import FORWARD, SETTINGS, MemoryRig
+from tests.ros.examples import TWIST
+
+
+class Wire:
+    """Link whose other end the test plays."""
+
+    def __init__(self) -> None:
+        self.topics, self.clock = LocalTopics(SETTINGS.ros), SimulatedClock()
+        self.base = self.topics.join()
+        self.twists: list[bytes] = []
+        self.base.subscribe(topic_of("cmd_vel", TwistStamped), self.twists.append)
+        self.link = TurtlebotLink(SETTINGS, self.topics.join(), "topics of a test", self.clock)
+        self._scan = self.base.publisher(topic_of("scan", LaserScan))
+        self._odom = self.base.publisher(topic_of("odom", Odometry))
+
+    def scan(self, ranges: list[float], *, stamp_s: float | None = None) -> None:
+        values = np.array(ranges, dtype=np.float32)
+        self._scan.publish(full_turn_scan(values, (0.12, 3.5), 0.2, self.clock.time_s if stamp_s is None else stamp_s))
+
+    def odom(self, pose: PlanePose, stamp_s: float | None = None) -> None:
+        self._odom.publish(odometry_message(pose, 0.0, 0.0, self.clock.time_s if stamp_s is None else stamp_s))
+
+    def receive(self) -> list[Report]:
+        return list(self.link.receive(self.clock.time_s))
+
+
+@pytest.fixture
+def wire() -> Wire:
+    return Wire()
+
+
+def counts_of(reports: list[Report]) -> dict[int, int]:
+    return {report.first: report.counts[0] for report in reports if isinstance(report, RangeReport)}
+
+
+def wheels_of(reports: list[Report]) -> list[WheelReport]:
+    return [report for report in reports if isinstance(report, WheelReport)]
+
+
+def test_scan_each_sector_reads_its_nearest_range(wire: Wire) -> None:
+    ranges = [2.0] * 360
+    ranges[95] = 0.2  # in the sector of 90 degrees, the seventh of the table
+    wire.scan(ranges)
+    counts = counts_of(wire.receive())
+    assert counts[6] == round(SETTINGS.infrared.counts_at(0.2))
+    assert {value for sector, value in counts.items() if sector != 6} == {0}
+
+
+def test_scan_sector_without_a_measurement_reports_nothing(wire: Wire) -> None:
+    wire.scan([0.5] * 170 + [math.nan] * 20 + [0.5] * 170)
+    assert sorted(set(range(24)) - set(counts_of(wire.receive()))) == [12]
+
+
+def test_scan_too_near_reads_as_the_nearest_distance(wire: Wire) -> None:
+    wire.scan([-math.inf] * 360)
+    assert set(counts_of(wire.receive()).values()) == {round(SETTINGS.infrared.counts_at(0.12))}
+
+
+def test_scan_that_repeats_itself_is_junk(wire: Wire) -> None:
+    for _ in range(3):
+        wire.clock.time_s += 0.2
+        wire.scan([0.5] * 360)
+    assert len(counts_of(wire.receive())) == 24
+    assert wire.link.junk == 2
+
+
+def test_scan_of_an_empty_hall_may_repeat_itself(wire: Wire) -> None:
+    for _ in range(3):
+        wire.clock.time_s += 0.2
+        wire.scan([math.inf] * 360)
+        assert set(counts_of(wire.receive()).values()) == {0}
+    assert wire.link.junk == 0
+
+
+def test_scan_that_was_delayed_is_as_old_as_its_stamp(wire: Wire) -> None:
+    wire.clock.time_s = 50.0
+    wire.scan([0.5] * 360, stamp_s=49.6)
+    ages = {50.0 - report.at_s for report in wire.receive()}
+    assert min(ages) == max(ages) == pytest.approx(0.4)
+
+
+def test_odometry_forward_and_turn_become_ticks(wire: Wire) -> None:
+    wire.odom(PlanePose(), 10.0)
+    wire.odom(PlanePose(0.0, 0.1, math.pi / 2), 11.0)
+    first, second = wheels_of(wire.receive())
+    assert (first.left_ticks, first.right_ticks, first.duration_s) == (0, 0, 0.0)
+    tick_m, half_m = SETTINGS.geometry.metres_per_tick, math.pi / 4 * SETTINGS.geometry.effective_track_m
+    forward_m = 0.1 * math.sin(math.pi / 4)
+    assert second.left_ticks * tick_m == pytest.approx(forward_m - half_m, abs=tick_m)
+    assert second.right_ticks * tick_m == pytest.approx(forward_m + half_m, abs=tick_m)
+    assert second.duration_s == pytest.approx(1.0)
+
+
+def test_odometry_driving_backwards_counts_negative(wire: Wire) -> None:
+    wire.odom(PlanePose(heading_rad=3.0), 10.0)
+    wire.odom(PlanePose(-0.05 * math.cos(3.0), -0.05 * math.sin(3.0), 3.0), 10.5)
+    assert wheels_of(wire.receive())[1].left_ticks == pytest.approx(-0.05 / SETTINGS.geometry.metres_per_tick, abs=1)
+
+
+def test_odometry_small_steps_lose_no_ticks(wire: Wire) -> None:
+    wire.clock.time_s = 200.0
+    turned = 0
+    for step in range(201):
+        wire.odom(PlanePose(x_m=step * 0.000_1), 100.0 + step * 0.05)
+        turned += sum(report.left_ticks for report in wheels_of(wire.receive()))
+    assert turned == pytest.approx(0.02 / SETTINGS.geometry.metres_per_tick, abs=1)
+
+
+def test_odometry_jump_counts_no_ticks(wire: Wire) -> None:
+    wire.odom(PlanePose(), 10.0)
+    wire.odom(PlanePose(x_m=5.0), 10.05)
+    assert wheels_of(wire.receive())[1][1:] == (0, 0, 0.0)
+
+
+def test_odometry_repeated_or_without_number_is_junk(wire: Wire) -> None:
+    wire.odom(PlanePose(), 10.0)
+    wire.odom(PlanePose(x_m=0.1), 10.0)
+    wire.odom(PlanePose(x_m=math.nan), 11.0)
+    assert len(wheels_of(wire.receive())) == 1
+    assert wire.link.junk == 2
+
+
+@pytest.mark.parametrize(
+    ("wanted", "twist"),
+    [
+        (WheelSpeeds(0.15, 0.15), (0.15, 0.0)),
+        (WheelSpeeds(-0.08, 0.08), (0.0, 1.0)),
+        (WheelSpeeds(0.072, 0.168), (0.12, 0.6)),
+        (WheelSpeeds(-0.08, -0.08), (-0.08, 0.0)),
+        (WheelSpeeds(0.0, 0.0), (0.0, 0.0)),
+    ],
+)
+def test_send_set_points_go_out_as_a_twist(wire: Wire, wanted: WheelSpeeds, twist: tuple[float, float]) -> None:
+    wire.link.send(wanted)
+    message = decode(wire.twists[-1], TwistStamped)
+    assert (message.twist.linear.x, message.twist.angular.z) == pytest.approx(twist)
+    assert wire.link.applied(wanted) == pytest.approx(wanted)
+
+
+def test_applied_speeds_are_never_above_the_given_ones(wire: Wire) -> None:
+    values = np.random.default_rng(1).uniform(-0.22, 0.22, (2000, 2)).tolist()
+    for left_m_s, right_m_s in values:
+        applied = wire.link.applied(WheelSpeeds(left_m_s, right_m_s))
+        assert abs(applied.left_m_s) <= abs(left_m_s) + 1e-4
+        assert abs(applied.right_m_s) <= abs(right_m_s) + 1e-4
+
+
+def test_drive_hostile_bytes_are_counted_and_change_nothing() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    before = rig.readings
+    for kind, name in (
+        (LaserScan, "scan"),
+        (Odometry, "odom"),
+        (TwistStamped, "cmd_vel"),
+        (DiagnosticArray, "diagnostics"),
+    ):
+        for payload in (b"", b"\0\1\0\0", bytes(40), b"\xff" * 3000):
+            rig.send_bytes(name, kind, payload)
+    result = rig.tick()
+    assert rig.robot.health.junk == 16
+    assert result.wheel_speeds == FORWARD
+    assert rig.readings.infrared_counts == before.infrared_counts
+
+
+def test_drive_silent_scans_alone_stop_the_robot(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = MemoryRig()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+    monkeypatch.setattr(rig.electronics, "update_readings", lambda *_: None)
+    result = rig.run(SETTINGS.guard.stale_infrared_s + 0.2)
+    assert (result.wheel_speeds, result.reasons) == (STANDSTILL, (GuardReason.INFRARED_STALE,))
+
+
+def test_drive_foreign_twist_latches_a_stop() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.send("cmd_vel", TwistStamped(Header(Time(1, 0), "base_link"), TWIST))
+    result = rig.tick()
+    assert result.latched
+    assert result.reasons == (GuardReason.FOREIGN_CONTROL,)
+    assert "another program commands the wheels" in rig.robot.health.alarm
+
+
+def test_drive_error_of_the_base_stops_and_names_it() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    errors = DiagnosticArray(Header(Time(1, 0), ""), [DiagnosticStatus(2, "turtlebot3: motors", "too hot", "", [])])
+    fine = DiagnosticArray(Header(Time(1, 0), ""), [DiagnosticStatus(0, "turtlebot3: motors", "", "", [])])
+    rig.send("diagnostics", errors)
+    result = rig.tick()
+    assert (result.latched, result.wheel_speeds, result.reasons) == (True, STANDSTILL, (GuardReason.BUS_LOST,))
+    assert "the robot tells an error: turtlebot3: motors: too hot" in rig.robot.health.bus_trouble
+    rig.robot.release()
+    assert rig.run(1.5).latched
+    rig.send("diagnostics", fine)
+    rig.run(1.5)
+    rig.robot.release()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+
+
+def test_drive_error_of_another_node_is_none_of_the_base() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [DiagnosticStatus(2, "camera", "dark", "", [])]))
+    assert rig.run(0.5).wheel_speeds == FORWARD
+
+
+def test_drive_lost_connection_latches_and_the_base_brakes() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    rig.link.topics.connected = False
+    result = rig.tick()
+    assert (result.latched, result.reasons) == (True, (GuardReason.BUS_LOST,))
+    assert "no robot is connected" in rig.robot.health.bus_trouble
+    rig.run(SETTINGS.motors.controller_watchdog_s + 0.5)
+    assert rig.simulated.controller.watchdog_expired
+    assert rig.simulated.wheel_speeds == STANDSTILL
+    rig.link.topics.connected = True
+    rig.run(1.5)
+    rig.robot.release()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+
+
+def test_base_cuts_a_twist_to_its_limits_and_ignores_nan() -> None:
+    rig = MemoryRig()
+    rig.tick(STANDSTILL)
+    fast = TwistStamped(Header(Time(1, 0), ""), decode(encode(TWIST), type(TWIST)))
+    fast.twist.linear.x, fast.twist.angular.z = 9.0, 0.0
+    rig.send("cmd_vel", fast)
+    rig.simulated.step()
+    assert rig.simulated.controller.commands[:2] == (0.22, 0.22)
+    fast.twist.linear.x = math.nan
+    rig.send("cmd_vel", fast)
+    rig.simulated.step()
+    assert rig.simulated.controller.junk_frames == 1
+    rig.simulated.controller.power_cycle()
+    assert rig.simulated.controller.watchdog_expired
