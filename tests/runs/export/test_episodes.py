@@ -1,11 +1,14 @@
 """Episodes of recorded runs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.events import RlaRewarded
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.runs.export.episodes import Episode, features_of, read_episodes, ticks_per_frame
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -50,7 +53,27 @@ def test_rewards_stand_at_the_decision_that_they_are_about() -> None:
     for each in rewards:
         wanted[each.decided_at_tick - 1] += each.value
     assert only_episode(ENTRIES).columns["next.reward"].tolist() == wanted.tolist()
-    assert sum(only_episode(ENTRIES, 10).columns["next.reward"]) == wanted.sum()
+    thin = only_episode(ENTRIES, 1100).columns["next.reward"]
+    assert thin.tolist() == wanted.reshape(4, 1100).sum(axis=1).tolist()
+    assert abs(thin).max() > 1
+    first = rewards[0].decided_at_tick - 1
+    assert only_episode(ENTRIES[first:]).columns["next.reward"][0] == rewards[0].value
+
+
+def test_lesson_of_the_critic_is_none_of_a_teacher() -> None:
+    (entry,) = [each for each in ENTRIES if len(each.events) == 1 and isinstance(each.events[0], RlaRewarded)][:1]
+    event = entry.events[0]
+    assert isinstance(event, RlaRewarded)
+    by_critic = replace(event, origin=replace(event.origin, teacher=CRITIC))
+    for events, lessons in (((event,), 1), ((by_critic,), 0), ((event, by_critic), 1)):
+        episode = only_episode((entry._replace(events=events),))
+        assert episode.columns["complementary_info.lessons"].tolist() == [lessons]
+
+
+def test_bumpers_are_values_of_their_own() -> None:
+    readings = ENTRIES[0].readings._replace(bumpers=0b100101)
+    sensors = only_episode((ENTRIES[0]._replace(readings=readings),)).columns[SENSORS]
+    assert sensors[0, 18:].tolist() == [1, 0, 1, 0, 0, 1]
 
 
 def test_thinned_frames_keep_way_lessons_and_interventions() -> None:
@@ -60,15 +83,24 @@ def test_thinned_frames_keep_way_lessons_and_interventions() -> None:
     # Each frame has the mean speed since the frame before, so no way is lost.
     way_m = every.columns[STATE][1:4381].sum(axis=0) * 0.01
     assert thin.columns[STATE][1:].sum(axis=0) * 0.2 == pytest.approx(way_m, rel=1e-4)
+    moving = only_episode(ENTRIES[2000:], 20).columns[STATE][0]
+    assert moving.tolist() == every.columns[STATE][2000].tolist()  # of its own tick: there is none before
+    assert moving.any()
     lessons, by_hand = "complementary_info.lessons", "complementary_info.is_intervention"
     assert thin.columns[lessons].sum() == every.columns[lessons].sum() > 40
     assert (thin.columns[by_hand] == every.columns[by_hand].reshape(-1, 20).any(axis=1)).all()
 
 
 def test_missed_ticks_repeat_the_frame_before_them() -> None:
-    episode = only_episode(ENTRIES[:500] + ENTRIES[510:1000])
+    episode = only_episode(ENTRIES[2000:2500] + ENTRIES[2510:3000])
     assert episode.frames == 1000
-    assert (episode.columns[ACTION][500:510] == episode.columns[ACTION][499]).all()
+    sensors = episode.columns[SENSORS]
+    assert (sensors[500:510] == sensors[499]).all()
+    assert (sensors[510] != sensors[499]).any()
+
+
+def test_ticks_that_begin_again_begin_the_next_episode() -> None:
+    assert [each.frames for each in read_episodes(run_of(ENTRIES[:20] + ENTRIES[:30]), 1)] == [20, 30]
 
 
 def test_a_long_gap_begins_the_next_episode() -> None:

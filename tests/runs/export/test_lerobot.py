@@ -143,6 +143,10 @@ def test_full_file_is_followed_by_the_next(tmp_path: Path, monkeypatch: pytest.M
     assert frames_of(tmp_path)["index"].to_pylist() == list(range(1500))
 
 
+def test_data_set_can_be_read_by_other_users(data_set: Path) -> None:
+    assert data_set.stat().st_mode & 0o777 == 0o755
+
+
 def test_source_of_each_episode_is_noted(data_set: Path) -> None:
     first, second = read_json(data_set / "meta/kurt2rt.json")["episodes"]
     assert (first["episode_index"], first["run"], first["task"]) == (0, "walls.mcap", "wall_following")
