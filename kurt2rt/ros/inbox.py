@@ -10,7 +10,9 @@ from kurt2rt.ros.messages import InvalidMessageError, MessageT, Time, decode, to
 from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import Topic
 
-_MOST_WAITING = 64
+_MOST_WAITING = 16
+_MOST_BYTES = 100_000
+"""Longer than a scan of 12 000 rays; more would cost the tick milliseconds."""
 ResultT = TypeVar("ResultT")
 
 
@@ -72,5 +74,8 @@ class Inbox(Generic[MessageT]):
                 yield result
 
     def _keep(self, payload: bytes) -> None:
+        if len(payload) > _MOST_BYTES:
+            self.junk += 1
+            return
         # A deque drops the oldest by itself, and is safe between two threads.
         self._waiting.append(_Waiting(payload, self._clock.now_s(), self._clock.wall_s()))

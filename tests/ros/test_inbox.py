@@ -1,0 +1,92 @@
+"""Inbox of one topic: order, ages, junk, and limits against floods."""
+
+import threading
+
+from kurt2rt.ros.inbox import Inbox
+from kurt2rt.ros.messages import InvalidMessageError, String, TwistStamped, encode
+from kurt2rt.ros.port import LocalTopics
+from kurt2rt.ros.settings import RosSettings
+from kurt2rt.ros.topic import topic_of
+from tests.ros.examples import HEADER, TWIST
+
+WORDS = topic_of("words", String)
+
+
+class SetClock:
+    """Clock that the test sets."""
+
+    now = 5.0
+    wall = 1_700_000_001.5
+
+    def now_s(self) -> float:
+        return self.now
+
+    def wall_s(self) -> float:
+        return self.wall
+
+
+def inbox_of_words(topics: LocalTopics) -> Inbox[String]:
+    return Inbox(topics.join(), WORDS, String, SetClock())
+
+
+def text_of(message: String, _age_s: float) -> str:
+    return message.data
+
+
+def test_inbox_messages_come_out_in_order_and_once() -> None:
+    topics = LocalTopics(RosSettings())
+    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
+    for text in ("a", "b", "c"):
+        sender.publish(String(text))
+    assert list(inbox.take(text_of)) == ["a", "b", "c"]
+    assert list(inbox.take(text_of)) == []
+
+
+def test_inbox_age_is_of_stamp_and_waiting_together() -> None:
+    topics, clock = LocalTopics(RosSettings()), SetClock()
+    twists = topic_of("twists", TwistStamped)
+    inbox = Inbox(topics.join(), twists, TwistStamped, clock)
+    topics.join().publisher(twists).publish(TwistStamped(HEADER, TWIST))  # stamped 0.25 s before its arrival
+    clock.now += 0.5
+    assert list(inbox.take(lambda _, age_s: age_s)) == [0.75]
+
+
+def test_inbox_flood_keeps_the_newest() -> None:
+    topics = LocalTopics(RosSettings())
+    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
+    for number in range(1000):
+        sender.publish(String(str(number)))
+    assert list(inbox.take(text_of)) == [str(number) for number in range(984, 1000)]
+
+
+def test_inbox_invalid_huge_and_refused_messages_are_junk() -> None:
+    topics = LocalTopics(RosSettings())
+    inbox = inbox_of_words(topics)
+
+    def refuse(message: String, age_s: float) -> str:
+        if message.data == "no":
+            raise InvalidMessageError("refused")
+        return text_of(message, age_s)
+
+    for payload in (b"", encode(String("x" * 200_000)), encode(String("no")), encode(String("yes"))):
+        topics.carry("words", payload)
+    assert list(inbox.take(refuse)) == ["yes"]
+    assert inbox.junk == 3
+
+
+def test_inbox_another_thread_may_send_while_one_takes() -> None:
+    topics = LocalTopics(RosSettings())
+    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
+
+    def send_all() -> None:
+        for number in range(5000):
+            sender.publish(String(str(number)))
+
+    sending = threading.Thread(target=send_all)
+    sending.start()
+    taken: list[int] = []
+    while sending.is_alive():
+        taken += map(int, inbox.take(text_of))
+    taken += map(int, inbox.take(text_of))
+    assert taken == sorted(set(taken))
+    assert taken[-1] == 4999
