@@ -158,8 +158,9 @@ def machine_table(league: League) -> Table:
         "of a real robot would refuse a decision that takes longer than 20 ms, and the robot would stand for a moment. "
         "Undo: of the last label, or of the last lesson of RLAs; it restores if all decisions at all lessons are those "
         "of a robot that never got it. A correction acts with the first tick of another action: median and 95th "
-        "percentile; a hold acts at once, whatever was learned. Lessons followed: the next decision is as told, in the "
-        "situation of the lesson.",
+        "percentile; a hold acts at once, whatever was learned, and changes nothing where the robot does the same. "
+        "Lessons followed: the next decision is as told, in the situation of the lesson; of the RLA system the lessons "
+        "that changed it.",
     )
 
 
