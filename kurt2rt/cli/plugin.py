@@ -55,6 +55,7 @@ def new(
 
         kurt2rt plugin new policies wandering
         kurt2rt plugin check wandering
+        kurt2rt plugin new robots rover
     """
     from kurt2rt.checks.plugins.skeleton import write_skeleton
 

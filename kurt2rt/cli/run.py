@@ -33,7 +33,8 @@ class _Options:
         str,
         typer.Option(
             help="Bus that the robot is on: a SocketCAN interface such as can0, or shared:NAME, where kurt2rt sim is "
-            "one; sim: a simulated robot in this program."
+            "one; of another kind of robot the address that its plug-in takes, such as /dev/ttyACM0; sim: a simulated "
+            "robot in this program."
         ),
     ] = SIMULATED
     robot: EarlierBus = None

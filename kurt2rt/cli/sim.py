@@ -37,7 +37,8 @@ class _Options:
         str,
         typer.Option(
             help="Where the robot is: shared:NAME, a bus between programs of this machine that needs no CAN; or a "
-            "SocketCAN interface such as vcan0."
+            "SocketCAN interface such as vcan0. Of another kind of robot: the address that its plug-in takes, such as "
+            "/tmp/school or tcp/127.0.0.1:7447."
         ),
     ] = "shared:kurt2"
     world: Annotated[str, world_option("Default: a.")] = "a"

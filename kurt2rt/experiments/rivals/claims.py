@@ -11,6 +11,8 @@ _CLAIMED = 0.9
 """Part of the success of the RLA system that refutes the claim about success."""
 _TIMES = 3.0
 """Factor of the seconds in charge below which the claim about seconds is refuted."""
+_NOT_JUDGED = "not judged"
+"""Verdict where no robot with the RLA system passes: every learner reaches a part of nothing."""
 
 
 def claim_table(league: League) -> Table:
@@ -29,7 +31,7 @@ def claim_table(league: League) -> Table:
                 best.entry.rival.title,
                 share_text(best.passed(-1), len(best.judged)),
                 f"{theirs / ours:.2f}" if ours else "-",
-                "refuted" if theirs >= _CLAIMED * ours else "stands",
+                _NOT_JUDGED if not ours else "refuted" if theirs >= _CLAIMED * ours else "stands",
             )
         )
     return Table(
@@ -48,6 +50,9 @@ def hands_table(league: League) -> Table:
     for task in league.plan.tasks:
         shipped, others = league.of_task(task.name)
         if not shipped.judged:
+            continue
+        if not _share_at_end(shipped):
+            rows.append((task.name, f"{_seconds(shipped):.0f}", "-", "-", "-", _NOT_JUDGED))
             continue
         enough, ours_s = _CLAIMED * _share_at_end(shipped), _seconds(shipped)
         close = (row for row in _rivals(others) if row.entry.rival.is_held and _share_at_end(row) >= enough)

@@ -45,7 +45,7 @@ def test_claim_is_refuted_by_a_learner_that_comes_close(tmp_path: Path) -> None:
         ("wall_following", "1-NN without R", "0.90", "refuted"),
         ("wall_following", "1-NN without R", "0.80", "stands"),
     ]
-    assert claim_table(league_of(results, stuck, stuck)).rows[0][4:] == ("-", "refuted")
+    assert claim_table(league_of(results, stuck, stuck)).rows[0][4:] == ("-", "not judged")
 
 
 def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
@@ -71,6 +71,7 @@ def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
     assert claim(18.0, right)[4:] == ("3.0", "stands")
     assert claim(1.0, stuck) == ("wall_following", "6", "none", "-", "-", "stands")
     assert hands_table(league).rows[0][2] == "none"  # 1-NN is not driven by hand
+    assert hands_table(league_of(Results(tmp_path), stuck, right)).rows[0][2:] == ("-", "-", "-", "not judged")
 
 
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
