@@ -9,7 +9,8 @@ from behaviors.repertoire_settings import (
     RepertoireSettings,
     TurnByAngleAction,
 )
-from hal.settings import find_config, load_settings
+from hal.settings import load_settings
+from hal.settings_files import find_config
 
 AHEAD, BACK, STAND = "ahead", "back", "stand"
 _AHEAD_BELOW, _SPIN_ABOVE = 0.5, 2.0

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 from behaviors.repertoire_settings import MotorAction, RepertoireSettings
 from hal.robot import WheelSpeeds
-from hal.settings import find_config, load_settings
+from hal.settings import load_settings
+from hal.settings_files import find_config
 
 
 def primitive_speeds(repertoire: str) -> Mapping[str, WheelSpeeds]:

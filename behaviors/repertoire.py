@@ -20,7 +20,8 @@ from behaviors.turn_by_angle import TurnByAngle
 from hal.plugins import PluginError
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, find_config, load_settings
+from hal.settings import SettingsError, load_settings
+from hal.settings_files import find_config
 
 Repertoire = Mapping[str, Behaviour]
 """Behaviours by their names in an RLA's action part."""

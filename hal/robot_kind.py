@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Protocol, cast
 
 from hal.guarded_robot import GuardedRobot
+from hal.robot_plugins import find_robot_kind
 from hal.robot_settings import RobotSettings
-from hal.settings import find_robot_kind
 from hal.simulation import SimulationFactory
 from hal.tap import Tap
 

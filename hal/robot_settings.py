@@ -9,7 +9,9 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 
 from hal.infrared_law import InfraredLawNumbers, counts_at
-from hal.settings import Settings, SettingsError, content_of, find_config, find_robot_kind, robot_of_task, settings_of
+from hal.robot_plugins import find_robot_kind, robot_of_task
+from hal.settings import Settings, SettingsError, content_of, settings_of
+from hal.settings_files import find_config
 
 Metres = Annotated[float, Field(gt=0, le=5)]
 MetresPerSecond = Annotated[float, Field(gt=0, le=3)]
@@ -201,11 +203,21 @@ def load_robot_of(name_or_path: str | None, task: str) -> RobotSettings:
 
 
 def robot_named(name_or_path: str | None, task: str) -> str:
-    """Return a robot's name or path; None: the name of the task's robot.
+    """Return a robot's name or path; None: that of the task's robot, which is KURT2 unless the task says other."""
+    return name_or_path or robot_that_task_names(task) or DEFAULT_KIND
 
-    A task of a robot's plug-in, such as `school/fleeing`, is for that robot, and any other one for KURT2.
+
+def robot_that_task_names(task: str) -> str | None:
+    """Return the robot that a task is for, by name or path; None if it does not say.
+
+    The task's file may name it; else a task of a robot's plug-in, such as `school/fleeing`, is for that robot.
     """
-    return name_or_path or robot_of_task(task) or DEFAULT_KIND
+    try:
+        content = content_of(find_config("tasks", task))
+    except SettingsError:  # the loader of tasks tells more
+        return None
+    named = content.get("robot") if isinstance(content, dict) else None
+    return named if isinstance(named, str) else robot_of_task(task)
 
 
 def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:

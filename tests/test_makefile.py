@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import shipped_names
+from hal.settings_files import shipped_names
 
 ROOT = Path(__file__).parents[1]
 

@@ -17,8 +17,9 @@ from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
-from hal.settings import Settings, SettingsError, content_of, find_config, load_settings
+from hal.settings import Settings, SettingsError, content_of, load_settings
 from hal.settings_by_kind import find_kind
+from hal.settings_files import find_config
 from kurt2rt.checks.faults.table import FaultTable
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level

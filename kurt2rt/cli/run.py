@@ -362,13 +362,14 @@ def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
 
 def _changed(options: _Options, task: str | None) -> "ServiceSettings":
     """Read the runtime settings and apply the command line to them. Raises SettingsError."""
-    from hal.settings import find_task_of_robot, robot_of_task
+    from hal.robot_plugins import find_task_of_robot
+    from hal.robot_settings import robot_that_task_names
     from kurt2rt.cli.scripted_file import own_file
     from kurt2rt.core.task_settings import load_task
     from kurt2rt.service.settings import load_service
 
     settings = load_service(options.settings)
-    named = options.robot_settings or (None if task is None else robot_of_task(task))
+    named = options.robot_settings or (None if task is None else robot_that_task_names(task))
     if named is not None:
         settings = settings.model_copy(update={"robot": named})
         task = task or find_task_of_robot(named)

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from hal.errors import ExitCode
-from hal.settings import find_config
+from hal.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import EarlierBus, bus_of

@@ -12,11 +12,10 @@ import anyio.to_thread
 import typer
 from rich.console import Console
 
-from hal.robot_settings import load_robot_of
-from hal.settings import robot_of_task
+from hal.robot_settings import load_robot, robot_that_task_names
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
-from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, task_option, teacher_option
+from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, RobotName, task_option, teacher_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.programs import AUTO, PROGRAMS
@@ -87,6 +86,7 @@ def teach(
     public_address: _PublicAddress = None,
     task: _Task = None,
     teacher: _Teacher = None,
+    robot_settings: RobotName = None,
     seed: _Seed = 1,
     settings: _Settings = "default",
     while_stdin: _WhileStdin = False,
@@ -133,6 +133,7 @@ class _Arguments:
     public_address: str | None
     task: str | None
     teacher: str | None
+    robot_settings: str | None
     seed: int
     settings: str
     while_stdin: bool
@@ -250,5 +251,5 @@ async def _by_script(
         return
     task = taught_by_named(load_task(arguments.task or service.task), arguments.teacher)
     name = arguments.task or service.task
-    robot = load_robot_of(None if robot_of_task(name) else service.robot, name)
+    robot = load_robot(arguments.robot_settings or robot_that_task_names(name) or service.robot)
     await teach_by_script(client, robot, task, print_line, seed=arguments.seed)

@@ -9,8 +9,9 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from hal.robot_plugins import robot_of_task, robots_task
 from hal.robot_settings import RobotSettings, load_robot
-from hal.settings import SettingsError, robot_of_task, robots_task
+from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName

@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import anyio
 
+from hal.robot_plugins import robots_task
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, robots_task
+from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation

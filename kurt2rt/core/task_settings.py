@@ -7,7 +7,8 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, 
 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
-from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings import Settings, SettingsError, load_settings
+from hal.settings_files import find_config
 from kurt2rt.core.basic.doubt import DoubtSettings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.lesson_speed import SLOWEST
@@ -203,6 +204,9 @@ class TaskSettings(Settings):
     system: Name | None = None
     """Name of the RLA system, if several tasks share it. They have the same situation and behaviours and continue each
     other's knowledge. The task's name by default."""
+    robot: str | None = None
+    """Robot that it is for, by name or path; None: KURT2, or the robot whose plug-in has the task. A command line may
+    name another one (`hal.robot_settings.robot_named`)."""
     situation: str
     repertoire: str
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)

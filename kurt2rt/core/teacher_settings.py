@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 from kurt2rt.core.lesson_speed import SLOWEST
 
 SUPERHUMAN = "superhuman"

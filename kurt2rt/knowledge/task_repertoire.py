@@ -6,7 +6,8 @@ from behaviors.behaviour import Behaviour
 from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, find_beside
+from hal.settings import SettingsError
+from hal.settings_files import find_beside
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.mid.place import PlaceSettings
 from kurt2rt.core.mid.settings import load_mid_level

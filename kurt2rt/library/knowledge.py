@@ -11,7 +11,7 @@ from hal.robot_settings import load_robot, load_robot_of, robot_named
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.knowledge.files.task_of_file import task_of_file
@@ -78,8 +78,9 @@ def teach(
     seed: int = 0,
     seconds: float | None = None,
     robot: str | None = None,
+    teacher: str = "superhuman",
 ) -> Knowledge:
-    """Let the task's scripted teacher teach a simulated robot; return the knowledge, kept in a new file.
+    """Let a scripted teacher teach a simulated robot; return the knowledge, kept in a new file.
 
     Args:
         path: of the new file.
@@ -87,6 +88,7 @@ def teach(
         seed: of the robot and the teacher.
         seconds: robot time in which the teacher answers; corrections last as long. None: as the task says.
         robot: name or path of the robot's settings; None: the robot of the task.
+        teacher: name or path of the scripted teacher; `ordinary` has a person's delays and slips, and takes longer.
 
     Raises:
         UserError: as kurt2rt.Error, there is a file already, or settings do not fit.
@@ -94,7 +96,7 @@ def teach(
     file, settings = Path(path), load_robot_of(robot, task)
     if file.exists():
         raise UserError("there is a file already", where=file, do="give the path of a new file")
-    loaded = load_task(task, changes=_duration(seconds))
+    loaded = taught_by_named(load_task(task, changes=_duration(seconds)), teacher)
     factory = open_factory(settings)
     require_course(factory, loaded, [loaded.teaching.world])
 

@@ -229,8 +229,9 @@ class RobotProgram:
             words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
             self._children.start("the teacher's page", *words, restarts=True, on_line=self._on_page_line)
         if options.scripted_teacher is not None:
-            task, teacher = self._service.task, options.scripted_teacher
-            words = ("teach", "--auto", "--port", port, "--task", task, "--teacher", teacher)
+            settings, teacher = self._service, options.scripted_teacher
+            of_robot = ("--task", settings.task, "--robot-settings", settings.robot)
+            words = ("teach", "--auto", "--port", port, *of_robot, "--teacher", teacher)
             self._children.start("the scripted teacher", *words, restarts=False)
 
     def _liveness(self) -> dict[str, Callable[[], bool]]:

@@ -4,7 +4,8 @@ from typing import Annotated, Final, Literal, NamedTuple
 
 from pydantic import Field, PlainValidator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
 WHILE_RUNNING: Final = "may change while the robot runs"

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 import anyio.to_thread
 
 from hal.robot_settings import RobotSettings
-from hal.settings import shipped_names
+from hal.settings_files import shipped_names
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel

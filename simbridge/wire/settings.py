@@ -5,7 +5,8 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Seconds = Annotated[float, Field(ge=0, le=3600)]

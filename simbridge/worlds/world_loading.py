@@ -8,7 +8,8 @@ import shapely
 
 from hal.plugins import PluginError, UnknownPluginError
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
-from hal.settings import WORLDS, SettingsError, content_of, find_config, load_settings, plugin_file, settings_of
+from hal.settings import SettingsError, content_of, load_settings, settings_of
+from hal.settings_files import WORLDS, find_config, plugin_file
 from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room

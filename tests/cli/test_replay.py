@@ -50,7 +50,7 @@ def test_the_newest_run_is_meant_where_none_is_named(kurt2rt: CommandLine, tmp_p
 def test_settings_of_today_change_nothing(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, short: Path
 ) -> None:
-    monkeypatch.setattr("hal.settings.CONFIG_DIR", tmp_path / "there are none")
+    monkeypatch.setattr("hal.settings_files.CONFIG_DIR", tmp_path / "there are none")
     settings = Path(__file__).parents[2] / "config" / "runtime" / "default.yaml"
     said = kurt2rt("replay", short, "--settings", settings)
     assert said.exit_code == 0, said.err

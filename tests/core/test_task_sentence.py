@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import SettingsError, find_config
+from hal.settings import SettingsError
+from hal.settings_files import find_config
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.hello import hello_of
 from kurt2rt.channel.server.channel import describe_robot

@@ -8,7 +8,8 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from hal.settings import SettingsError, shipped_names
+from hal.settings import SettingsError
+from hal.settings_files import shipped_names
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import (
     QUICK_TEACHER,

@@ -7,7 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings import Settings, SettingsError, load_settings
+from hal.settings_files import find_config
 
 
 class _Motor(Settings):

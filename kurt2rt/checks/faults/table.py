@@ -5,7 +5,8 @@ from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 
 Target = Literal[
     "sensor_board_1",

@@ -10,8 +10,10 @@ from behaviors.metrics.task_metric import MetricSettings
 from behaviors.registry import JUDGES, METRICS, POLICIES, AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from behaviors.repertoire_settings import BEHAVIOURS, ActionSettings, PluginAction, RepertoireSettings
 from hal.robot_kind import RobotKind
+from hal.robot_plugins import ROBOTS, find_robot_kind
 from hal.robot_settings import RobotSettings
-from hal.settings import ROBOTS, TASKS, WORLDS, find_config, find_robot_kind, load_settings
+from hal.settings import load_settings
+from hal.settings_files import TASKS, WORLDS, find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.kinds import NoPluginError, Subject
 from kurt2rt.checks.plugins.promises import broken_of_action, broken_of_judge, broken_of_metric, broken_of_policy

@@ -11,7 +11,9 @@ from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
 from hal.errors import UserError
 from hal.plugins import Plugin, PluginKind, import_target, is_target
-from hal.settings import ROBOTS, TASKS, WORLDS, SettingsError, content_of, robot_of_task, robots_tasks
+from hal.robot_plugins import ROBOTS, robot_of_task, robots_tasks
+from hal.settings import SettingsError, content_of
+from hal.settings_files import TASKS, WORLDS
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
 
@@ -65,7 +67,7 @@ def list_parts(kind: PluginKind) -> list[Listed]:
     names = [each.name for each in installed]
     listed = [Listed(kind.group, name, "kurt2rt", "") for name in shipped]
     if kind is TASKS:
-        listed += [Listed(kind.group, name, source, "") for name, source in robots_tasks()]
+        listed += [Listed(kind.group, each.name, each.source, "") for each in robots_tasks()]
     return [*listed, *(Listed(kind.group, each.name, each.source, _note(each, shipped, names)) for each in installed)]
 
 

@@ -11,7 +11,8 @@ from hal.guard_reason import GuardReason
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_kind import NO_WIRE, RobotKind
 from hal.robot_settings import BumperEnd, RobotSettings
-from hal.settings import SettingsError, content_of, settings_of, shipped_names
+from hal.settings import SettingsError, content_of, settings_of
+from hal.settings_files import shipped_names
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.learner.conformance import broken_among
 

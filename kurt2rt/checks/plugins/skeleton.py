@@ -9,7 +9,8 @@ from string import Template
 
 from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
-from hal.settings import ROBOTS, TASKS, WORLDS
+from hal.robot_plugins import ROBOTS
+from hal.settings_files import TASKS, WORLDS
 from kurt2rt.checks.plugins.kinds import KINDS, NoPluginError
 from kurt2rt.experiments.rivals.registry import LEARNERS
 

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from pydantic import Field, field_validator, model_validator
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 from kurt2rt.core.rla.feature_set import LevelFeatures
 
 Seconds = Annotated[float, Field(gt=0, le=100_000)]

@@ -8,7 +8,8 @@ from typing import Annotated
 from pydantic import Field
 
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.mid.situation import AnyMidSituationSettings, MidSituation
 from kurt2rt.core.mid.symbols.source import Transitions

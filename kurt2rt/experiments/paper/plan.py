@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from hal.settings import find_config
+from hal.settings_files import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.phase_settings import PHASES
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named

@@ -4,7 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings import Settings, SettingsError, load_settings
+from hal.settings_files import find_config
 from hal.simulation import SimulationFactory
 
 Share = Annotated[float, Field(gt=0, le=1)]

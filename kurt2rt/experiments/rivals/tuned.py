@@ -4,7 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 
 GATE = "gate"
 """Key of the number by which a learner asks, which is not in the task's file."""

@@ -5,7 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, find_config, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import find_config
 from kurt2rt.core.task_settings import Name
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.rivals.tuned import GATE

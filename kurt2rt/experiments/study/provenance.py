@@ -11,7 +11,8 @@ from importlib.metadata import version
 from behaviors.repertoire_settings import RepertoireSettings
 from hal.plugins import source_hash_of
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, content_of, find_config, load_settings
+from hal.settings import Settings, content_of, load_settings
+from hal.settings_files import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.import_graph import modules_needed

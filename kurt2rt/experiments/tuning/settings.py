@@ -4,7 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.settings import Settings, SettingsError, find_config, load_settings
+from hal.settings import Settings, SettingsError, load_settings
+from hal.settings_files import find_config
 from kurt2rt.experiments.rivals.rival import TUNED
 from kurt2rt.experiments.rivals.tuned import GATE
 from kurt2rt.experiments.search.settings import (

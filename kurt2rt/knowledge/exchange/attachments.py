@@ -10,7 +10,8 @@ from typing import Any
 
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
-from hal.settings import FILES, Settings, find_beside, find_config, kept_name, load_settings
+from hal.settings import Settings, load_settings
+from hal.settings_files import FILES, find_beside, find_config, kept_name
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.statistics import Statistics

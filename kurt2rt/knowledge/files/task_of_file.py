@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from hal.plugins import settings_from_elsewhere
-from hal.settings import SettingsError, robots_task
+from hal.robot_plugins import robots_task
+from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

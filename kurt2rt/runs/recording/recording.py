@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from hal.plugins import loaded_plugins
 from hal.robot_settings import RobotSettings
-from hal.settings import SHIPPED_DIR
+from hal.settings_files import SHIPPED_DIR
 from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing_text import stop_text

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from hal.settings import SHIPPED_DIR
+from hal.settings_files import SHIPPED_DIR
 
 
 def start_command() -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import find_beside, find_config
+from hal.settings_files import find_beside, find_config
 from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, extracted_settings, unsafe_reason
 
 

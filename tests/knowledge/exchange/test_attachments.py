@@ -8,7 +8,8 @@ import pytest
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot, robot_of_json
 from hal.sensor_signs import SensorRules
-from hal.settings import SettingsError, find_config, kept_name, settings_override
+from hal.settings import SettingsError
+from hal.settings_files import find_config, kept_name, settings_override
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.phase import Phase

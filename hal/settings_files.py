@@ -1,0 +1,144 @@
+"""Places of settings files: shipped, of a robot's plug-in, or kept with a run."""
+
+import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Final
+
+from config import CONFIG_DIR
+from hal.plugins import PluginError, PluginKind, UnknownPluginError, settings_from_elsewhere
+from hal.robot_plugins import ROBOTS, find_robot_kind
+from hal.settings import SettingsError
+
+SHIPPED_DIR: Final = CONFIG_DIR
+"""Folder of the files that ship with the project."""
+
+
+FILES = "files"
+"""Folder of the stored files that are no settings."""
+
+# A replay builds its runtime in one call, and all loaders below look here. A parameter would appear in fifty
+# signatures for the replay alone.
+_KEPT: ContextVar[Path | None] = ContextVar("kept settings", default=None)
+
+
+@contextmanager
+def settings_override(folder: Path) -> Iterator[None]:
+    """Find only the settings stored in `folder` while the context lasts.
+
+    `find_config` finds it as `<kind>/<kept_name>`, `find_beside` as `files/<kept_name>`.
+    """
+    token = _KEPT.set(folder)
+    try:
+        with settings_from_elsewhere():
+            yield
+    finally:
+        _KEPT.reset(token)
+
+
+def kept_name(name_or_path: str) -> str:
+    """Return the name of a stored file: the shipped one for settings, or a unique one for each path.
+
+    The name never leads out of a folder, because the author of a recorded run may be hostile.
+    """
+    path = Path(name_or_path)
+    if not path.suffix and path.name == name_or_path:
+        return f"{name_or_path}.yaml"
+    return f"{path.stem}-{hashlib.sha256(name_or_path.encode()).hexdigest()[:8]}{path.suffix}"
+
+
+def find_beside(settings: Path, name: str) -> Path:
+    """Return the path of a file that settings name, relative to their folder; it need not exist.
+
+    `settings`: path of the settings file. `name`: relative, absolute, or with a tilde.
+    """
+    kept = _KEPT.get()
+    return settings.parent / Path(name).expanduser() if kept is None else kept / FILES / kept_name(name)
+
+
+TASKS = PluginKind(
+    "tasks",
+    "task",
+    "the path of a YAML file, as a str or Path",
+    lambda found: isinstance(found, str | Path),
+    lambda: shipped_names("tasks"),
+)
+WORLDS = PluginKind(
+    "worlds",
+    "world",
+    "the path of a YAML file, or a function without arguments",
+    lambda found: isinstance(found, str | Path) or callable(found),
+    lambda: shipped_names("worlds"),
+)
+
+
+def find_config(kind: str, name_or_path: str) -> Path:
+    """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
+
+    `<robot>/<name>` is a file of a robot's plug-in; its own settings go by `<robot>` alone. A task may also be a
+    plug-in. Raises SettingsError that lists the names when there is no such file.
+    """
+    kept = _KEPT.get()
+    if kept is not None:
+        path = kept / kind / kept_name(name_or_path)
+        if path.is_file():
+            return path
+        raise SettingsError(f"is not among the settings in {kind} that were kept with the run", where=name_or_path)
+    given = Path(name_or_path)
+    if given.suffix == ".yaml" and given.is_file():
+        return given
+    shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
+    if shipped.is_file():
+        return shipped
+    of_robot = _file_of_robot(kind, name_or_path)
+    if of_robot is not None:
+        return of_robot
+    names, plugins = shipped_names(kind), ""
+    if kind == ROBOTS.group:
+        names += (each.name for each in ROBOTS.installed() if each.name not in names)
+    if kind == TASKS.group:
+        try:
+            return plugin_file(str(TASKS.find(name_or_path)), name_or_path)
+        except UnknownPluginError:
+            names += (each.name for each in TASKS.installed())
+            plugins = "module:NAME, "
+        except PluginError as error:
+            raise SettingsError(error.what, where=error.where, do=error.do) from error
+    meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
+    raise SettingsError(
+        f"no such file in {kind}",
+        where=name_or_path,
+        do=f"give {plugins}a path to a .yaml file or one of: {', '.join(names)}{meant}",
+    )
+
+
+def _file_of_robot(kind: str, name: str) -> Path | None:
+    """Return the file that the plug-in of a robot has for `<robot>/<name>`; None for a name of another form.
+
+    A robot's own settings go by the name of its kind alone, too. Raises SettingsError if the plug-in has no such file.
+    """
+    robot, _, rest = name.partition("/")
+    if not rest and kind == ROBOTS.group:
+        rest = robot
+    if not rest.isidentifier() or robot not in {each.name for each in ROBOTS.installed()}:
+        return None
+    folder = find_robot_kind(robot).folder / kind
+    if not (folder / f"{rest}.yaml").is_file():
+        names = ", ".join(f"{robot}/{path.stem}" for path in sorted(folder.glob("*.yaml"))) or "none"
+        raise SettingsError(f"the robot {robot} has no such file in {kind}", where=name, do=f"it has: {names}")
+    return folder / f"{rest}.yaml"
+
+
+def plugin_file(path: str, name: str) -> Path:
+    """Return the path of a file that a plug-in names. Raises SettingsError if there is no such file."""
+    if not Path(path).is_file():
+        raise SettingsError(f"its plug-in names the file {path}, which is not there", where=name, do="mend the plug-in")
+    return Path(path)
+
+
+def shipped_names(kind: str) -> list[str]:
+    """Return the names of the shipped settings files in `config/<kind>`, without ending, sorted."""
+    return sorted(path.stem for path in (CONFIG_DIR / kind).glob("*.yaml"))
