@@ -310,14 +310,14 @@ def test_robot_of_the_docs_is_made_checked_and_taught(kurt2rt: CommandLine, plug
     assert kurt2rt(*shlex.split(made)[1:]).exit_code == 0
     assert installed == "pip install -e rover"
     project = tomllib.loads(Path("rover/pyproject.toml").read_text(encoding="utf-8"))["project"]
-    install(plugin_folder / "rover", "rover", {"robots": project["entry-points"]["kurt2rt.robots"]})
+    install(plugin_folder / "rover" / "src", "rover", {"robots": project["entry-points"]["kurt2rt.robots"]})
     said = kurt2rt(*shlex.split(checked)[1:])
     assert f"$ {checked}\n{said.out}" in text
     short = ("teaching.supervised_s=20", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
     said = kurt2rt(*shlex.split(taught)[1:], *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
     assert Path("results/demo/rover_fleeing-620.knowledge").is_file()
-    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in Path("rover/rover").glob("*.py"))
+    lines = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in Path("rover/src/rover").glob("*.py"))
     assert lines <= 300
 
 

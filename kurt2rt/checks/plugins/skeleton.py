@@ -67,7 +67,8 @@ def write_skeleton(group: str, name: str, folder: Path) -> list[Path]:
         parts = {"__init__.py": f"{group}.py.txt"}
     if group == TASKS.group:
         parts[f"{name}.yaml"] = "task.yaml.txt"
-    templates |= {folder / name / path: template for path, template in parts.items()}
+    # Within src: Python would take the outer folder for the package where it is started above it.
+    templates |= {folder / "src" / name / path: template for path, template in parts.items()}
     for path, template in templates.items():
         path.parent.mkdir(parents=True, exist_ok=True)
         text = files("kurt2rt.checks.plugins").joinpath("templates", template).read_text(encoding="utf-8")

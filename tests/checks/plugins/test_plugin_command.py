@@ -115,7 +115,7 @@ def test_skeleton_of_each_kind_passes_its_check(kurt2rt: CommandLine, plugin_fol
     checked = kurt2rt("plugin", "check", Path("out", name))
     assert checked.out == f"{points[name]} ({kind}): keeps all promises\n", checked.err
     assert group == f"kurt2rt.{kind}"
-    install(plugin_folder / "out" / name, project["name"], {kind: points}, project["version"])
+    install(plugin_folder / "out" / name / "src", project["name"], {kind: points}, project["version"])
     listed = json.loads(kurt2rt("plugin", "list", "--kind", kind, "--json").out)["plugins"]
     assert {"kind": kind, "name": name, "source": f"own-{kind} 0.1.0", "note": ""} in listed
     assert kurt2rt("plugin", "check", name).out == f"{name} ({kind}): keeps all promises\n"
