@@ -92,12 +92,17 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+@pytest.fixture(autouse=True)
+def _forget_loaded_plugins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let no test see the plug-ins that another one loaded: a unit of systemd, for one, is refused with them."""
+    monkeypatch.setattr(plugins, "_LOADED", {})
+
+
 @pytest.fixture
 def plugin_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Generator[Path, None, None]:
     """Return the current folder, empty; modules, plug-ins and entries of Python's path are forgotten afterwards."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
-    monkeypatch.setattr(plugins, "_LOADED", {})
     known = set(sys.modules)
     yield tmp_path
     for name in set(sys.modules) - known:
