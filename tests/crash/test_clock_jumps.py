@@ -9,6 +9,7 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
+from kurt2rt.channel.protocol.state import State
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
@@ -35,19 +36,35 @@ async def a_robot(folder: Path) -> AsyncIterator[None]:
 
 
 async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None:
-    """Correct the robot; assert that it drives by the correction, which has a stamp of the present wall clock."""
+    """Correct the robot; assert that it drives by the correction, which has a stamp of the present wall clock.
+
+    A correction teaches nothing if it comes while an action is held that the nearest RLA does not say any more: two
+    RLAs within the noise drive in turn. So it is repeated until there is a lesson.
+    """
     await until_it_drives(we, ON_THE_SPOT)
+    before = (await state_where(we, lambda _: True)).lessons
     with anyio.fail_after(LONG_ENOUGH_S):
         async for state in we.states():
             if state.rla is not None:
-                action = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT
-                if (await we.correct(action, of=state.tick)).accepted:
+                action, tick = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT, state.tick
+                if (await we.correct(action, of=tick)).accepted and await _has_taught(we, before, tick):
                     break
             elif state.stopped:
                 await we.resume()
-    seen = await state_where(we, lambda state: state.nearest_action == action and state.taught_at != "")
-    off_by_s = (datetime.fromisoformat(seen.taught_at) - datetime.now(UTC)).total_seconds()
-    assert abs(off_by_s - wall_clock.off_by_s) < LATE_S
+
+    def is_of_now(state: State) -> bool:
+        if state.nearest_action != action or not state.taught_at:
+            return False
+        off_by_s = (datetime.fromisoformat(state.taught_at) - datetime.now(UTC)).total_seconds()
+        return abs(off_by_s - wall_clock.off_by_s) < LATE_S
+
+    await state_where(we, is_of_now)
+
+
+async def _has_taught(we: TeacherClient, before: int, tick: int) -> bool:
+    """Return whether the robot has more lessons than before, at most half a second after a tick."""
+    later = await state_where(we, lambda state: state.lessons > before or state.tick > tick + 50)
+    return later.lessons > before
 
 
 def require_kept(folder: Path, lessons: int) -> None:
