@@ -1,7 +1,7 @@
 """The wall clock is set forward and back by an hour while the robot works: nothing but the stamps goes by it."""
 
 import signal
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -36,35 +36,37 @@ async def a_robot(folder: Path) -> AsyncIterator[None]:
 
 
 async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None:
-    """Correct the robot; assert that it drives by the correction, which has a stamp of the present wall clock.
+    """Correct the robot until it drives by a correction that has a stamp of the present wall clock.
 
-    A correction teaches nothing if it comes while an action is held that the nearest RLA does not say any more: two
-    RLAs within the noise drive in turn. So it is repeated until there is a lesson.
+    A correction teaches nothing if it comes while an action is held that the nearest RLA does not say any more, and
+    another RLA may be nearer by the time that it acts. So it is repeated.
     """
     await until_it_drives(we, ON_THE_SPOT)
     before = (await state_where(we, lambda _: True)).lessons
-    with anyio.fail_after(LONG_ENOUGH_S):
-        async for state in we.states():
-            if state.rla is not None:
-                action, tick = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT, state.tick
-                if (await we.correct(action, of=tick)).accepted and await _has_taught(we, before, tick):
-                    break
-            elif state.stopped:
-                await we.resume()
 
-    def is_of_now(state: State) -> bool:
-        if state.nearest_action != action or not state.taught_at:
+    def acts(state: State, action: str) -> bool:
+        if state.lessons <= before or state.nearest_action != action or not state.taught_at:
             return False
         off_by_s = (datetime.fromisoformat(state.taught_at) - datetime.now(UTC)).total_seconds()
         return abs(off_by_s - wall_clock.off_by_s) < LATE_S
 
-    await state_where(we, is_of_now)
+    with anyio.fail_after(LONG_ENOUGH_S):
+        async for state in we.states():
+            if state.rla is not None:
+                action, since = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT, state.tick
+                if (await we.correct(action, of=since)).accepted and await _comes(we, acts, action, since):
+                    return
+            elif state.stopped:
+                await we.resume()
+            elif state.cause == "unknown":
+                await we.answer(ON_THE_SPOT, of=state.tick)
+    raise AssertionError("the client ended")
 
 
-async def _has_taught(we: TeacherClient, before: int, tick: int) -> bool:
-    """Return whether the robot has more lessons than before, at most half a second after a tick."""
-    later = await state_where(we, lambda state: state.lessons > before or state.tick > tick + 50)
-    return later.lessons > before
+async def _comes(we: TeacherClient, acts: Callable[[State, str], bool], action: str, since: int) -> bool:
+    """Return whether a state comes in which a correction acts, at most half a second after a tick."""
+    later = await state_where(we, lambda state: acts(state, action) or state.tick > since + 50)
+    return acts(later, action)
 
 
 def require_kept(folder: Path, lessons: int) -> None:
