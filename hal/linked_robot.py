@@ -96,7 +96,6 @@ class LinkedRobot(GuardedRobot):
                     return False
                 arrivals.left_ticks += report.left_ticks
                 arrivals.right_ticks += report.right_ticks
-                arrivals.encoder_frames += 1
                 self._turned_s += duration_s
                 self._encoder_at_s = at_s
             case BumperReport(pressed=pressed):

@@ -50,10 +50,15 @@ def find_robot_kind(name: str) -> RobotParts:
         raise SettingsError(error.what, where=error.where, do=error.do) from error
 
 
+def is_robot(name: str) -> bool:
+    """Return whether an installed plug-in offers a robot of this name; nothing is imported."""
+    return name in {each.name for each in ROBOTS.installed()}
+
+
 def robot_of_task(name: str) -> str | None:
     """Return the robot whose plug-in has a task, as in `school/fleeing`; None for a task by another name or a path."""
     robot, slash, _ = name.partition("/")
-    return robot if slash and robot in {each.name for each in ROBOTS.installed()} else None
+    return robot if slash and is_robot(robot) else None
 
 
 _FIRST_TASK = "wall_following"
@@ -64,7 +69,7 @@ def find_task_of_robot(robot: str) -> str | None:
 
     Raises SettingsError for a plug-in that cannot be imported.
     """
-    if robot not in {each.name for each in ROBOTS.installed()}:
+    if not is_robot(robot):
         return None
     folder = find_robot_kind(robot).folder
     if folder == CONFIG_DIR:  # tasks of the project go by their names alone

@@ -10,7 +10,7 @@ from typing import Final
 
 from config import CONFIG_DIR
 from hal.plugins import PluginError, PluginKind, UnknownPluginError, settings_from_elsewhere
-from hal.robot_plugins import ROBOTS, find_robot_kind
+from hal.robot_plugins import ROBOTS, find_robot_kind, is_robot
 from hal.settings import SettingsError
 
 SHIPPED_DIR: Final = CONFIG_DIR
@@ -123,7 +123,7 @@ def _file_of_robot(kind: str, name: str) -> Path | None:
     robot, _, rest = name.partition("/")
     if not rest and kind == ROBOTS.group:
         rest = robot
-    if not rest.isidentifier() or robot not in {each.name for each in ROBOTS.installed()}:
+    if not rest.isidentifier() or not is_robot(robot):
         return None
     folder = find_robot_kind(robot).folder / kind
     if not (folder / f"{rest}.yaml").is_file():

@@ -4,6 +4,8 @@ from typing import Protocol
 
 import can
 
+from hal.settings import SettingsError
+
 
 class Tap(Protocol):
     """Observer of each frame that passes an end. Methods never wait, raise or change a frame. Any thread calls them."""
@@ -15,3 +17,9 @@ class Tap(Protocol):
     def on_tx(self, frame: can.Message) -> None:
         """Note a frame of this end that the bus accepted. The object may be sent again; its payload never changes."""
         ...
+
+
+def refuse_tap(tap: Tap | None, robot: str) -> None:
+    """Refuse a tap at the link of a robot without CAN, by its name. Raises hal.settings.SettingsError."""
+    if tap is not None:
+        raise SettingsError("has no CAN frames to be seen", where=f"robot {robot}", do="leave it out")

@@ -10,7 +10,7 @@ from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import LiveSimulation
-from hal.tap import Tap
+from hal.tap import Tap, refuse_tap
 from simbridge.controller.controller import Controller
 from simbridge.live_simulation import run_live
 from simbridge.robot.body import Body
@@ -64,8 +64,7 @@ class LinkSimulationFactory(RobotWorlds):
 
         Raises SettingsError for an unknown world, for a wire, or for a tap, which sees CAN frames.
         """
-        if tap is not None:
-            raise SettingsError("has no CAN frames to be seen", where=f"robot {self.settings.name}", do="leave it out")
+        refuse_tap(tap, self.settings.name)
         simulation, driver = self._open(world, seed, "run", StallTolerantLinkedRobot)
         return run_live(simulation, driver, simulation.simulated_robot.world.settings)
 

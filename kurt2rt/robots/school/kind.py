@@ -6,9 +6,8 @@ from secrets import randbelow
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
-from hal.tap import Tap
+from hal.tap import Tap, refuse_tap
 
 
 class SchoolKind:
@@ -27,8 +26,7 @@ class SchoolKind:
         from kurt2rt.robots.school.lines import BIT_RATE_BIT_S, NUMBERS
         from kurt2rt.robots.school.link import SchoolLink
 
-        if tap is not None:
-            raise SettingsError("has no CAN frames to be seen", where=f"robot {settings.name}", do="leave it out")
+        refuse_tap(tap, settings.name)
         link = SchoolLink(SerialPort(address, BIT_RATE_BIT_S), len(settings.infrared.sensors), randbelow(NUMBERS))
         try:
             link.greet()

@@ -4,9 +4,8 @@ from pathlib import Path
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
-from hal.tap import Tap
+from hal.tap import Tap, refuse_tap
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings, require_turtlebot
 
 
@@ -26,8 +25,7 @@ class TurtlebotKind:
         from kurt2rt.ros.session import ZenohSession
 
         checked = require_turtlebot(settings)
-        if tap is not None:
-            raise SettingsError("has no CAN frames to be seen", where=f"robot {settings.name}", do="leave it out")
+        refuse_tap(tap, settings.name)
         session = ZenohSession(checked.ros, connect=[address])
         return LinkedRobot(checked, TurtlebotLink(checked, session, session.name))
 
