@@ -4,11 +4,12 @@ from collections.abc import Sequence
 
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot_kind import NO_WIRE
 from hal.simulation import Pose
 from hal.tap import Tap
 from simbridge.robot_simulation import RobotSimulation, chance_of
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.wire.line import NO_WIRE, open_line
+from simbridge.wire.line import open_line
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 

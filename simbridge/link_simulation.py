@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from hal.linked_robot import LinkedRobot
+from hal.robot_kind import NO_WIRE
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
@@ -20,7 +21,6 @@ from simbridge.robot_worlds import RobotWorlds
 from simbridge.simulated_link import SimulatedLink
 from simbridge.simulated_robot import MakeSensors, SimulatedRobot, infrared_sensors
 from simbridge.stall_tolerant import StallTolerantLinkedRobot
-from simbridge.wire.line import NO_WIRE
 from simbridge.worlds.world_loading import load_world
 
 

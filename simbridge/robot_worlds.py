@@ -3,11 +3,12 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hal.robot_kind import NO_WIRE
 from hal.robot_settings import RobotSettings
 from hal.simulation import WorldPlan
 from simbridge.simulated_world import plan_of
 from simbridge.survey.drawing import draw_robot, draw_world
-from simbridge.wire.line import NO_WIRE, require_wire
+from simbridge.wire.line import require_wire
 from simbridge.worlds.world_loading import load_world
 
 if TYPE_CHECKING:

@@ -8,13 +8,13 @@ from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
+from hal.robot_kind import NO_WIRE
 from hal.simulation import LiveSimulation
 from hal.tap import Tap
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.live_simulation import run_live
 from simbridge.robot_worlds import RobotWorlds
 from simbridge.stall_tolerant import StallTolerantKurt2
-from simbridge.wire.line import NO_WIRE
 from simbridge.worlds.world_loading import load_world
 
 

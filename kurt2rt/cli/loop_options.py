@@ -24,8 +24,8 @@ def requested_loops(lessons: LoopRequest, exams: LoopRequest, *, wire: str | Non
     `wire`: name of the simulated wire; None: none. Raises typer.BadParameter for an explicit batch with a wire.
     """
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
+    from hal.robot_kind import NO_WIRE
     from simbridge.batch.compiled import IS_COMPILED
-    from simbridge.wire.line import NO_WIRE
 
     has_wire = wire not in (None, NO_WIRE)
     for hint, asked in (("--lessons", lessons), ("--exams", exams)):

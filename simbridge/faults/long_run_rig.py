@@ -13,6 +13,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
+from hal.robot_kind import NO_WIRE
 from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S
@@ -23,7 +24,6 @@ from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty
 from simbridge.faults.switchable_interface import Links, NumberedFrame, SwitchableInterface
 from simbridge.faults.timed_fault import Kind, TimedFault
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
 from simbridge.wire.wire_interface import WireInterface

@@ -7,14 +7,12 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Protocol
 
 from hal.bus import CONTROL_ID, CanBus, open_bus
+from hal.robot_kind import NO_WIRE
 from hal.settings import SettingsError
 from simbridge.simulated_link import SimulatedLink
 from simbridge.wire.settings import WireSettings, load_wire
 from simbridge.wire.wire import Wire
 from simbridge.wire.wire_interface import WireInterface
-
-NO_WIRE = "none"
-"""Name of the line without a wire, on which frames arrive at once."""
 
 _KERNEL_DELIVERY_S = 0.001
 """Pause in which the kernel's own thread delivers the frames of a cycle."""
