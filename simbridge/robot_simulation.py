@@ -4,6 +4,7 @@ import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
+from pathlib import Path
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
@@ -144,5 +145,9 @@ class RobotSimulation:
 
 
 def chance_of(world: str, seed: int, purpose: str) -> random.Random:
-    """Return the chance of a simulation: first its noise seed of 32 bits, then its start pose."""
-    return random.Random(f"{purpose} in world {world}, seed {seed}")
+    """Return the chance of a simulation: first its noise seed of 32 bits, then its start pose.
+
+    Of a world's file only the name counts, so that a seed gives the same robot wherever the file lies.
+    """
+    name = Path(world).stem if world.endswith(".yaml") else world
+    return random.Random(f"{purpose} in world {name}, seed {seed}")
