@@ -1,6 +1,7 @@
 """Counter-clockwise circle round a post or column, for any robot with range sensors ahead and ahead to the left."""
 
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
+from behaviors.policies.sector_policy import SectorPolicy
 from behaviors.policies.sectors import Metres, Sector
 from hal.robot_settings import InfraredSettings
 
@@ -25,21 +26,16 @@ class SectorCircleSettings(PolicySettings):
         return SectorCircle(self, infrared)
 
 
-class SectorCircle:
+class SectorCircle(SectorPolicy[SectorCircleSettings]):
     """Turn sharply left until the post appears ahead, then pass it; a post that is abeam need not be seen.
 
     The curve has to be narrower than the circle, so that it leads back to the post.
     """
 
-    def __init__(self, settings: SectorCircleSettings, infrared: InfraredSettings) -> None:
-        self._settings = settings
-        self._front_m, self._left_m = settings.front.nearest(infrared), settings.left.nearest(infrared)
+    blocked = "spin_right"
 
-    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        want, left_m = self._settings, self._left_m(infrared_counts)
-        if self._front_m(infrared_counts) < want.front_m:
-            return "spin_right"
+    def _way_on(self, left_m: float, infrared_counts: tuple[int, ...]) -> str:  # noqa: ARG002
+        want = self._settings
         if left_m < want.near_m:
             return "curve_right"
         return "forward" if left_m < want.far_m else "sharp_left"

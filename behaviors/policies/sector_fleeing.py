@@ -1,6 +1,7 @@
 """Fleeing with collision avoidance, for any robot with range sensors ahead."""
 
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
+from behaviors.policies.sector_policy import SectorPolicy
 from behaviors.policies.sectors import Metres, Sector
 from hal.robot_settings import InfraredSettings
 
@@ -25,20 +26,20 @@ class SectorFleeingSettings(PolicySettings):
         return SectorFleeing(self, infrared)
 
 
-class SectorFleeing:
+class SectorFleeing(SectorPolicy[SectorFleeingSettings]):
     """Spin left from near obstacles, curve away from the others: the policy `fleeing` over sectors."""
 
-    def __init__(self, settings: SectorFleeingSettings, infrared: InfraredSettings) -> None:
-        self._settings = settings
-        self._front_m = settings.front.nearest(infrared)
-        self._left_m, self._right_m = settings.left.nearest(infrared), settings.right.nearest(infrared)
+    blocked = "whirl_left"
 
-    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        want, left_m, right_m = self._settings, self._left_m(infrared_counts), self._right_m(infrared_counts)
+    def __init__(self, settings: SectorFleeingSettings, infrared: InfraredSettings) -> None:
+        super().__init__(settings, infrared)
+        self._right_m = settings.right.nearest(infrared)
+
+    def _way_on(self, left_m: float, infrared_counts: tuple[int, ...]) -> str:
+        want, right_m = self._settings, self._right_m(infrared_counts)
         edge_m = min(left_m, right_m)
-        if self._front_m(infrared_counts) < want.front_m or edge_m < want.edge_m:
-            return "whirl_left"
+        if edge_m < want.edge_m:
+            return self.blocked
         if edge_m < want.wary_m:
             return "curve_left" if right_m <= left_m else "curve_right"
         return "flee"

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
+from behaviors.policies.sector_policy import SectorPolicy
 from behaviors.policies.sectors import Metres, Sector
 from hal.robot_settings import InfraredSettings
 
@@ -31,18 +32,13 @@ class SectorWallFollowingSettings(PolicySettings):
         return SectorWallFollowing(self, infrared)
 
 
-class SectorWallFollowing:
+class SectorWallFollowing(SectorPolicy[SectorWallFollowingSettings]):
     """Spin right at an obstacle ahead, curve left where the wall ends, else hold the distance ahead to the left."""
 
-    def __init__(self, settings: SectorWallFollowingSettings, infrared: InfraredSettings) -> None:
-        self._settings = settings
-        self._front_m, self._left_m = settings.front.nearest(infrared), settings.left.nearest(infrared)
+    blocked = "spin_right"
 
-    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - it knows only one
-        """Return the name of the action for the counts of all sensors; `behaviour` is not used."""
-        want, left_m = self._settings, self._left_m(infrared_counts)
-        if self._front_m(infrared_counts) < want.front_m:
-            return "spin_right"
+    def _way_on(self, left_m: float, infrared_counts: tuple[int, ...]) -> str:  # noqa: ARG002
+        want = self._settings
         if left_m > want.lost_m:
             return "curve_left"
         error_m = left_m - want.wanted_m
