@@ -11,6 +11,7 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.recorded_run import RunsFolder, RuntimeSettingsName
 from kurt2rt.runs.recording.run_folder import find_run
+from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.service.settings import load_service
 
@@ -56,9 +57,8 @@ def lerobot(
         kurt2rt export lerobot
         kurt2rt export lerobot var/runs/*-wall_following --fps 20
     """
-    # Late imports: mcap and pyarrow are in the extras `recording` and `export`.
+    # Late import: pyarrow is in the extra `export`, and this module is imported without it.
     from kurt2rt.runs.export.lerobot import export_lerobot
-    from kurt2rt.runs.replay.reader import read_run
 
     folder = runs or Path(load_service(settings).recordings)
     named = [find_run(each, folder) for each in run] if run else [find_run(None, folder)]

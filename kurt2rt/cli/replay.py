@@ -19,6 +19,7 @@ from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.counterfactual import Counterfactual, DifferingStretch, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer, load_policy
+from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import ReplayedTick
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.verify import ReplayVerdict, verify
@@ -59,9 +60,6 @@ def replay(
         kurt2rt replay
         kurt2rt replay 20261122T031005Z-wall_following --with other.knowledge
     """
-    # Late import: mcap is in the extra `recording`, and this module is imported without it.
-    from kurt2rt.runs.replay.reader import read_run
-
     found = read_run(find_run(run, runs or Path(load_service(settings).recordings)))
     if knowledge is None:
         _verify(found, as_json=as_json)

@@ -26,6 +26,7 @@ from kurt2rt.runs.explain.terminal import render_timeline, render_why
 from kurt2rt.runs.explain.timeline import build_timeline
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.run_folder import find_run
+from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.service.settings import ServiceSettings, load_service
 
@@ -108,9 +109,6 @@ def why(
         return
     if name is not None or robot is not None or port is not None:
         raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
-    # Late import: mcap is in the extra `recording`, and this module is imported without it.
-    from kurt2rt.runs.replay.reader import read_run
-
     found = find_run(run, runs or Path(service.recordings))
     recorded = read_run(found, partial=at is None)
     console = console_of()

@@ -11,6 +11,7 @@ from kurt2rt.runs.explain.from_run import explain_run
 from kurt2rt.runs.explain.reasons import format_decision
 from kurt2rt.runs.explain.timeline import Stretch, Timeline, build_timeline, format_summary
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
+from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.verify import ReplayVerdict, verify
 
@@ -82,12 +83,11 @@ def replay(path: str | PathLike[str]) -> ReplayedRun:
     Raises:
         UserError: as kurt2rt.Error, there is no recorded run, or this version cannot replay it.
     """
-    with extra_named():
-        from kurt2rt.runs.replay.reader import read_run
     given = Path(path)
-    if given.is_dir() and not segments_in(given):
-        given = find_run(None, given)
-    run = read_run(given)
+    with extra_named():
+        if given.is_dir() and not segments_in(given):
+            given = find_run(None, given)
+        run = read_run(given)
     verdict = verify(run)
     known = (lesson.event for lesson in run.lessons)
     return ReplayedRun(given, run, verdict, build_timeline(run.entries(), run.robot, known=known))

@@ -4,11 +4,17 @@ import contextlib
 import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kurt2rt.runs.recording.recording_disk import is_locked
 from kurt2rt.runs.recording.recording_error import RecordingError
 
+if TYPE_CHECKING:
+    from kurt2rt.runs.recording.segment_reader import SegmentReader
+
 SEGMENT_ENDING = ".mcap"
+TICK_TOPIC = "/tick"
+"""Topic of the ticks, of which a run is made."""
 _RUN_NAME = re.compile(r"\d{8}T\d{6}Z-.+")
 _STAMP = "%Y%m%dT%H%M%SZ"
 _STAMP_LETTERS = 16
@@ -64,10 +70,17 @@ def segment_number(segment: Path) -> int:
 def find_run(given: Path | None, recordings: Path) -> Path:
     """Return the run folder or segment named on a command line, by path or by name in `recordings`.
 
-    None: the newest run of `recordings` with a tick. Raises RecordingError.
+    None: the newest run of `recordings` with a tick. Raises RecordingError, and ModuleNotFoundError without the extra
+    `recording`.
     """
+    reader = segment_reader()
     if given is None:
-        newest = next((each for each in reversed(runs_in(recordings)) if _has_ticks(each)), None)
+        has_tick = (
+            run
+            for run in reversed(runs_in(recordings))
+            if any(True for segment in segments_in(run) for _ in reader(segment).messages({TICK_TOPIC}))
+        )
+        newest = next(has_tick, None)
         if newest is None:
             raise RecordingError(
                 "no recorded run is there", where=recordings, do="kurt2rt run makes one, or give its folder"
@@ -81,11 +94,12 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     )
 
 
-def _has_ticks(run: Path) -> bool:
-    # Late import: mcap is in the extra `recording`, and this module is imported without it.
-    from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
+def segment_reader() -> "type[SegmentReader]":
+    """Return the reader of segments. Raises ModuleNotFoundError without the extra `recording`."""
+    # Late import: mcap is in the extra, and all else that reads runs is imported without it.
+    from kurt2rt.runs.recording.segment_reader import SegmentReader
 
-    return any(True for segment in segments_in(run) for _ in SegmentReader(segment).messages({TICK_TOPIC}))
+    return SegmentReader
 
 
 def used_bytes(recordings: Path) -> int:

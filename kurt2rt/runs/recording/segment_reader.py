@@ -16,9 +16,6 @@ from mcap.stream_reader import StreamReader, get_chunk_data_stream
 
 from kurt2rt.runs.recording.recording_error import RecordingError
 
-TICK_TOPIC = "/tick"
-"""Topic of the ticks, of which a run is made."""
-
 # Errors that mcap raises on foreign bytes in addition to its own; a wrong checksum is a ValueError.
 _TRUNCATION_ERRORS = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 

@@ -39,8 +39,8 @@ from kurt2rt.runs.recording.foxglove_scene import (
     transforms,
     world_scene,
 )
+from kurt2rt.runs.recording.run_folder import TICK_TOPIC
 from kurt2rt.runs.recording.schemas import HEALTH_SCHEMA, LESSON_SCHEMA, TICK_SCHEMA, situation_schema
-from kurt2rt.runs.recording.segment_reader import TICK_TOPIC
 from kurt2rt.runs.recording.tick_json import encode_tick
 
 TICK, LESSON, SITUATION, HEALTH, LOG = TICK_TOPIC, "/lesson", "/situation", "/health", "/log"

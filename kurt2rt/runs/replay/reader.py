@@ -4,30 +4,35 @@ import json
 from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.recording.run_folder import TICK_TOPIC, segment_reader, segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
-from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
 from kurt2rt.runs.replay.run import Run, RunSource
+
+if TYPE_CHECKING:
+    from kurt2rt.runs.recording.segment_reader import SegmentHead, SegmentReader
 
 _LESSON_TOPIC = "/lesson"
 
 
 def read_run(path: Path, *, partial: bool = False) -> Run:
-    """Return the run in a folder, or the run of a segment. Raises RecordingError.
+    """Return the run in a folder, or the run of a segment.
 
-    `partial`: accept a run whose beginning was deleted; it cannot be replayed.
+    `partial`: accept a run whose beginning was deleted; it cannot be replayed. Raises RecordingError, and
+    ModuleNotFoundError without the extra `recording`.
     """
+    reader = segment_reader()
     try:
         segments = segments_in(path) if path.is_dir() else _segments_of_run(path)
     except OSError as error:
         raise RecordingError(f"cannot be read ({error})", where=path, do="give the folder of a recorded run") from error
     if not segments:
         raise RecordingError("holds no recorded run", where=path, do="give a folder with files such as 0001.mcap")
-    files = _Files([SegmentReader(each) for each in segments])
+    files = _Files([reader(each) for each in segments])
     head = files.head(partial=partial)
     if RUN_METADATA not in head.metadata:
         raise RecordingError("says of no run of kurt2rt, or is torn at its very beginning", where=segments[0])
@@ -38,10 +43,10 @@ def read_run(path: Path, *, partial: bool = False) -> Run:
 class _Files:
     """Segments of one run in order."""
 
-    def __init__(self, readers: Sequence[SegmentReader]) -> None:
+    def __init__(self, readers: "Sequence[SegmentReader]") -> None:
         self.readers = readers
 
-    def head(self, *, partial: bool) -> SegmentHead:
+    def head(self, *, partial: bool) -> "SegmentHead":
         """Return the head of the first segment; with `partial`, the first head that was kept."""
         heads = (reader.head() for reader in self.readers)
         first = next(heads)
@@ -57,7 +62,7 @@ class _Files:
     def stamps(self) -> Iterator[tuple[str, str]]:
         """Yield the command ids of durable lessons with their times. Leaves `truncated` unchanged."""
         for reader in self.readers:
-            for message in SegmentReader(reader.path).messages({_LESSON_TOPIC}):
+            for message in type(reader)(reader.path).messages({_LESSON_TOPIC}):
                 try:
                     content = json.loads(message.data)
                     if "acknowledged" in content and "stamped_at" in content:

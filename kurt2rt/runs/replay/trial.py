@@ -16,6 +16,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers
+from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run
 
@@ -54,9 +55,6 @@ def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
 
     Raises KnowledgeError if there is none.
     """
-    # Late import: mcap is in the extra `recording`, and this module is imported without it.
-    from kurt2rt.runs.replay.reader import read_run
-
     paths = _recorded_in(folder) or [folder]
     if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
         raise KnowledgeError(KnowledgeCode.NO_RECORDED_RUN, where=folder)
@@ -81,14 +79,8 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
 
     Empty without one. Its notes name newer runs that cannot be read. Only one run is kept in memory.
     """
-    # Late import: mcap is in the extra `recording`, and this module is imported without it.
-    paths = _recorded_in(recordings)[: -_NEWEST - 1 : -1]
-    if not paths:
-        return RecentRuns((), ())
-    from kurt2rt.runs.replay.reader import read_run
-
     newest, left_out = None, list[str]()
-    for path in paths:
+    for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
         try:
             run = read_run(path)
             if _incompatibility(run, binding) is not None or next(run.entries(), None) is None:

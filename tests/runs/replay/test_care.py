@@ -36,7 +36,7 @@ from kurt2rt.runs.recording.recover import _copy as copy_records
 from kurt2rt.runs.recording.run_head import RUN_METADATA
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
-from kurt2rt.runs.replay import reader
+from kurt2rt.runs.replay import reader, trial
 from kurt2rt.runs.replay.compaction import TEACHER, Compaction, compact
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
@@ -316,7 +316,7 @@ def test_search_for_the_newest_run_keeps_one_run_in_memory(
         read.append(weakref.ref(run))
         return run
 
-    monkeypatch.setattr(reader, "read_run", read_and_count)
+    monkeypatch.setattr(trial, "read_run", read_and_count)
     with Journal.read_only(knowledge) as journal:
         (newest,) = newest_compatible_run(runs, journal.binding, knowledge).runs
     assert newest.name.endswith("20260324T094640Z-wall_following")
