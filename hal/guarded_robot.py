@@ -24,10 +24,22 @@ REOPEN_PERIOD_S = 1.0
 class Arrivals:
     """Counters of the messages that one call of `sense` reads."""
 
-    __slots__ = ("bus_off", "encoder_frames", "foreign_control", "infrared_changed", "left_ticks", "right_ticks")
+    __slots__ = (
+        "bus_off",
+        "foreign_control",
+        "infrared_changed",
+        "left_ticks",
+        "responded_s",
+        "right_ticks",
+        "turned_s",
+    )
 
     def __init__(self) -> None:
-        self.left_ticks = self.right_ticks = self.encoder_frames = self.foreign_control = 0
+        self.left_ticks = self.right_ticks = self.foreign_control = 0
+        self.turned_s = 0.0
+        """Time in s in which the wheels turned by these ticks; 0 if no message tells it."""
+        self.responded_s = 0.0
+        """Time in s that the wheels had since the previous call to respond to their set points."""
         self.infrared_changed = self.bus_off = False
 
 
@@ -187,7 +199,13 @@ class GuardedRobot(ABC):
             self._stop(GuardReason.BUS_OFF)
         if arrivals.foreign_control:
             self._stop(GuardReason.FOREIGN_CONTROL, f"{self._link_name}: {self.foreign_alarm}")
-        disobedience = self._check_wheels(arrivals)
+        disobedience = self._wheel_watch.check(
+            readings.encoder_left_ticks,
+            readings.encoder_right_ticks,
+            arrivals.turned_s,
+            arrivals.responded_s,
+            readings.time_s,
+        )
         if disobedience:
             self._stop(
                 GuardReason.WHEELS_DISOBEY,
@@ -196,12 +214,6 @@ class GuardedRobot(ABC):
         freeze = self._infrared_watch.check_frozen(readings.time_s, driving=self._command != STANDSTILL and not paused)
         if freeze:
             self._stop(GuardReason.INFRARED_FROZEN, freeze)
-
-    def _check_wheels(self, arrivals: Arrivals) -> str:
-        readings = self._readings
-        return self._wheel_watch.check(
-            readings.encoder_left_ticks, readings.encoder_right_ticks, arrivals.encoder_frames, readings.time_s
-        )
 
     def _stop(self, reason: GuardReason, alarm: str = "") -> None:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it

@@ -39,12 +39,18 @@ class Kurt2(GuardedRobot):
         self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
         self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
         self._bumper_payload: bytes | bytearray = b""
+        self._cycle_s: Final = settings.cycle_s
+        self._encoder_frames = 0
+        """ENCODER frames of the present call of `sense`."""
         # CONTROL as well: a second sender of it must not go unnoticed.
         bus.set_id_filter({CONTROL_ID, *self._readers})
 
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
         messages, bus_now_s = self._drain(now_s)
+        self._encoder_frames = 0
         self._read(messages, bus_now_s, now_s, arrivals)
+        # Time goes by the controller's cycles: a frame that was lost takes its ticks along, and leaves the band wider.
+        arrivals.turned_s = arrivals.responded_s = self._encoder_frames * self._cycle_s
         arrivals.bus_off = arrivals.bus_off or self._bus_state.off
 
     def _reopen_link(self) -> None:
@@ -88,7 +94,7 @@ class Kurt2(GuardedRobot):
         left, right = self._encoder.unpack(data)
         arrivals.left_ticks += left
         arrivals.right_ticks += right
-        arrivals.encoder_frames += 1
+        self._encoder_frames += 1
         self._encoder_at_s = at_s
 
     def _read_bumpers(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:  # noqa: ARG002 - FrameReader

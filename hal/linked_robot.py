@@ -68,8 +68,6 @@ class LinkedRobot(GuardedRobot):
         self._board = watch.board(_BOARD)
         self._times_s.extend([-math.inf] * len(self._counts))
         self._cycle_s = settings.cycle_s
-        self._turned_s = 0.0
-        """Time of the wheel reports of the present call of `sense`."""
         self._rejected = 0
 
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
@@ -80,7 +78,8 @@ class LinkedRobot(GuardedRobot):
             self._lose_link(error, now_s)
         self._try_to_reopen(now_s)
         self._frames += len(reports)
-        self._turned_s = 0.0
+        # Set points may change between two reports of the wheels, so the wheels respond in each tick.
+        arrivals.responded_s = self._cycle_s
         for report in reports:
             if not report.at_s <= now_s + _LATE_S or not self._accept(report, min(report.at_s, now_s), arrivals):
                 self._rejected += 1
@@ -96,7 +95,7 @@ class LinkedRobot(GuardedRobot):
                     return False
                 arrivals.left_ticks += report.left_ticks
                 arrivals.right_ticks += report.right_ticks
-                self._turned_s += duration_s
+                arrivals.turned_s += duration_s
                 self._encoder_at_s = at_s
             case BumperReport(pressed=pressed):
                 self._bumpers = pressed & self._bumper_mask
@@ -115,15 +114,6 @@ class LinkedRobot(GuardedRobot):
             arrivals.infrared_changed = True
         self._times_s[first:end] = [at_s] * len(counts)
         return True
-
-    def _check_wheels(self, arrivals: Arrivals) -> str:
-        """Compare speeds where reports came. The bands go on with each tick: set points may change between reports."""
-        self._wheel_watch.advance(self._cycle_s)
-        if self._turned_s <= 0.0:
-            return ""
-        return self._wheel_watch.compare(
-            arrivals.left_ticks, arrivals.right_ticks, self._turned_s, self._readings.time_s
-        )
 
     def _reopen_link(self) -> None:
         self._link.reopen()

@@ -22,7 +22,6 @@ class WheelWatch:
 
     def __init__(self, robot: RobotSettings) -> None:
         limits = robot.guard
-        self._cycle_s = robot.cycle_s
         self._metres_per_tick = robot.geometry.metres_per_tick
         # After a longer pause of runtime or encoders the set points are unknown: the watchdog or the controller has
         # stopped the robot, and the measured speeds are the start.
@@ -36,27 +35,17 @@ class WheelWatch:
         """Set the set points in m/s that this tick's CONTROL carries."""
         self._command = command
 
-    def check(self, left_ticks: int, right_ticks: int, frames: int, now_s: float) -> str:
-        """Return one line about a side that disobeys; empty while both obey. Time in s.
+    def check(self, left_ticks: int, right_ticks: int, turned_s: float, responded_s: float, now_s: float) -> str:
+        """Return one line about a side that disobeys; empty while both obey. Call it in each tick. Times in s.
 
-        The ticks are those of all `frames` ENCODER frames of this tick of the runtime, none or several.
-        """
-        # Time goes by the controller's cycles: a frame that was lost takes its ticks along, and leaves the band wider.
-        turned_s = frames * self._cycle_s
-        self.advance(turned_s)
-        return self.compare(left_ticks, right_ticks, turned_s, now_s) if frames else ""
-
-    def advance(self, elapsed_s: float) -> None:
-        """Widen or close the bands for a time in s with the present set points."""
-        self._left.follow(self._command.left_m_s, elapsed_s)
-        self._right.follow(self._command.right_m_s, elapsed_s)
-
-    def compare(self, left_ticks: int, right_ticks: int, turned_s: float, now_s: float) -> str:
-        """Return one line about a side that disobeys; empty while both obey. Times in s.
-
-        The ticks are those of the last `turned_s`.
+        The wheels turned by these ticks in `turned_s`; 0 if nothing was counted in this tick of the runtime. They had
+        `responded_s` to respond to their set points, for which the bands widen or close.
         """
         left, right, command = self._left, self._right, self._command
+        left.follow(command.left_m_s, responded_s)
+        right.follow(command.right_m_s, responded_s)
+        if turned_s <= 0.0:
+            return ""
         left_m_s = left_ticks * self._metres_per_tick / turned_s
         right_m_s = right_ticks * self._metres_per_tick / turned_s
         silent_s = now_s - self._counted_at_s

@@ -30,12 +30,12 @@ class Watched:
         self._watch = WheelWatch(robot)
         self._cycle_s = robot.cycle_s
         self.now_s = 8.0
-        assert self._watch.check(first_ticks, first_ticks, 1, self.now_s) == ""
+        assert self._watch.check(first_ticks, first_ticks, self._cycle_s, self._cycle_s, self.now_s) == ""
 
     def turn(self, told_m_s: float, left_ticks: int, right_ticks: int, elapsed_s: float | None = None) -> str:
         self._watch.set_command(WheelSpeeds(told_m_s, told_m_s))
         self.now_s += self._cycle_s if elapsed_s is None else elapsed_s
-        return self._watch.check(left_ticks, right_ticks, 1, self.now_s)
+        return self._watch.check(left_ticks, right_ticks, self._cycle_s, self._cycle_s, self.now_s)
 
 
 @pytest.mark.parametrize(

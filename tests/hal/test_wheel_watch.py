@@ -20,6 +20,11 @@ NO_TOLERANCE = robot_with(wheel_error_m_s=0.004, wheel_error_share=0.0, wheel_er
 """A frame's ticks are whole, which is 2 mm/s."""
 
 
+def check(watch: WheelWatch, left_ticks: int, right_ticks: int, cycles: int, now_s: float) -> str:
+    """Return the line of the watch after ticks of so many of the controller's cycles."""
+    return watch.check(left_ticks, right_ticks, cycles * TICK_S, cycles * TICK_S, now_s)
+
+
 def wheels_like(acceleration: float = 1.0, braking: float = 1.0, loop_time: float = 1.0) -> Wheels:
     """Return the simulated motors with other responses, as fractions of the settings."""
     motors = ROBOT.motors
@@ -54,7 +59,7 @@ class Trial:
         self.wheels.turn(*self.obey(self.told), brake, brake)
         left, right = self.count(*self.wheels.take_ticks())
         self.now_s += TICK_S
-        return self.watch.check(*((0, 0, 0) if lost else (left, right, 1)), self.now_s)
+        return check(self.watch, *((0, 0, 0) if lost else (left, right, 1)), self.now_s)
 
     def drive(self, seconds: float, left_m_s: float, right_m_s: float) -> str:
         """Go on so for a while, speeding up as the guard lets it; what the watch said first."""
@@ -126,7 +131,7 @@ def test_ticks_that_were_missed_are_no_disobedience(orders: list[tuple[float, fl
                 counted.append(wheels.take_ticks())
             now_s += cycles * TICK_S
             left, right = (sum(side) for side in zip(*counted, strict=True))
-            assert watch.check(left, right, cycles, now_s) == ""
+            assert check(watch, left, right, cycles, now_s) == ""
 
 
 @pytest.mark.parametrize("mode", SpeedMode)
@@ -168,7 +173,7 @@ def test_encoders_that_come_back_find_the_wheels_as_they_are(driving: Trial) -> 
     for _ in range(100):
         driving.now_s += TICK_S
         driving.watch.set_command(STANDSTILL)
-        assert driving.watch.check(0, 0, 0, driving.now_s) == ""
+        assert check(driving.watch, 0, 0, 0, driving.now_s) == ""
     driving.told = STANDSTILL
     assert driving.drive(1.0, 0.0, 0.0) == ""
 
@@ -184,7 +189,7 @@ def test_slow_controller_is_judged_by_its_own_cycles(trial: Trial) -> None:
             trial.wheels.turn(*trial.told)
             left, right = trial.wheels.take_ticks()
             frames = 1
-        assert trial.watch.check(left, right, frames, trial.now_s) == ""
+        assert check(trial.watch, left, right, frames, trial.now_s) == ""
 
 
 def test_a_short_silence_is_no_excuse(driving: Trial) -> None:

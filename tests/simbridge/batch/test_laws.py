@@ -133,6 +133,6 @@ def assert_obeys(targets: Targets, put_every: int | None) -> None:
             if put_every is not None and tick % put_every == 0:
                 wheels.halt()
             wheels.turn(told_m_s, -told_m_s)
-            assert watch.check(*wheels.take_ticks(), 1, tick * ROBOT.cycle_s) == ""
+            assert watch.check(*wheels.take_ticks(), ROBOT.cycle_s, ROBOT.cycle_s, tick * ROBOT.cycle_s) == ""
             told_m_s = int(target_m_s * 100) / 100
             watch.set_command(WheelSpeeds(told_m_s, -told_m_s))
