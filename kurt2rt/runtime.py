@@ -44,13 +44,15 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.goal_commands import GoalCommands
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.teaching.teacher_delay import TeacherDelay
-from kurt2rt.core.tick import Tick, TickOptions, TickParts
+from kurt2rt.core.tick import Tick
+from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock

@@ -63,7 +63,7 @@ LAYERS_OF_CORE = (
     {"task_settings", "phase_settings", "teacher_settings"},
     {"teaching"},
     {"layer_stack", "tick_record"},
-    {"tick", "progress_meter"},
+    {"tick", "tick_parts", "tick_steps", "progress_meter"},
 )
 """Folders and files of core, low to high: each imports only lower ones and itself."""
 GUARDS = ("hal/guard.py", "hal/watchdog.py")

@@ -1,34 +1,24 @@
 """The tick: order of all steps of one control cycle, 100 times a second."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
-from behaviors.judges.judge import AppraisalFeatures
-from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
-from hal.sensor_ring import SubstituteReadings
-from hal.sensor_watch import SensorWatch
-from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.critic import Opinion
+from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, stopped
-from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import BumperWatch, StandingWatch
-from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.mid.mid_level import MidUsageCounter
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.perception.perception import Perception, Situation
+from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import AUTONOMOUS
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
-from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
+from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
+from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.platform.ledger import Stage, TickTimer
+from kurt2rt.core.tick_steps import Choice, Motion, View
+from kurt2rt.platform.ledger import Stage
 
 _KNOWLEDGE_PERIOD_TICKS = 100
 """A record holds all active RLAs at least this often."""
@@ -39,77 +29,6 @@ _TEACHER, _UNATTENDED = DecisionCause.TEACHER, DecisionCause.UNATTENDED
 
 _TEACHABLE = BY_KNOWLEDGE | ASKING
 """Causes of decisions that a held action may correct."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TickParts:
-    """Parts that a tick calls; `kurt2rt.runtime` builds them."""
-
-    robot: Robot
-    perception: Perception
-    level: Level
-    handler: CommandHandler
-    inbox: TeacherInbox
-    event_store: EventStore
-    statistics: StatisticsCounter
-    timer: TickTimer
-    appraisal_perception: AppraisalPerception | None = None
-    """Features for the handler's critic; None without a critic."""
-    expectations: ExpectationTracker | None = None
-    """None: nothing is expected."""
-    sensor_watch: SensorWatch | None = None
-    """Detector of single broken sensors; None: all readings are trusted."""
-    substitute: SubstituteReadings | None = None
-    """Readings in place of those of broken sensors; given with a `sensor_watch`."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TickOptions:
-    """Settings of a tick."""
-
-    stale_infrared_s: float
-    """The robot is blind if its infra-red readings are older."""
-    tolerates_stalls: bool = False
-    """Extend the teacher's leases by missed ticks, for a simulated robot that stalls with this program."""
-    asks_at_bumper: bool = True
-    """Ask if an RLA pushes on toward what a bumper touches."""
-
-
-# The results of the steps are made in every tick: a plain dataclass takes half the time of a named tuple.
-
-
-@dataclass(slots=True)
-class _View:
-    """Result of the step perceive."""
-
-    situation: Situation
-    blind: bool
-    appraisal_features: AppraisalFeatures | None
-    opinion: Opinion | None
-
-
-@dataclass(slots=True)
-class _Choice:
-    """Result of the step decide."""
-
-    commands: tuple[Input, ...]
-    results: list[CommandResult]
-    events: list[TeachingEvent]
-    """Lessons of the commands; the step learn adds the robot's own."""
-    saving_error: str | None
-    decision: Decision
-    behaviour: str
-
-
-@dataclass(slots=True)
-class _Motion:
-    """Result of the step guard."""
-
-    result: GuardResult
-    drove_at_s: float
-    asks_at_bumper: bool
-    turning: bool
-    """True if the decided action turns the wheels."""
 
 
 class Tick:
@@ -192,7 +111,7 @@ class Tick:
             return readings
         return readings._replace(infrared_counts=substitute(readings.infrared_counts, watch.places))
 
-    def _perceive(self, tick: int, readings: SensorReadings) -> _View:
+    def _perceive(self, tick: int, readings: SensorReadings) -> View:
         """Compute the situation, and the critic's opinion before this tick's commands can change it (step 2)."""
         # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from. In a slow
         # lesson they are those of the way at full speed.
@@ -205,9 +124,9 @@ class Tick:
             if not blind:
                 features, opinion = perceived, critic.appraise(tick, perceived)
         self._timer.lap(_PERCEIVE)
-        return _View(situation, blind, features, opinion)
+        return View(situation, blind, features, opinion)
 
-    def _decide(self, tick: int, readings: SensorReadings, view: _View) -> _Choice:
+    def _decide(self, tick: int, readings: SensorReadings, view: View) -> Choice:
         """Handle the teacher's commands, then let the levels decide (step 3)."""
         commands = self._inbox.pop_all()
         results: list[CommandResult] = []
@@ -227,11 +146,9 @@ class Tick:
             events.extend(self._handler.teach_driven(tick))
         decision = self._decision(tick, view.situation, readings, blind=view.blind)
         self._timer.lap(_DECIDE)
-        return _Choice(
-            commands, results, events, self._saving_error, decision, self._handler.active_behaviour.behaviour
-        )
+        return Choice(commands, results, events, self._saving_error, decision, self._handler.active_behaviour.behaviour)
 
-    def _guard(self, tick: int, now_s: float, decision: Decision) -> _Motion:
+    def _guard(self, tick: int, now_s: float, decision: Decision) -> Motion:
         """Send the decided speeds through the guard; note an emergency stop and a wait at a bumper (step 4)."""
         # A decision without an action never drives. The clock is read again, so that the guard sees a decision's
         # true age if the tick was held up.
@@ -251,9 +168,9 @@ class Tick:
         asks = self._options.asks_at_bumper and self._bumpers.update(decision, result) and handler.teacher_available
         # In phase 5 the robot does not wait: the critic can still punish the RLA that pushes, and replace its action.
         self._waits = asks and handler.phase is not AUTONOMOUS
-        return _Motion(result, drove_at_s, asks, self._driving and not self._waits)
+        return Motion(result, drove_at_s, asks, self._driving and not self._waits)
 
-    def _learn(self, tick: int, view: _View, choice: _Choice, motion: _Motion) -> Surprise | None:
+    def _learn(self, tick: int, view: View, choice: Choice, motion: Motion) -> Surprise | None:
         """Count, remember and learn; return the surprise of an RLA that ended (step 5)."""
         handler, decision, turning = self._handler, choice.decision, motion.turning
         pace = handler.lesson_speed
@@ -296,7 +213,7 @@ class Tick:
         self._timer.lap(_LEARN)
         return surprise
 
-    def _is_teachable(self, decision: Decision, motion: _Motion) -> bool:
+    def _is_teachable(self, decision: Decision, motion: Motion) -> bool:
         """Return whether a held action may become a lesson about this tick; not while the active behaviour is open."""
         if motion.result.latched or (decision.mid is not None and decision.mid.asks):
             return False
@@ -309,9 +226,9 @@ class Tick:
         tick: int,
         now_s: float,
         readings: SensorReadings,
-        view: _View,
-        choice: _Choice,
-        motion: _Motion,
+        view: View,
+        choice: Choice,
+        motion: Motion,
         surprise: Surprise | None,
     ) -> TickRecord:
         """Hand lessons to the journal and return the record of the tick (step 6)."""
@@ -367,7 +284,7 @@ class Tick:
                     self._appraisal_perception.forget_turns()
                 self._reset_transitions()
 
-    def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
+    def _handle(self, command: Command, tick: int, view: View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
         """Carry out one command; refuse a first copy that needs the situation of a blind robot."""
         assert not isinstance(command, Stream)
         new = not self._handler.was_handled(command.command_id)

@@ -21,10 +21,12 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, Resume
+from kurt2rt.core.teaching.handler_parts import HandlerParts
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.tick import Tick, TickOptions, TickParts
+from kurt2rt.core.tick import Tick
+from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition

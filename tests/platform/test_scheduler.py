@@ -17,7 +17,8 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.tick import Tick, TickOptions, TickParts
+from kurt2rt.core.tick import Tick
+from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.ledger import TickTimer

@@ -1,29 +1,23 @@
 """Command handler: carries out the teacher's commands in the tick that takes them."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import TypeGuard
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.critic.agreement import Agreement
-from kurt2rt.core.critic.critic import Critic, Opinion
+from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
-from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.lesson_speed import SLOWEST, LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.reinforcement import Reinforcement
-from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
 from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
-from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
 from kurt2rt.core.teaching.behaviour_selection import BehaviourSelection
 from kurt2rt.core.teaching.commands import (
@@ -55,12 +49,10 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.teaching.control_commands import ControlCommands
 from kurt2rt.core.teaching.demonstration import Demonstration
 from kurt2rt.core.teaching.goal_commands import GoalCommands
+from kurt2rt.core.teaching.handler_parts import HandlerParts, knowledge_updater_for, lesson_builder_for
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
-from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
 from kurt2rt.core.teaching.late_press import LatePresses
-from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 from kurt2rt.core.teaching.lesson_result import LessonResult
-from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
 from kurt2rt.core.teaching.stop_record import StopRecord
@@ -70,29 +62,6 @@ from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)
 """Phases in which the robot is taught actions."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HandlerParts:
-    """Optional parts of a command handler, each None if the task lacks it."""
-
-    reinforcement: Reinforcement | None = None
-    """Effect of rewards; None: they have none."""
-    critic: Critic | None = None
-    agreement: Agreement | None = None
-    self_teaching: SelfTeaching | None = None
-    """Teacher of phase 5; None: the robot learns nothing then."""
-    mid: MidLessons | None = None
-    """Lessons of the mid level; None: the teacher alone selects the behaviour."""
-    goals: GoalCommands | None = None
-    delay: TeacherDelay | None = None
-    """Delay of the teachers; None: it begins with the default."""
-    holds_yield: bool = False
-    """Keep what an answer or a press taught where a hold would replace it."""
-    learner: LearnerLevel | None = None
-    """Level of a learner that decides in place of the RLAs and gets each lesson; None: RLAs decide."""
-    lesson_speed: float = 1.0
-    """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 
 
 class CommandHandler:
@@ -132,7 +101,7 @@ class CommandHandler:
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
-        self._lessons = _lesson_builder(level, self.recent, self._rewind, insert_beyond_share, parts)
+        self._lessons = lesson_builder_for(level, self.recent, self._rewind, insert_beyond_share, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
@@ -140,7 +109,7 @@ class CommandHandler:
         self.streams = StreamHandler(level.repertoire, authority, self.stops, self.holds, self.delay)
         self._control = ControlCommands(level.repertoire, authority, self.stops, self.streams)
         self._late = LatePresses(self.recent, self.delay)
-        self.updater = _knowledge_updater(level, handled_command_ids, parts)
+        self.updater = knowledge_updater_for(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
         self.lesson_speed = LessonSpeed(parts.lesson_speed)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
@@ -410,35 +379,3 @@ def _lifts_stop(command: Command) -> TypeGuard[Resume | SetPhase | Pursue | Seek
     if isinstance(command, SetPhase):
         return command.phase is Phase.AUTONOMOUS
     return isinstance(command, Resume | Pursue | Seek | StopSeeking)
-
-
-def _knowledge_updater(level: BasicLevel, handled_ids: Iterable[str], parts: HandlerParts) -> KnowledgeUpdater:
-    return KnowledgeUpdater(
-        level,
-        handled_command_ids=handled_ids,
-        reinforcement=parts.reinforcement,
-        agreement=parts.agreement,
-        self_teaching=parts.self_teaching,
-        learner=parts.learner,
-    )
-
-
-def _lesson_builder(
-    level: BasicLevel,
-    recent: DecisionHistory,
-    rewind: RewindHistory,
-    insert_beyond_share: float,
-    parts: HandlerParts,
-) -> LessonBuilder:
-    appraisal_lessons = None if parts.critic is None else AppraisalLessons(parts.critic, level.system, recent)
-    return LessonBuilder(
-        level,
-        recent,
-        rewind,
-        insert_beyond_share=insert_beyond_share,
-        reinforcement=parts.reinforcement,
-        appraisal_lessons=appraisal_lessons,
-        mid=parts.mid,
-        holds_yield=parts.holds_yield,
-        learner=parts.learner,
-    )

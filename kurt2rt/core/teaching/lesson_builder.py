@@ -1,32 +1,31 @@
 """Lesson builder: from a teacher's command to the event that changes the knowledge."""
 
 from collections import Counter
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.learner.learner import Driven, Why
+from kurt2rt.core.learner.learner import Why
 from kurt2rt.core.learner.learner_level import LearnerLevel
-from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
-from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.lesson_history import DERIVED, hold_of
+from kurt2rt.core.rla.events import ActionReplaced, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.teaching.known_names import require_action, require_behaviour
+from kurt2rt.core.teaching.feedback_lessons import FeedbackLessons
+from kurt2rt.core.teaching.known_names import require_action, require_behaviour, require_rla
 from kurt2rt.core.teaching.lesson_context import LessonContext
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
+from kurt2rt.core.teaching.undo_lessons import UndoLessons
 
-_SIGNAL_TICKS = 100
-"""Ticks up to the one that a reward means, of which a learner is told what it did: one second."""
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Command that changes the knowledge."""
 
@@ -66,11 +65,12 @@ class LessonBuilder:
         self._rewind = rewind
         self._insert_beyond_share = insert_beyond_share
         self._reinforcement = reinforcement
-        self._appraisal_lessons = appraisal_lessons
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
         self._holds_yield = holds_yield
         self._learner = learner
+        self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons, learner)
+        self._undos = UndoLessons(level, appraisal_lessons, mid, learner)
         self.corrections_at: Counter[str] = Counter()
         """Number of corrections by level."""
 
@@ -85,21 +85,21 @@ class LessonBuilder:
             case ReplaceAction() | DeleteRla() if self._learner is not None:
                 raise CommandRefusedError(RefusalCode.NO_RLA_DECIDES)
             case ReplaceAction(rla_id=rla_id, action=action):
-                rla = self._require_rla(rla_id)
+                rla = require_rla(rla_id, self._system)
                 self._require_action_of(rla.level, action)
                 other = self._competitor_with(action, rla)
                 if other is not None:
                     refuse(rla_outcome(RefusalCode.SAYS_SO, other, action=action, delete=rla_id))
                 return self._replace(rla, action, origin)
             case DeleteRla(rla_id=rla_id):
-                deleted = rla_outcome(ResultCode.RLA_DELETED, self._require_rla(rla_id))
+                deleted = rla_outcome(ResultCode.RLA_DELETED, require_rla(rla_id, self._system))
                 return LessonResult(deleted, RlaDeleted(rla_id, origin))
             case Reward():
-                return self._reward(command, origin)
+                return self._feedback.reward(command, origin)
             case Appraise():
-                return self._appraise(command, origin)
+                return self._feedback.appraise(command, origin)
             case Undo(lesson=lesson):
-                return self._undo(lesson or self._system.last_standing_lesson, origin, alone=lesson is not None)
+                return self._undos.build(lesson, origin)
 
     def held(self, action: str, meant: int, origin: Origin, *, counts: bool) -> TeachingEvent | None:
         """Return the lesson that a held action gives about a remembered tick; None if it would be done there already.
@@ -277,119 +277,11 @@ class LessonBuilder:
             return None
         return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
 
-    def _reward(self, command: Reward, origin: Origin) -> LessonResult:
-        meant = self._known_tick(command.decision_tick)
-        if self._learner is not None:
-            return self._signal(self._learner, command, meant, origin)
-        rla_id = self._recent.driving_rla(meant)
-        if rla_id is None:
-            raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
-        self._require_full_speed(meant)
-        rla = self._require_rla(rla_id)
-        if self._recent.answering_rla(meant) != rla_id:
-            refuse(rla_outcome(RefusalCode.OUTSIDE_RADIUS, rla))
-        credits_ = () if self._reinforcement is None else self._reinforcement.credits_for(command.value, meant)
-        opinion = self._recent.opinion(meant)
-        said = None if opinion is None else opinion.said
-        code = ResultCode.RLA_REWARDED if command.value > 0 else ResultCode.RLA_PUNISHED
-        return LessonResult(rla_outcome(code, rla), RlaRewarded(rla_id, command.value, meant, origin, credits_, said))
-
-    def _signal(self, learner: LearnerLevel, command: Reward, meant: int, origin: Origin) -> LessonResult:
-        """Give a reward to a learner; the journal has no row of it, because it changes no RLA."""
-        if not learner.team.learns_from_signals:
-            raise CommandRefusedError(RefusalCode.NO_SIGNALS)
-        recent = self._recent
-        if not recent.learner_action(meant):
-            raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
-        self._require_full_speed(meant)
-        behaviour = recent.behaviour(meant)
-        driven = [
-            Driven(recent.situation(tick), recent.learner_action(tick), meant - tick)
-            for tick in range(meant, meant - _SIGNAL_TICKS, -1)
-            if recent.contains(tick) and recent.learner_action(tick) and recent.behaviour(tick) == behaviour
-        ]
-        learner.signal(driven, behaviour, command.value, origin.command_id)
-        code = ResultCode.LEARNER_REWARDED if command.value > 0 else ResultCode.LEARNER_PUNISHED
-        return LessonResult(Outcome.of(code), None)
-
-    def _appraise(self, command: Appraise, origin: Origin) -> LessonResult:
-        if self._appraisal_lessons is None:
-            raise CommandRefusedError(RefusalCode.NO_CRITIC)
-        meant = self._known_tick(command.decision_tick)
-        self._require_full_speed(meant)
-        return self._appraisal_lessons.build(command, meant, origin)
-
-    def _undo(self, lesson: str | None, origin: Origin, *, alone: bool) -> LessonResult:
-        """Undo a lesson, or all of a hold: by its id, or with the last lesson unless that is to be undone alone."""
-        if lesson is None:
-            raise CommandRefusedError(RefusalCode.NO_LESSON)
-        hold = None if alone else hold_of(lesson)
-        if hold is not None or self._system.lessons_of_hold(lesson):
-            return self._undo_hold(hold or lesson, origin)
-        refuse(self._system.why_not_undo(lesson))
-        self._require_restorable(lesson)
-        record = self._system.lesson(lesson)
-        assert record is not None
-        return LessonResult(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
-
-    def _undo_hold(self, hold: str, origin: Origin) -> LessonResult:
-        """Undo all standing lessons of a hold, newest first; the last undo has the command's own id."""
-        refuse(self._system.why_not_undo_hold(hold))
-        standing = []
-        for command_id in reversed(self._system.lessons_of_hold(hold)):
-            record = self._system.lesson(command_id)
-            assert record is not None
-            if not record.undone:
-                self._require_restorable(command_id)
-                standing.append(command_id)
-        origins = [replace(origin, command_id=f"{origin.command_id}{DERIVED}{n}") for n in range(1, len(standing))]
-        if self._learner is not None:
-            self._learner.team.undo_hold(hold)
-        before = tuple(map(LessonUndone, standing, origins))
-        outcome = Outcome.of(ResultCode.HOLD_UNDONE, lessons=len(standing))
-        return LessonResult(outcome, LessonUndone(standing[-1], origin), before)
-
-    def _require_restorable(self, lesson: str) -> None:
-        """Raise CommandRefusedError if an undo would restore an action that the task lacks."""
-        back = self._system.restored_by_undo(lesson)
-        if back is not None and not self._can_act(back):
-            refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
-
-    def _require_full_speed(self, tick: int) -> None:
-        """Raise CommandRefusedError if a stored tick was slow: values and critic are about driving at full speed."""
-        if self._recent.slow(tick):
-            raise CommandRefusedError(RefusalCode.DROVE_SLOWLY)
-
-    def _known_tick(self, decision_tick: int | None) -> int:
-        # Default to the newest remembered tick: the previous number may have been missed.
-        meant = self._recent.newest if decision_tick is None else decision_tick
-        self._require_known(meant)
-        return meant
-
     def _require_action_of(self, level_name: str, action: str) -> None:
         if level_name == MID:
             require_behaviour(action, self._level.active_behaviour.behaviours)
         else:
             require_action(action, self._level.repertoire if level_name == BASIC else self._appraisals)
-
-    def _can_act(self, rla: Rla) -> bool:
-        """Return whether an RLA that comes back can act here; knowledge may be older than the task, or another's."""
-        behaviours = self._level.active_behaviour.behaviours
-        if rla.level == BASIC:
-            return rla.behaviour in behaviours and (rla.is_withdrawn or rla.action in self._level.repertoire)
-        if rla.level == MID:
-            return self._mid is None or rla.is_withdrawn or rla.action in behaviours
-        return self._appraisal_lessons is None or rla.action in self._appraisals
-
-    def _require_rla(self, rla_id: int) -> Rla:
-        rla = self._system.get(rla_id)
-        if rla is None:
-            raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
-        return rla
-
-    def _require_known(self, tick: int) -> None:
-        if not self._recent.contains(tick):
-            raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
 def _why(command: Teach | Correct) -> Why:
