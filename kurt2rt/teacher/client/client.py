@@ -7,30 +7,22 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
             await robot.answer("forward", of=state.tick)
 """
 
-import hashlib
-import secrets
-from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
-from typing import Any
 
 import anyio
 
 from kurt2rt.channel.protocol import requests
-from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
-from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.teacher.client.answer import Answer, RefusedError
+from kurt2rt.teacher.client.answer import Answer
+from kurt2rt.teacher.client.lesson_commands import LessonCommands
 from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
-from kurt2rt.teacher.client.observer_client import ObserverClient
+from kurt2rt.teacher.client.simulation_commands import SimulationCommands
 
-_REWIND_S = 10.0
-"""Driving that a robot keeps for late lessons, in s (1000 ticks)."""
-_PART_EACH_S = 0.008
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 
 
-class TeacherClient(ObserverClient):
+class TeacherClient(LessonCommands, SimulationCommands):
     """Async context manager that connects a teacher's device to one robot.
 
     Inside it states come in. While this device is in charge, the robot is told that its teacher is there.
@@ -40,111 +32,6 @@ class TeacherClient(ObserverClient):
     other command. Lessons take the tick of the state that is meant as `of`; None: the present decision. Only one
     program at a time can use a pairing.
     """
-
-    # Lessons
-
-    async def answer(
-        self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
-    ) -> Answer:
-        """Answer the robot's question with an action: a new RLA (phase 1).
-
-        Args:
-            action: Action of the repertoire; at level MID a taught behaviour.
-            of: Tick of the state that is meant. None: the present decision.
-            level: BASIC or MID.
-            alternative: Add the behaviour to those that the mid level knows for this situation.
-
-        Raises:
-            NoAnswerError: The robot does not answer.
-        """
-        return await self._command(
-            requests.AnswerRequest, action=action, decision_tick=of, level=level, alternative=alternative
-        )
-
-    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC, late: bool = False) -> Answer:
-        """Replace the decided action by another one (phase 2), at level MID the behaviour.
-
-        Args:
-            action: Right action of the repertoire; at level MID a taught behaviour.
-            of: Tick of the state that is meant. None: the present decision.
-            level: BASIC or MID.
-            late: Correct the decision that a person reacted to, before the state of `of` by their delay, which the
-                robot learns from their answers to its questions. The answer says which decision it was.
-
-        Raises:
-            NoAnswerError: The robot does not answer.
-        """
-        return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level, late=late)
-
-    async def correct_earlier(self, action: str, seconds: float) -> Answer:
-        """Correct what the basic level did `seconds` before it last drove (rewind).
-
-        A standing robot keeps its last 10 s of driving until it has driven and stopped again.
-
-        Raises:
-            ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
-            NoAnswerError: the robot does not answer.
-        """
-        if not 0.0 <= seconds <= _REWIND_S:
-            raise ValueError(f"seconds: a robot keeps the last {_REWIND_S:g} s of driving (got {seconds:g})")
-        drove = self._stream.drove_tick
-        if drove is None:
-            raise ValueError("this device has not seen the robot drive; correct what it does from now on")
-        return await self.correct(action, of=max(0, drove - await self._ticks(seconds)))
-
-    async def reward(self, value: int, *, of: int | None = None) -> Answer:
-        """Reward what the robot did (phase 3).
-
-        `value`: -1 or +1. `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
-        """
-        return await self._command(requests.RewardRequest, value=value, decision_tick=of)
-
-    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
-        """Teach the critic the value of a situation (phase 4): a name of `Hello.appraisals`.
-
-        `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
-        """
-        return await self._command(requests.AppraiseRequest, appraisal=appraisal, decision_tick=of)
-
-    async def replace(self, rla: int, action: str) -> Answer:
-        """Give one RLA, named by its id, another action. Raises NoAnswerError."""
-        return await self._command(requests.ReplaceRequest, rla_id=rla, action=action)
-
-    async def delete(self, rla: int) -> Answer:
-        """Delete one RLA, named by its id. Raises NoAnswerError."""
-        return await self._command(requests.DeleteRequest, rla_id=rla)
-
-    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
-        """Give the mid level's situation a name, so that it can be a goal.
-
-        `of`: tick of the state that is meant; None: the present situation. Raises NoAnswerError.
-        """
-        return await self._command(requests.NameRequest, name=name, decision_tick=of)
-
-    async def undo(self, lesson: str | None = None) -> Answer:
-        """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands.
-
-        Raises NoAnswerError.
-        """
-        return await self._command(requests.UndoRequest, lesson=lesson)
-
-    async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
-        """Teach the newest drive by hand, as `State.shown` cuts it into actions; undone as one.
-
-        Args:
-            segments: Indexes of the segments that are right. None: all.
-            press_id: Press that the teacher saw, whose drive is taught. None: that of the newest state.
-
-        Raises:
-            ValueError: The newest state has no drive by hand to teach.
-            NoAnswerError: The robot does not answer.
-        """
-        shown = None if self.state is None else self.state.shown
-        if shown is None:
-            raise ValueError("there is no drive by hand to teach; drive by hand and let go first")
-        chosen = tuple(range(len(shown.actions)) if segments is None else segments)
-        press_id = shown.press_id if press_id is None else press_id
-        return await self._command(requests.ShownRequest, press_id=press_id, segments=chosen)
 
     # Motion
 
@@ -365,78 +252,3 @@ class TeacherClient(ObserverClient):
         Raises NoAnswerError.
         """
         return await self._command(requests.ExamRequest)
-
-    # Simulation
-
-    async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
-        """Shift a named wall or obstacle of the simulated world by (dx_m, dy_m), in m. Raises NoAnswerError."""
-        return await self._command(requests.MoveWallRequest, name=name, dx_m=dx_m, dy_m=dy_m)
-
-    async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
-        """Put the simulated robot, standing, at a pose in m and rad. Raises NoAnswerError."""
-        return await self._command(requests.PlaceRequest, x_m=x_m, y_m=y_m, heading_rad=heading_rad)
-
-    async def put_back(self) -> Answer:
-        """Put the simulated robot, standing, at the start of its run. Raises NoAnswerError."""
-        return await self._command(requests.BackToStartRequest)
-
-    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
-        """End the present run and begin the next one, in which the robot stands until `resume`.
-
-        Args:
-            world: World by name. None: the present one.
-            task: Task by name. None: the present one.
-            fresh: Begin with an empty knowledge file; the present file is kept under another name.
-
-        Raises:
-            NoAnswerError: The robot does not answer.
-        """
-        return await self._command(requests.NextRunRequest, world=world, task=task, fresh=fresh)
-
-    async def set_speed(self, times: int) -> Answer:
-        """Set the speed of a simulated robot's time, 1 to 10 times real time; a slow machine reaches less.
-
-        Raises NoAnswerError.
-        """
-        return await self._command(requests.SpeedRequest, times=times)
-
-    async def load(self, content: bytes) -> Answer:
-        """Upload knowledge at up to 100 kB/s and begin the next run with it.
-
-        `content` is an archive of `export` or a knowledge file. Raises NoAnswerError.
-        """
-        upload = secrets.token_bytes(UPLOAD_ID_BYTES)
-        try:
-            await self.upload(upload, content)
-        except RefusedError as error:
-            return error.answer or Answer(False, "refused", str(error), -1)
-        return await self.load_upload(upload, hashlib.sha256(content).digest())
-
-    async def upload(self, upload: bytes, content: bytes) -> None:
-        """Upload a file into the robot's memory under the random id `upload`, for `load_upload`.
-
-        Raises RefusedError if the robot refuses a part, NoAnswerError.
-        """
-        sender = self._open.sender
-        state = await sender.state()
-        for offset in range(0, len(content), UPLOAD_PART_BYTES):
-            part = content[offset : offset + UPLOAD_PART_BYTES]
-            began_s = self._now()
-            answer = await sender.send(requests.UploadRequest(state.boot, upload, offset, part))
-            if not answer.accepted:
-                raise RefusedError(answer.text or answer.why, answer)
-            # The robot drops more than 200 requests a second of one key.
-            await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))
-
-    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
-        """Begin the next run with an uploaded file; `sha256` is the hash of its content. Raises NoAnswerError."""
-        return await self._command(requests.LoadRequest, upload=upload, sha256=sha256)
-
-    # Sending
-
-    async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
-        return await self._open.sender.command(kind, moves=moves, **fields)
-
-    async def _move(self, label: str, kind: Callable[..., Request], /, **fields: Any) -> Answer:
-        """Send a command that may set the robot in motion; a stop before its answer ends it."""
-        return await self._open.stops.move(label, lambda: self._command(kind, moves=True, **fields))
