@@ -6,11 +6,8 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 
 from behaviors.metrics.task_metric import Metrics
-from behaviors.primitives import primitive_speeds
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from hal.simulation import Position, Simulation
-from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
@@ -25,17 +22,10 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
+from kurt2rt.experiments.lockstep.teacher_of_plan import teacher_of
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.runtime import Runtime
-from kurt2rt.teacher.scripted.appraiser import (
-    FeedbackTiming,
-    JudgeReward,
-    RandomPenalty,
-    RewardSource,
-    ScriptedAppraiser,
-    UnknownPenalty,
-)
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
@@ -165,7 +155,7 @@ class TrainingRun(Episode):
         teaching = task.teaching
         if answering is None:
             answering = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
-        self._teacher = _teacher_of(plan, task, settings, answering, seed=seed, session=session)
+        self._teacher = teacher_of(plan, task, settings, answering, seed=seed, session=session)
         self._dispatcher = None
         if task.mid is not None:
             self._dispatcher = ScriptedDispatcher(
@@ -367,40 +357,3 @@ def _phase_starts(plan: LessonPlan, period_s: float) -> dict[int, Phase]:
     """Return the phases by the tick in which they begin, without the first."""
     ends = accumulate(lasts_s for _, lasts_s in plan.phases)
     return {round(end_s / period_s): phase for end_s, (phase, _) in zip(ends, plan.phases[1:], strict=False)}
-
-
-def _teacher_of(
-    plan: LessonPlan, task: TaskSettings, settings: RobotSettings, answering: BasicTeacher, *, seed: int, session: str
-) -> ScriptedAppraiser:
-    period_s, times = settings.cycle_s, plan.times
-    every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
-    timing = FeedbackTiming(
-        reaction=round(task.teaching.teacher.reaction_s / period_s),
-        every={value: round(each_s / period_s) for value, each_s in every_s.items()},
-        gap=round(times.gap_s / period_s),
-        max_punishments=times.most_blame,
-    )
-    rewards = _reward_source(plan, task, period_s, seed)
-    # The first opinion of each value is used.
-    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if rewards else {}
-    primitives = tuple(primitive_speeds(task.repertoire))
-    return ScriptedAppraiser(answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives)
-
-
-def _reward_source(plan: LessonPlan, task: TaskSettings, period_s: float, seed: int) -> RewardSource | None:
-    times = plan.times
-    match plan.signs:
-        case "unknown":
-            return UnknownPenalty()
-        case "chance":
-            # A penalty decided in the last reaction time would be sent after the end.
-            ticks = round((plan.duration_s - task.teaching.teacher.reaction_s) / period_s)
-            return RandomPenalty(plan.blame_by_chance, ticks, round(times.bad_every_s / period_s), seed)
-        case "judge":
-            if task.judge is None:
-                raise SettingsError(
-                    "there is no judge, so the teacher cannot reward", where=f"task {task.name}", do="add `judge:`"
-                )
-            return JudgeReward(task.judge.build(), round(times.patience_s / period_s))
-        case "none":
-            return None
