@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from statistics import median
 
-from kurt2rt.experiments.rivals.cells import heading, share_text
+from kurt2rt.experiments.rivals.cells import heading, rows_of, share_text
 from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
@@ -44,19 +44,18 @@ def all_tables(league: League) -> Iterator[Table]:
 
 def success_table(league: League) -> Table:
     """Return the robots that pass in all worlds, by presses, with 95 % intervals."""
-    after, places = league.plan.after, range(len(league.plan.after) + 1)
+    after = league.plan.after
+
+    def cells(row: Row) -> Iterator[str]:
+        for place in range(len(after) + 1):
+            yield share_text(row.passed(place), len(row.judged))
+        yield f"{row.mean_share:.0%}" if row.judged else ""
+
     lasting = ", ".join(f"{task.name} {task.exam.duration_s:.0f} s" for task in league.plan.tasks)
     return Table(
         "Robots that pass, by presses",
         ("task", "learner", *(f"after {presses}" for presses in after), "at the end", "mean"),
-        tuple(
-            (
-                *heading(row),
-                *(share_text(row.passed(place), len(row.judged)) for place in places),
-                f"{row.mean_share:.0%}" if row.judged else "",
-            )
-            for row in league.rows
-        ),
+        rows_of(league, cells),
         words=2,
         note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}), judged by "
         "the drive of the teacher's policy from the same start; a world in which the policy does not pass is left out. "
@@ -94,19 +93,18 @@ def effort_table(league: League) -> Table:
         ("teacher drives, s", lambda each: each.driven_s),
         ("robot waits, s", lambda each: each.waited_s),
     )
+
+    def cells(row: Row) -> Iterator[str]:
+        for _, value in columns:
+            yield f"{median(map(value, row.outcomes)):.0f}"
+        yield str(sum(each.collisions for each in row.outcomes))
+        yield str(sum(each.alarms for each in row.outcomes))
+        yield str(sum(each.rescues for each in row.outcomes))
+
     return Table(
         "Effort, and safety while it is taught",
         ("task", "learner", *(name for name, _ in columns), "collisions", "alarms", "rescues"),
-        tuple(
-            (
-                *heading(row),
-                *(f"{median(map(value, row.outcomes)):.0f}" for _, value in columns),
-                str(sum(each.collisions for each in row.outcomes)),
-                str(sum(each.alarms for each in row.outcomes)),
-                str(sum(each.rescues for each in row.outcomes)),
-            )
-            for row in league.rows
-        ),
+        rows_of(league, cells),
         words=2,
         note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
         "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
@@ -131,6 +129,18 @@ def _followed(row: Row) -> str:
     return f"{median(shares):.0%}" if shares else "-"
 
 
+def _machine_cells(row: Row) -> tuple[str, ...]:
+    return (
+        *_of_learner(row),
+        _tick_p99_ms(row),
+        f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
+        f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
+        f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",
+        _change_ticks(row),
+        _followed(row),
+    )
+
+
 def machine_table(league: League) -> Table:
     """Return what learners take of the machine, and the undo of their last lesson."""
     return Table(
@@ -139,19 +149,7 @@ def machine_table(league: League) -> Table:
             *("task", "learner", "retraining, s", "longest decision, ms", "p99 of a tick, ms", "knowledge, kB"),
             *("undo, ms", "undo restores", "correction acts, ticks", "lessons followed"),
         ),
-        tuple(
-            (
-                *heading(row),
-                *_of_learner(row),
-                _tick_p99_ms(row),
-                f"{median(each.knowledge_bytes for each in row.outcomes) / 1000:.0f}",
-                f"{1000 * median(each.undo_s for each in row.outcomes):.1f}",
-                f"{sum(each.undo_restores for each in row.outcomes)} of {len(row.outcomes)}",
-                _change_ticks(row),
-                _followed(row),
-            )
-            for row in league.rows
-        ),
+        rows_of(league, _machine_cells),
         words=2,
         note="Medians of processor time; a tick's is a duration, which other work of the machine lengthens. "
         "Retraining: all lessons, each with the decision after it. The robot's clock stands still meanwhile: the guard "
