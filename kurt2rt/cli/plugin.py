@@ -5,8 +5,6 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RobotName
@@ -84,20 +82,25 @@ def check(
         kurt2rt plugin check wandering
         kurt2rt plugin check my_policy:Wandering
         kurt2rt plugin check my_task.yaml
+        kurt2rt plugin check my_policy:Dodging --robot-settings school
+
+    A part is tried on the robot that --robot-settings names, else on that of
+    its task. A folder may hold parts for several robots: each part that a task
+    in it names is tried on the robot of that task.
     """
     subjects = find_subjects(name, kind)
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
-    from kurt2rt.checks.plugins.check import PluginCheck
+    from kurt2rt.checks.plugins.check import check_all
 
-    robot = load_robot_of(robot_settings, name)
-    checks = PluginCheck(robot, simulations_of(robot))
-    found = [(each, checks.broken_promises(each)) for each in subjects]
+    found = check_all(subjects, robot_settings)
     if as_json:
-        print_json({"plugins": [{"kind": each.group, "name": each.name, "broken": broken} for each, broken in found]})
+        rows = [(each.subject.group, each.subject.name, each.robot, each.broken) for each in found]
+        print_json({"plugins": [dict(zip(("kind", "name", "robot", "broken"), row, strict=True)) for row in rows]})
     else:
-        for each, broken in found:
-            typer.echo(f"{each.name} ({each.group}): " + ("breaks promises" if broken else "keeps all promises"))
+        for (group, part, _), robot, broken in found:
+            tried = "" if robot is None else f", tried on the robot {robot} (--robot-settings names another)"
+            typer.echo(f"{part} ({group}): " + (f"breaks promises{tried}" if broken else "keeps all promises"))
             for line in broken:
                 typer.echo(f"  {line}")
-    if any(broken for _, broken in found):
+    if any(each.broken for each in found):
         raise typer.Exit(1)

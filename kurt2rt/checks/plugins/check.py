@@ -1,17 +1,17 @@
 """Check of one plug-in: all promises of its kind."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from pydantic import TypeAdapter, ValidationError
 
 from behaviors.metrics.task_metric import MetricSettings
 from behaviors.registry import JUDGES, METRICS, POLICIES, AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from behaviors.repertoire_settings import BEHAVIOURS, ActionSettings, PluginAction, RepertoireSettings
-from hal.robot_kind import RobotKind
-from hal.robot_plugins import ROBOTS, find_robot_kind
-from hal.robot_settings import RobotSettings
+from hal.robot_kind import RobotKind, simulations_of
+from hal.robot_plugins import ROBOTS, find_robot_kind, find_task_of_robot
+from hal.robot_settings import DEFAULT_KIND, RobotSettings, load_robot
 from hal.settings import load_settings
 from hal.settings_files import TASKS, WORLDS, find_config
 from hal.simulation import SimulationFactory
@@ -27,8 +27,33 @@ from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 _TASK = "wall_following"
-"""Shipped task with whose world, repertoire and situation a part is tried that no task names."""
+"""Shipped task with whose world, repertoire and situation a part is tried on a robot without tasks of its own."""
 _SEED, _PURPOSE = 1, "plug-in check"
+
+
+class Checked(NamedTuple):
+    """Finding about one plug-in."""
+
+    subject: Subject
+    robot: str | None
+    """Kind of the robot that it was tried on; None for a robot."""
+    broken: list[str]
+    """Promises that it breaks, each in a sentence."""
+
+
+def check_all(subjects: Sequence[Subject], robot: str | None) -> list[Checked]:
+    """Return what the checks of plug-ins found.
+
+    `robot`: by name or path, for a single plug-in, and for those of several that name none; None: the plug-in's own,
+    else KURT2. Raises UserError if a plug-in or robot cannot be loaded.
+    """
+    found = []
+    for subject in subjects:
+        named = robot or subject.robot if len(subjects) == 1 else subject.robot or robot
+        settings = load_robot(named or DEFAULT_KIND)
+        broken = PluginCheck(settings, simulations_of(settings)).broken_promises(subject)
+        found.append(Checked(subject, None if subject.group == ROBOTS.group else settings.kind, broken))
+    return found
 
 
 class PluginCheck:
@@ -38,6 +63,7 @@ class PluginCheck:
         """Take the robot, and what opens its simulations."""
         self._robot = robot
         self._factory = factory
+        self._task = find_task_of_robot(robot.kind) or _TASK
         self._checks: Mapping[str, Callable[[str], list[str]]] = {
             LEARNERS.group: self._of_learner,
             POLICIES.group: self._of_policy,
@@ -57,15 +83,15 @@ class PluginCheck:
         return self._checks[subject.group](subject.name)
 
     def _of_learner(self, name: str) -> list[str]:
-        return broken_promises(find_learner(name), learner_setting(load_task(_TASK), self._robot, seed=_SEED))
+        return broken_promises(find_learner(name), learner_setting(load_task(self._task), self._robot, seed=_SEED))
 
     def _of_policy(self, name: str) -> list[str]:
         settings = _settings(AnyPolicySettings, name)
-        actions = load_task_repertoire(load_task(_TASK), self._robot)
+        actions = load_task_repertoire(load_task(self._task), self._robot)
         return broken_of_policy(settings, self._robot, actions, settings.behaviours or ("",))
 
     def _of_metric(self, name: str) -> list[str]:
-        task = load_task(_TASK)
+        task = load_task(self._task)
         return self._metric_in(_settings(AnyMetricSettings, name), task.teaching.world, task.behaviours)
 
     def _metric_in(self, settings: MetricSettings, world: str, behaviours: tuple[str, ...]) -> list[str]:
