@@ -94,13 +94,17 @@ def check(
 
     found = check_all(subjects, robot_settings)
     if as_json:
-        rows = [(each.subject.group, each.subject.name, each.robot, each.broken) for each in found]
-        print_json({"plugins": [dict(zip(("kind", "name", "robot", "broken"), row, strict=True)) for row in rows]})
+        plugins = [
+            {"kind": each.subject.group, "name": each.subject.name, "robot": each.robot}
+            | {"broken": each.broken, "note": each.note}
+            for each in found
+        ]
+        print_json({"plugins": plugins})
     else:
-        for (group, part, _), robot, broken in found:
+        for (group, part, _), robot, broken, note in found:
             tried = "" if robot is None else f", tried on the robot {robot} (--robot-settings names another)"
             typer.echo(f"{part} ({group}): " + (f"breaks promises{tried}" if broken else "keeps all promises"))
-            for line in broken:
+            for line in (*broken, *filter(None, (note,))):
                 typer.echo(f"  {line}")
     if any(each.broken for each in found):
         raise typer.Exit(1)

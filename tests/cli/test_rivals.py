@@ -48,11 +48,13 @@ def test_check_names_broken_promises_and_fails(kurt2rt: CommandLine) -> None:
     Path("my_never.py").write_text(BROKEN, encoding="utf-8")
     said = kurt2rt("rivals", "--learner", "my_never:Never", "--learner", "k-nn", "--check")
     assert said.exit_code == 1
-    assert said.out.splitlines() == [
+    *lines, note = said.out.splitlines()
+    assert lines == [
         "my_never:Never: breaks promises",
         "  `decide` follows the first lesson in its situation: it does not",
         "k-nn: keeps all promises",
     ]
+    assert note.startswith("  decide takes 0.")
     assert not Path("results").exists()
 
 

@@ -16,9 +16,10 @@ from hal.settings import load_settings
 from hal.settings_files import TASKS, WORLDS, find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.kinds import NoPluginError, Subject
+from kurt2rt.checks.plugins.learner_check import Finding, check_learner
 from kurt2rt.checks.plugins.promises import broken_of_action, broken_of_judge, broken_of_metric, broken_of_policy
 from kurt2rt.checks.plugins.robot_promises import broken_of_robot
-from kurt2rt.core.learner.conformance import broken_among, broken_promises
+from kurt2rt.core.learner.conformance import broken_among
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -39,6 +40,8 @@ class Checked(NamedTuple):
     """Kind of the robot that it was tried on; None for a robot."""
     broken: list[str]
     """Promises that it breaks, each in a sentence."""
+    note: str = ""
+    """Time of a learner's decisions, in words; empty for another part."""
 
 
 def check_all(subjects: Sequence[Subject], robot: str | None) -> list[Checked]:
@@ -51,8 +54,8 @@ def check_all(subjects: Sequence[Subject], robot: str | None) -> list[Checked]:
     for subject in subjects:
         named = robot or subject.robot if len(subjects) == 1 else subject.robot or robot
         settings = load_robot(named or DEFAULT_KIND)
-        broken = PluginCheck(settings, simulations_of(settings)).broken_promises(subject)
-        found.append(Checked(subject, None if subject.group == ROBOTS.group else settings.kind, broken))
+        tried_on = None if subject.group == ROBOTS.group else settings.kind
+        found.append(Checked(subject, tried_on, *PluginCheck(settings, simulations_of(settings)).of(subject)))
     return found
 
 
@@ -65,7 +68,6 @@ class PluginCheck:
         self._factory = factory
         self._task = find_task_of_robot(robot.kind) or _TASK
         self._checks: Mapping[str, Callable[[str], list[str]]] = {
-            LEARNERS.group: self._of_learner,
             POLICIES.group: self._of_policy,
             JUDGES.group: lambda name: broken_of_judge(_settings(AnyJudgeSettings, name)),
             METRICS.group: self._of_metric,
@@ -75,15 +77,12 @@ class PluginCheck:
             ROBOTS.group: lambda name: broken_of_robot(cast("RobotKind", find_robot_kind(name)), name),
         }
 
-    def broken_promises(self, subject: Subject) -> list[str]:
-        """Return the promises that a plug-in breaks, each in a sentence; empty if it keeps all that were tried.
-
-        Raises UserError if the plug-in cannot be loaded, so that nothing can be tried.
-        """
-        return self._checks[subject.group](subject.name)
-
-    def _of_learner(self, name: str) -> list[str]:
-        return broken_promises(find_learner(name), learner_setting(load_task(self._task), self._robot, seed=_SEED))
+    def of(self, subject: Subject) -> Finding:
+        """Return what was found about a plug-in. Raises UserError if it cannot be loaded, so that nothing is tried."""
+        if subject.group == LEARNERS.group:
+            setting = learner_setting(load_task(self._task), self._robot, seed=_SEED)
+            return check_learner(find_learner(subject.name), setting)
+        return Finding(self._checks[subject.group](subject.name))
 
     def _of_policy(self, name: str) -> list[str]:
         settings = _settings(AnyPolicySettings, name)
