@@ -6,13 +6,14 @@ from typing import Annotated
 import typer
 
 from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
+from kurt2rt.checks.plugins.part_text import TextKind, text_of_part
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RobotName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 plugin = typer.Typer(
-    help="List, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks and worlds of your own.",
+    help="List, show, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks, worlds, robots.",
     no_args_is_help=True,
 )
 
@@ -39,6 +40,26 @@ def list_(
     for each in listed:
         table.add_row(*each)
     print_whole(console_of(), table)
+
+
+@plugin.command()
+def show(
+    kind: Annotated[
+        TextKind, typer.Argument(help="Kind of the part; also repertoires and situations, which tasks name.")
+    ],
+    name: Annotated[
+        str, typer.Argument(help="Shipped or installed name, such as fleeing or school/fleeing, or module:Name.")
+    ],
+) -> None:
+    """Print the YAML or the source of a part, to start one of your own from.
+
+    For example:
+
+        kurt2rt plugin show tasks school/fleeing > my_task.yaml
+        kurt2rt plugin show repertoires school/basic
+        kurt2rt plugin show policies sector_fleeing > my_policy.py
+    """
+    typer.echo(text_of_part(kind, name), nl=False)
 
 
 @plugin.command()

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from behaviors.repertoire_settings import BEHAVIOURS
 from hal.plugins import loaded_plugins
+from hal.settings_files import find_config
 from kurt2rt.checks.plugins.kinds import KINDS, KindName
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import ROOT, CommandLine
 from tests.plugin_packages import install, write_parts, write_repertoire, write_task
 
 BROKEN = """
@@ -214,6 +216,51 @@ def test_new_refuses_a_name_that_is_taken(
 ) -> None:
     (plugin_folder / "there").mkdir()
     assert told in kurt2rt.refused("plugin", "new", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [
+        (("tasks", "fleeing"), "config/tasks/fleeing.yaml"),
+        (("tasks", "school/fleeing"), "kurt2rt/robots/school/data/tasks/fleeing.yaml"),
+        (("worlds", "a"), "config/worlds/a.yaml"),
+        (("robots", "school"), "kurt2rt/robots/school/data/robots/school.yaml"),
+        (("repertoires", "school/basic"), "kurt2rt/robots/school/data/repertoires/basic.yaml"),
+        (("situations", "basic"), "config/situations/basic.yaml"),
+        (("policies", "sector_fleeing"), "behaviors/policies/sector_fleeing.py"),
+        (("learners", "k-nn"), "kurt2rt/experiments/rivals/learners/k_nearest.py"),
+        (("policies", "parts_base:Turning"), "tests/plugin_parts.py"),
+        (("behaviours", "parts_base:Wiggling"), "tests/plugin_parts.py"),
+        (("worlds", "hall"), "tests/plugin_parts.py"),
+        (("worlds", "yard"), "config/worlds/b.yaml"),
+    ],
+)
+def test_show_prints_the_file_of_a_part(kurt2rt: CommandLine, parts: Path, words: tuple[str, ...], file: str) -> None:
+    (parts / "parts_yard.py").write_text(f"YARD = {str(find_config('worlds', 'b'))!r}")
+    install(parts, "places", {"worlds": {"hall": "parts_base:Turning", "yard": "parts_yard:YARD"}})
+    assert kurt2rt("plugin", "show", *words).out == (ROOT / file).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", BEHAVIOURS.shipped())
+def test_show_prints_the_settings_of_a_shipped_action(kurt2rt: CommandLine, name: str) -> None:
+    said = kurt2rt("plugin", "show", "behaviours", name).out
+    assert said.startswith("class ")
+    assert f'kind: Literal["{name}"]' in said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("tasks", "fleing"), "no such file in tasks; give module:NAME, a path to a .yaml file or one of: circle"),
+        (("worlds", "rooms-3"), "no such file in worlds; give a path to a .yaml file or one of: a, b"),
+        (("judges", "harsh"), "there is no kind 'harsh'; give module:Name, or one of: eight, fleeing"),
+        (("behaviours", "leap"), "there is no such action; give module:Name, or one of: motor"),
+        (("policies", "parts_broken:NUMBER"), "is a int, allowed is a subclass of PolicySettings"),
+    ],
+)
+@pytest.mark.usefixtures("parts")
+def test_show_refuses_what_is_not_there(kurt2rt: CommandLine, words: tuple[str, ...], told: str) -> None:
+    assert told in kurt2rt.refused("plugin", "show", *words)
 
 
 def test_list_says_which_names_lead_elsewhere(kurt2rt: CommandLine, plugin_folder: Path) -> None:
