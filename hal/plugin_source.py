@@ -5,11 +5,26 @@ import hashlib
 import sys
 from pathlib import Path
 
-from hal.plugins import OWN_PACKAGES
+from hal.plugins import OWN_PACKAGES, loaded_plugins
 
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 """Folders in which strangers' packages lie next to a plug-in."""
 _COMPILED = "__pycache__"
+_DIGITS = 8
+"""Hexadecimal digits of a hash that a person compares."""
+
+
+def plugins_in_use() -> tuple[str, ...]:
+    """Return a text for each plug-in that this process loaded: kind, name, package with version or file, and hash.
+
+    Those that ship with the project are left out: its version names them.
+    """
+    told = []
+    for plugin in loaded_plugins():
+        source_hash = _hash_of_module(plugin.target.partition(":")[0])
+        if source_hash:
+            told.append(f"{plugin.group} {plugin.name} from {plugin.source}, hash {source_hash[:_DIGITS]}")
+    return tuple(told)
 
 
 def source_hash_of(part: object) -> str:
@@ -18,8 +33,11 @@ def source_hash_of(part: object) -> str:
     It covers all files of the top-level package, or the single file, that defines the class or function. It covers
     modules and packages in the same folder, too, that these import, directly or not.
     """
-    name = getattr(part, "__module__", None) or type(part).__module__
-    top = name.split(".")[0]
+    return _hash_of_module(getattr(part, "__module__", None) or type(part).__module__)
+
+
+def _hash_of_module(name: str) -> str:
+    top = name.partition(".")[0]
     module = sys.modules.get(top)
     file = getattr(module, "__file__", None)
     # A package without __init__.py has folders instead.

@@ -4,8 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from hal.plugin_source import source_hash_of
+from hal.plugin_source import plugins_in_use, source_hash_of
 from hal.plugins import PluginKind
+from hal.robot_plugins import ROBOTS
+from tests.plugin_packages import install
 
 CLASSES = PluginKind("classes", "class", "a class", lambda found: isinstance(found, type), tuple)
 
@@ -78,3 +80,14 @@ def test_source_hash_of_an_installed_file_takes_no_strangers(
     before = source_hash_of(found)
     write(packages, plug_o="HERE = 2\n")
     assert source_hash_of(found) == before != ""
+
+
+def test_plugins_in_use_name_version_and_hash(plugin_folder: Path) -> None:
+    write(plugin_folder, plug_p="class Nine:\n    pass\n", plug_q="class Ten:\n    pass\n")
+    install(plugin_folder, "nines", {"classes": {"nine": "plug_p:Nine"}}, "1.2")
+    hashes = [source_hash_of(CLASSES.find(name))[:8] for name in ("nine", "plug_q:Ten")]
+    ROBOTS.find("kurt2")
+    assert plugins_in_use() == (
+        f"classes nine from nines 1.2, hash {hashes[0]}",
+        f"classes plug_q:Ten from {plugin_folder / 'plug_q.py'}, hash {hashes[1]}",
+    )
