@@ -1,6 +1,5 @@
 """Plug-ins: parts from outside of the project, by an entry point of an installed package or by `module:Name`."""
 
-import hashlib
 import importlib
 import sys
 import traceback
@@ -177,25 +176,6 @@ def import_target(target: str, where: str, do: str = "") -> object:
         told = f"{module.__file__ or module_name} has no {attribute!r}"
         raise PluginError(told, where=where, do="name what stands in that file") from error
     return found
-
-
-def source_hash_of(part: object) -> str:
-    """Return a hash that changes with the source of a plug-in; empty for a part of the project.
-
-    It covers all Python files of the top-level package, or the single file, that defines the class or function.
-    """
-    name = getattr(part, "__module__", None) or type(part).__module__
-    top = name.split(".")[0]
-    file = getattr(sys.modules.get(top), "__file__", None)
-    if top in OWN_PACKAGES or file is None:
-        return ""
-    path = Path(file)
-    files = sorted(path.parent.rglob("*.py")) if path.name == "__init__.py" else [path]
-    digest = hashlib.sha256()
-    for each in files:
-        digest.update(f"{each.relative_to(path.parent).as_posix()}\0".encode())
-        digest.update(each.read_bytes())
-    return digest.hexdigest()
 
 
 def _of_entry_point(group: str, point: EntryPoint) -> Plugin:

@@ -291,7 +291,7 @@ def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) 
 def test_added_policy_is_checked_refused_and_taught_as_printed(kurt2rt: CommandLine) -> None:
     text = (ROOT / "docs/add-a-policy.md").read_text(encoding="utf-8")
     printed = re.findall(r"^\$ kurt2rt (.+)\n((?:(?!\$|```).+\n)*)", text, re.MULTILINE)
-    assert len(printed) == 6
+    assert len(printed) == 9
     for command, output in printed:
         said = kurt2rt(*shlex.split(command))
         if output.startswith("kurt2rt: "):

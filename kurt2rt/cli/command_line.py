@@ -32,8 +32,8 @@ _PANELS = {
         "read also while one does.",
     },
     "Plug-ins": {
-        "plugin": "List, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks and worlds of "
-        "your own.",
+        "plugin": "List, show, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks, worlds, "
+        "robots.",
     },
     "Robot and service": {
         "status": "Tell how a running robot program is: from another terminal, or another machine.",

@@ -5,16 +5,15 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.checks.plugins.kinds import KINDS, KindName, find_subjects, list_parts
+from kurt2rt.checks.plugins.part_text import TextKind, text_of_part
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import RobotName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 plugin = typer.Typer(
-    help="List, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks and worlds of your own.",
+    help="List, show, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks, worlds, robots.",
     no_args_is_help=True,
 )
 
@@ -41,6 +40,26 @@ def list_(
     for each in listed:
         table.add_row(*each)
     print_whole(console_of(), table)
+
+
+@plugin.command()
+def show(
+    kind: Annotated[
+        TextKind, typer.Argument(help="Kind of the part; also repertoires and situations, which tasks name.")
+    ],
+    name: Annotated[
+        str, typer.Argument(help="Shipped or installed name, such as fleeing or school/fleeing, or module:Name.")
+    ],
+) -> None:
+    """Print the YAML or the source of a part, to start one of your own from.
+
+    For example:
+
+        kurt2rt plugin show tasks school/fleeing > my_task.yaml
+        kurt2rt plugin show repertoires school/basic
+        kurt2rt plugin show policies sector_fleeing > my_policy.py
+    """
+    typer.echo(text_of_part(kind, name), nl=False)
 
 
 @plugin.command()
@@ -84,20 +103,29 @@ def check(
         kurt2rt plugin check wandering
         kurt2rt plugin check my_policy:Wandering
         kurt2rt plugin check my_task.yaml
+        kurt2rt plugin check my_policy:Dodging --robot-settings school
+
+    A part is tried on the robot that --robot-settings names, else on that of
+    its task. A folder may hold parts for several robots: each part that a task
+    in it names is tried on the robot of that task.
     """
     subjects = find_subjects(name, kind)
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
-    from kurt2rt.checks.plugins.check import PluginCheck
+    from kurt2rt.checks.plugins.check import check_all
 
-    robot = load_robot_of(robot_settings, name)
-    checks = PluginCheck(robot, simulations_of(robot))
-    found = [(each, checks.broken_promises(each)) for each in subjects]
+    found = check_all(subjects, robot_settings)
     if as_json:
-        print_json({"plugins": [{"kind": each.group, "name": each.name, "broken": broken} for each, broken in found]})
+        plugins = [
+            {"kind": each.subject.group, "name": each.subject.name, "robot": each.robot}
+            | {"broken": each.broken, "note": each.note}
+            for each in found
+        ]
+        print_json({"plugins": plugins})
     else:
-        for each, broken in found:
-            typer.echo(f"{each.name} ({each.group}): " + ("breaks promises" if broken else "keeps all promises"))
-            for line in broken:
+        for (group, part, _), robot, broken, note in found:
+            tried = "" if robot is None else f", tried on the robot {robot} (--robot-settings names another)"
+            typer.echo(f"{part} ({group}): " + (f"breaks promises{tried}" if broken else "keeps all promises"))
+            for line in (*broken, *filter(None, (note,))):
                 typer.echo(f"  {line}")
-    if any(broken for _, broken in found):
+    if any(each.broken for each in found):
         raise typer.Exit(1)

@@ -28,7 +28,6 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.core.learner.conformance import broken_promises
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
@@ -166,19 +165,24 @@ def rivals(options: _Options) -> None:
 
 def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, options: _Options) -> None:
     """Print the promises that learners break. Raises typer.Exit with code 1 if one does."""
+    from kurt2rt.checks.plugins.learner_check import check_learner
+
     found = {
-        each.name: broken_promises(
-            each.factory(), learner_setting(task, robot, seed=_SEED_OF_THE_CHECK, gate=each.gate)
-        )
+        each.name: check_learner(each.factory(), learner_setting(task, robot, seed=_SEED_OF_THE_CHECK, gate=each.gate))
         for each in chosen
         if each.is_learner
     }
     if options.as_json:
-        print_json({"broken": found})
+        print_json(
+            {
+                "broken": {name: each.broken for name, each in found.items()},
+                "notes": {name: each.note for name, each in found.items()},
+            }
+        )
     else:
-        for name, broken in found.items():
+        for name, (broken, note) in found.items():
             typer.echo(f"{name}: " + ("keeps all promises" if not broken else "breaks promises"))
-            for line in broken:
+            for line in (*broken, *filter(None, (note,))):
                 typer.echo(f"  {line}")
-    if any(found.values()):
+    if any(each.broken for each in found.values()):
         raise typer.Exit(1)

@@ -12,7 +12,7 @@ import anyio
 
 from behaviors.contained_behaviour import failures_of
 from hal.guard_reason import GuardReason
-from hal.plugins import loaded_plugins
+from hal.plugin_source import plugins_in_use
 from hal.robot import Robot
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
@@ -135,8 +135,6 @@ async def serve(
             recorder = stack.enter_context(_recording(options.recording, settings, knowledge, run, shutdown))
         with _writing(knowledge.journal, shutdown) as writer:
             service = assemble_service(robot, settings, knowledge, writer, clock, run)
-            for plugin in loaded_plugins():
-                context.log(f"plug-in of {plugin.group}: {plugin.name}, from {plugin.source}")
             for command in () if options.channel is None else options.channel.first_commands:
                 service.runtime.inbox.put(command)
             last = await _Run(robot, service, run, options, context, recorder).serve(console, speed)
@@ -181,6 +179,9 @@ class _Run:
         self._recorder = recorder
         self._priority = service.settings.priority
         knowledge, writer = Path(service.settings.knowledge), service.writer
+        plugins = plugins_in_use()
+        for plugin in plugins:
+            context.log(f"plug-in of {plugin}")
         self._health = HealthMonitor(
             service.runtime,
             writer,
@@ -188,6 +189,7 @@ class _Run:
             boot=run.boot,
             knowledge=knowledge,
             tolerates_stalls=run.tolerates_stalls,
+            plugins=plugins,
         )
         status = self._status = StatusSocket(self._health, status_socket_path(knowledge), options.probes.pages)
         repertoire = service.runtime.level.repertoire

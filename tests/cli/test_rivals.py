@@ -48,14 +48,27 @@ def test_check_names_broken_promises_and_fails(kurt2rt: CommandLine) -> None:
     Path("my_never.py").write_text(BROKEN, encoding="utf-8")
     said = kurt2rt("rivals", "--learner", "my_never:Never", "--learner", "k-nn", "--check")
     assert said.exit_code == 1
-    assert said.out.splitlines() == [
+    *lines, note = said.out.splitlines()
+    assert lines == [
         "my_never:Never: breaks promises",
         "  `decide` follows the first lesson in its situation: it does not",
         "k-nn: keeps all promises",
     ]
+    assert note.startswith("  decide takes 0.")
     assert not Path("results").exists()
 
 
 def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
     assert "there is no such learner" in kurt2rt.refused("rivals", "--learner", "deep-thought", *SHORT)
     assert not Path("made").exists()
+
+
+def test_changed_helper_of_a_learner_is_named_as_the_difference(kurt2rt: CommandLine) -> None:
+    Path("my_asking.py").write_text(f"import my_helper\n{BROKEN}", encoding="utf-8")
+    Path("my_helper.py").write_text("HERE = 1\n", encoding="utf-8")
+    words = ("rivals", "--learner", "my_asking:Never", *SHORT)
+    assert kurt2rt(*words).exit_code == 0
+    Path("my_helper.py").write_text("HERE = 2\n", encoding="utf-8")
+    refused = kurt2rt.refused(*words)
+    assert "my_asking.Never" in refused
+    assert "(what differs: learner)" in refused

@@ -11,7 +11,6 @@ from hal.plugins import (
     UnknownPluginError,
     loaded_plugins,
     settings_from_elsewhere,
-    source_hash_of,
 )
 from tests.plugin_packages import install
 
@@ -94,16 +93,3 @@ def test_settings_from_elsewhere_import_only_known_plugins(plugin_folder: Path) 
     assert NUMBERS.find("plug_g:TEN") == 10
     with settings_from_elsewhere():  # this process trusts it already
         assert NUMBERS.find("plug_g:TEN") == 10
-
-
-def test_source_hash_of_a_package_changes_with_any_of_its_files(plugin_folder: Path) -> None:
-    package = plugin_folder / "plug_h"
-    package.mkdir()
-    (package / "__init__.py").write_text("class Nine:\n    pass\n")
-    (package / "more.py").write_text("")
-    found = PluginKind("classes", "class", "a class", lambda each: isinstance(each, type), tuple).find("plug_h:Nine")
-    before = source_hash_of(found)
-    (package / "more.py").write_text("# more\n")
-    assert before
-    assert source_hash_of(found) not in ("", before)
-    assert source_hash_of(PluginKind) == ""

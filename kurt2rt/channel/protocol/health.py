@@ -165,6 +165,8 @@ class HealthReport:
     """Links to the teacher's page with their tokens, for this machine's user only, never over the channel."""
     progress: Progress = NO_PROGRESS
     """Progress of teaching in the last minute."""
+    plugins: tuple[str, ...] = ()
+    """Plug-ins in use from outside of the project, each with its package and version, or file, and its hash."""
 
     @property
     def urgent(self) -> bool:

@@ -91,6 +91,7 @@ _REPORT = MapOf(
     drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
     troubles=ManyOf(_TROUBLE, most=MOST_ROWS),
     progress=MayLack(MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT)),
+    plugins=MayLack(ManyOf(LINE, most=MOST_ROWS)),
 )
 
 _FORM = Form[HealthReport]("the health report", _REPORT)

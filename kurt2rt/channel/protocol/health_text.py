@@ -63,6 +63,8 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     rows.append(("machine", ", ".join(parts)))
     rows.append(("program", f"kurt2rt {report.version}, start {report.boot}, up {lasting(report.uptime_s)}"))
     rows.append(("robot", f"{report.robot}, task {report.task}, {report.knowledge}"))
+    if report.plugins:
+        rows.append(("plug-ins", "; ".join(report.plugins)))
     return tuple(HealthRow(name, text, _level(report, name)) for name, text in rows)
 
 

@@ -1,24 +1,25 @@
 """Check of one plug-in: all promises of its kind."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 from pydantic import TypeAdapter, ValidationError
 
 from behaviors.metrics.task_metric import MetricSettings
 from behaviors.registry import JUDGES, METRICS, POLICIES, AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from behaviors.repertoire_settings import BEHAVIOURS, ActionSettings, PluginAction, RepertoireSettings
-from hal.robot_kind import RobotKind
-from hal.robot_plugins import ROBOTS, find_robot_kind
-from hal.robot_settings import RobotSettings
+from hal.robot_kind import RobotKind, simulations_of
+from hal.robot_plugins import ROBOTS, find_robot_kind, find_task_of_robot
+from hal.robot_settings import DEFAULT_KIND, RobotSettings, load_robot
 from hal.settings import load_settings
 from hal.settings_files import TASKS, WORLDS, find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.kinds import NoPluginError, Subject
+from kurt2rt.checks.plugins.learner_check import Finding, check_learner
 from kurt2rt.checks.plugins.promises import broken_of_action, broken_of_judge, broken_of_metric, broken_of_policy
 from kurt2rt.checks.plugins.robot_promises import broken_of_robot
-from kurt2rt.core.learner.conformance import broken_among, broken_promises
+from kurt2rt.core.learner.conformance import broken_among
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -27,8 +28,35 @@ from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 _TASK = "wall_following"
-"""Shipped task with whose world, repertoire and situation a part is tried that no task names."""
+"""Shipped task with whose world, repertoire and situation a part is tried on a robot without tasks of its own."""
 _SEED, _PURPOSE = 1, "plug-in check"
+
+
+class Checked(NamedTuple):
+    """Finding about one plug-in."""
+
+    subject: Subject
+    robot: str | None
+    """Kind of the robot that it was tried on; None for a robot."""
+    broken: list[str]
+    """Promises that it breaks, each in a sentence."""
+    note: str = ""
+    """Time of a learner's decisions, in words; empty for another part."""
+
+
+def check_all(subjects: Sequence[Subject], robot: str | None) -> list[Checked]:
+    """Return what the checks of plug-ins found.
+
+    `robot`: by name or path, for a single plug-in, and for those of several that name none; None: the plug-in's own,
+    else KURT2. Raises UserError if a plug-in or robot cannot be loaded.
+    """
+    found = []
+    for subject in subjects:
+        named = robot or subject.robot if len(subjects) == 1 else subject.robot or robot
+        settings = load_robot(named or DEFAULT_KIND)
+        tried_on = None if subject.group == ROBOTS.group else settings.kind
+        found.append(Checked(subject, tried_on, *PluginCheck(settings, simulations_of(settings)).of(subject)))
+    return found
 
 
 class PluginCheck:
@@ -38,8 +66,8 @@ class PluginCheck:
         """Take the robot, and what opens its simulations."""
         self._robot = robot
         self._factory = factory
+        self._task = find_task_of_robot(robot.kind) or _TASK
         self._checks: Mapping[str, Callable[[str], list[str]]] = {
-            LEARNERS.group: self._of_learner,
             POLICIES.group: self._of_policy,
             JUDGES.group: lambda name: broken_of_judge(_settings(AnyJudgeSettings, name)),
             METRICS.group: self._of_metric,
@@ -49,23 +77,20 @@ class PluginCheck:
             ROBOTS.group: lambda name: broken_of_robot(cast("RobotKind", find_robot_kind(name)), name),
         }
 
-    def broken_promises(self, subject: Subject) -> list[str]:
-        """Return the promises that a plug-in breaks, each in a sentence; empty if it keeps all that were tried.
-
-        Raises UserError if the plug-in cannot be loaded, so that nothing can be tried.
-        """
-        return self._checks[subject.group](subject.name)
-
-    def _of_learner(self, name: str) -> list[str]:
-        return broken_promises(find_learner(name), learner_setting(load_task(_TASK), self._robot, seed=_SEED))
+    def of(self, subject: Subject) -> Finding:
+        """Return what was found about a plug-in. Raises UserError if it cannot be loaded, so that nothing is tried."""
+        if subject.group == LEARNERS.group:
+            setting = learner_setting(load_task(self._task), self._robot, seed=_SEED)
+            return check_learner(find_learner(subject.name), setting)
+        return Finding(self._checks[subject.group](subject.name))
 
     def _of_policy(self, name: str) -> list[str]:
         settings = _settings(AnyPolicySettings, name)
-        actions = load_task_repertoire(load_task(_TASK), self._robot)
+        actions = load_task_repertoire(load_task(self._task), self._robot)
         return broken_of_policy(settings, self._robot, actions, settings.behaviours or ("",))
 
     def _of_metric(self, name: str) -> list[str]:
-        task = load_task(_TASK)
+        task = load_task(self._task)
         return self._metric_in(_settings(AnyMetricSettings, name), task.teaching.world, task.behaviours)
 
     def _metric_in(self, settings: MetricSettings, world: str, behaviours: tuple[str, ...]) -> list[str]:

@@ -12,8 +12,10 @@ from behaviors.repertoire_settings import BEHAVIOURS
 from hal.errors import UserError
 from hal.plugins import Plugin, PluginKind, import_target, is_target
 from hal.robot_plugins import ROBOTS, robot_of_task, robots_tasks
+from hal.robot_settings import robot_that_task_names
 from hal.settings import SettingsError, content_of
 from hal.settings_files import TASKS, WORLDS
+from kurt2rt.checks.plugins.folder_robots import robots_by_part
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
 
@@ -48,6 +50,8 @@ class Subject(NamedTuple):
     group: str
     name: str
     """Name or `module:Name`; the path of a task's or a world's file."""
+    robot: str | None = None
+    """Robot that it is for, by name or path; None if nothing says so."""
 
 
 class Listed(NamedTuple):
@@ -83,14 +87,19 @@ def find_subjects(name_or_path: str, group: str | None = None) -> list[Subject]:
     path = Path(name_or_path)
     if path.is_dir():
         return _subjects_in(path)
+    found = _subject_of(name_or_path, path, group)
+    return [found._replace(robot=robot_that_task_names(name_or_path)) if found.group == TASKS.group else found]
+
+
+def _subject_of(name_or_path: str, path: Path, group: str | None) -> Subject:
     if path.suffix == ".yaml":
-        return [Subject(group or _group_of_file(path), name_or_path)]
+        return Subject(group or _group_of_file(path), name_or_path)
     if group is not None:
-        return [Subject(group, name_or_path)]
+        return Subject(group, name_or_path)
     if is_target(name_or_path):
-        return [Subject(_group_of_part(name_or_path), name_or_path)]
+        return Subject(_group_of_part(name_or_path), name_or_path)
     if robot_of_task(name_or_path) is not None:
-        return [Subject(TASKS.group, name_or_path)]
+        return Subject(TASKS.group, name_or_path)
     found = [each for kind in KINDS.values() for each in list_parts(kind) if each.name == name_or_path]
     groups = {each.kind for each in found}
     if not groups:
@@ -101,7 +110,7 @@ def find_subjects(name_or_path: str, group: str | None = None) -> list[Subject]:
         )
     if len(groups) > 1:
         raise _several(name_or_path, groups)
-    return [Subject(groups.pop(), name_or_path)]
+    return Subject(groups.pop(), name_or_path)
 
 
 def _note(plugin: Plugin, shipped: list[str], names: list[str]) -> str:
@@ -117,17 +126,25 @@ def _subjects_in(folder: Path) -> list[Subject]:
     except (OSError, ValueError) as error:
         raise NoPluginError(f"cannot be read: {error}", where=file, do="give a folder with a pyproject.toml") from error
     groups = project.get("project", {}).get("entry-points", {})
-    subjects = [
-        Subject(group, target)
+    offered = [
+        (group, name, target)
         for group in KINDS
-        for target in groups.get(_GROUPS + group, {}).values()
+        for name, target in groups.get(_GROUPS + group, {}).items()
         if isinstance(target, str)
     ]
-    if not subjects:
+    if not offered:
         kinds = ", ".join(_GROUPS + group for group in KINDS)
         raise NoPluginError("offers no plug-in", where=file, do=f"add an entry point of one of: {kinds}")
     sys.path[:0] = [str(each.resolve()) for each in (folder, folder / "src") if each.is_dir()]
-    return subjects
+    robots = robots_by_part(folder)
+    return [
+        Subject(
+            group,
+            target,
+            robot_that_task_names(target) if group == TASKS.group else robots.get(target, robots.get(name)),
+        )
+        for group, name, target in offered
+    ]
 
 
 def _group_of_file(path: Path) -> str:

@@ -1,10 +1,12 @@
 """Conformance check of a learner: the promises of `Learner`, tried on made-up situations."""
 
 from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.plugin_frames import place_in_plugin
 from kurt2rt.core.learner.learner import Driven, Learner, LearnerFactory, LearnerSetting, SignalLearner, Why
 
 _LESSONS, _PROBES = 40, 200
@@ -35,20 +37,53 @@ def broken_promises(make: LearnerFactory, setting: LearnerSetting) -> list[str]:
 
 
 def broken_among(promises: Iterable[tuple[str, Callable[[], bool | str]]]) -> list[str]:
-    """Return the promises that do not hold, each in a sentence; an error of a check is told with its promise.
+    """Return the promises that do not hold, each in a sentence; one sentence for all that raised the same error.
 
-    `promises`: each promise with a function that returns whether it holds, or else a text that says what happened.
+    An error is told with the file and line of the plug-in. `promises`: each promise with a function that returns
+    whether it holds, or else a text that says what happened.
     """
-    broken = []
+    broken: list[tuple[list[str], str]] = []
+    raised: dict[str, list[str]] = {}
     for promise, holds in promises:
         try:
             kept = holds()
         except Exception as error:  # noqa: BLE001 - any error of another author's code is a finding about it
-            broken.append(f"{promise}: raised {type(error).__name__}: {error}")
+            told = _told(error)
+            if told not in raised:
+                broken.append((raised.setdefault(told, []), told))
+            raised[told].append(promise)
         else:
             if kept is not True:
-                broken.append(f"{promise}: {kept or 'it does not'}")
-    return broken
+                broken.append(([promise], kept or "it does not"))
+    return [f"{first}{f', and {len(more)} more' if more else ''}: {told}" for (first, *more), told in broken]
+
+
+def _told(error: Exception) -> str:
+    place = place_in_plugin(error)
+    return f"raised {type(error).__name__}: {error}" + (f" ({place})" if place else "")
+
+
+class MadeUp(NamedTuple):
+    """Made-up lessons of a setting, as a robot would give them, and situations to try decisions in."""
+
+    situations: NDArray[np.float64]
+    """Situations (n, d) of the lessons, in counts."""
+    actions: list[str]
+    """Actions of the n lessons."""
+    probes: NDArray[np.float64]
+    """Situations (m, d) to decide in, in counts."""
+
+
+def made_up(setting: LearnerSetting) -> MadeUp:
+    """Return made-up lessons, drawn by the setting's seed."""
+    rng = np.random.default_rng(setting.seed)
+    # Groups, because lessons of a robot lie together; with noise, so that no two situations are equal.
+    centres = rng.uniform(0.0, _FARTHEST_COUNTS, (8, setting.dimensions))
+    groups = rng.integers(0, len(centres), _LESSONS + _PROBES)
+    situations = centres[groups] + rng.normal(0.0, 5.0, (len(groups), setting.dimensions))
+    situations.flags.writeable = False
+    actions = [setting.actions[group % len(setting.actions)] for group in groups[:_LESSONS]]
+    return MadeUp(situations[:_LESSONS], actions, situations[_LESSONS:])
 
 
 class _Check:
@@ -56,15 +91,7 @@ class _Check:
 
     def __init__(self, make: LearnerFactory, setting: LearnerSetting) -> None:
         self._make, self._setting = make, setting
-        rng = np.random.default_rng(setting.seed)
-        # Groups, because lessons of a robot lie together; with noise, so that no two situations are equal.
-        centres = rng.uniform(0.0, _FARTHEST_COUNTS, (8, setting.dimensions))
-        groups = rng.integers(0, len(centres), _LESSONS + _PROBES)
-        situations = centres[groups] + rng.normal(0.0, 5.0, (len(groups), setting.dimensions))
-        situations.flags.writeable = False
-        self._situations = situations[:_LESSONS]
-        self._actions = [setting.actions[group % len(setting.actions)] for group in groups[:_LESSONS]]
-        self._probes = situations[_LESSONS:]
+        self._situations, self._actions, self._probes = made_up(setting)
 
     def asks_at_first(self) -> bool:
         learner = self._new()

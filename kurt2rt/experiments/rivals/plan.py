@@ -110,7 +110,7 @@ def make_plan(
             if rival.name == TUNED and not rival.tuned:
                 continue
             own = rival.task(task)
-            made = fingerprints.of(own, worlds, rival.source, repr(tuple(after)))
+            made = fingerprints.of(own, worlds, repr(tuple(after)), learner=rival.source)
             kind = _job_class(rival)
             jobs = tuple(
                 kind(

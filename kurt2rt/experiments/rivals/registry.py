@@ -1,7 +1,8 @@
 """Learners by name, by `module:Name`, or by the entry points of installed packages."""
 
 from hal.errors import UserError
-from hal.plugins import PluginError, PluginKind, import_target, source_hash_of
+from hal.plugin_source import source_hash_of
+from hal.plugins import PluginError, PluginKind, import_target
 from kurt2rt.core.learner.learner import LearnerFactory
 from kurt2rt.experiments.rivals.holds.rows import TARGETS as HOLD_TARGETS
 from kurt2rt.experiments.rivals.signals.rows import TARGETS as SIGNAL_TARGETS

@@ -55,8 +55,8 @@ class JobMaker:
         for seed in robots.seeds.seeds:
             worlds = robots.worlds_of(seed)
             own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
-            source = () if rival is None else (rival.source,)
-            made = self.fingerprints.of(own, (task.teaching.world, *worlds), *source)
+            source = "" if rival is None else rival.source
+            made = self.fingerprints.of(own, (task.teaching.world, *worlds), learner=source)
             new = SearchJob if rival is None else partial(LearnerSearchJob, rival=rival)
             jobs.append(new(part=part, label=label, task=own, seed=seed, loops=loops, made_of=made, **self.parts))
         return tuple(jobs)

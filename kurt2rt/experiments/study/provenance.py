@@ -9,7 +9,7 @@ from functools import lru_cache
 from importlib.metadata import version
 
 from behaviors.repertoire_settings import RepertoireSettings
-from hal.plugins import source_hash_of
+from hal.plugin_source import source_hash_of
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, content_of, load_settings
 from hal.settings_files import find_config
@@ -32,6 +32,10 @@ class Provenance(Settings):
     worlds: str
     source: str
     versions: str
+    plugins: str = ""
+    """Hash of the plug-ins that the task names; empty without any."""
+    learner: str = ""
+    """Hash of a rival's name, gate and source, and of the packages that it computes with; empty outside of leagues."""
 
     def differences(self, other: "Provenance") -> list[str]:
         """Return the names of the fields that differ."""
@@ -83,11 +87,19 @@ class Fingerprints:
         self._stage = factory
         self._known: dict[tuple[str, str], str] = {}
 
-    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> Provenance:
-        """Return the provenance of a job in these worlds; `more`: further texts that decide its result.
+    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str, learner: str = "") -> Provenance:
+        """Return the provenance of a job.
 
-        Raises hal.settings.SettingsError if settings of the task or a world cannot be loaded.
+        Args:
+            task: that is taught.
+            worlds: of lesson and exams.
+            more: further texts that decide its result.
+            learner: text that changes with the learner; empty for RLAs.
+
+        Raises:
+            hal.settings.SettingsError: settings of the task or a world cannot be loaded.
         """
+        plugins = _plugin_sources(task)
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
         return Provenance(
             task=settings_hash(
@@ -95,13 +107,14 @@ class Fingerprints:
                 self._settings("situations", task.situation),
                 self._settings("repertoires", task.repertoire),
                 *([self._settings("mid_levels", task.mid)] if isinstance(task.mid, str) else ()),
-                *_plugin_sources(task),
                 *more,
             ),
             robot=self._robot,
             worlds=settings_hash(*(self._settings("worlds", world) for world in sorted(set(worlds)))),
             source=self._source,
             versions=self._versions,
+            plugins=settings_hash(*plugins) if plugins else "",
+            learner=settings_hash(learner) if learner else "",
         )
 
     def _settings(self, kind: str, name: str) -> str:

@@ -40,6 +40,7 @@ class HealthMonitor:
         knowledge: Path,
         now: Callable[[], float] = time.monotonic,
         tolerates_stalls: bool = False,
+        plugins: tuple[str, ...] = (),
     ) -> None:
         """Start no thread yet.
 
@@ -51,6 +52,7 @@ class HealthMonitor:
             knowledge: path of the knowledge file.
             now: clock in s.
             tolerates_stalls: whether the robot stalls with this program.
+            plugins: text of each plug-in in use.
         """
         self._runtime = runtime
         self._keeping = keeping
@@ -58,6 +60,7 @@ class HealthMonitor:
         self._instruments = replace(instruments, folders=folders)
         self._boot = boot
         self._knowledge = str(knowledge)
+        self._plugins = plugins
         self._now = now
         self._every_ticks = max(1, round(1 / runtime.robot.cycle_s))
         self._started_s = now()
@@ -134,6 +137,7 @@ class HealthMonitor:
             safety=JournalHealth(snapshot.unwritten, None if last_write_s is None else last_write_s * 1000),
             machine=machine,
             progress=snapshot.progress,
+            plugins=self._plugins,
             drops=tuple(Drops(of, count) for of, count in snapshot.drops.items()),
             troubles=self._troubles.judge(snapshot, punctuality, disks, machine, self._counted),
         )

@@ -15,7 +15,16 @@ from kurt2rt.core.teaching.progress import Progress
 from tests.service.health.reports import ILL, LATE, WELL
 
 
-@pytest.mark.parametrize("report", [WELL, ILL, replace(WELL, bus=None), replace(WELL, progress=Progress(60, 87, 3))])
+@pytest.mark.parametrize(
+    "report",
+    [
+        WELL,
+        ILL,
+        replace(WELL, bus=None),
+        replace(WELL, progress=Progress(60, 87, 3)),
+        replace(WELL, plugins=("policies flight from flight 0.1.0, hash 1a2b3c4d",)),
+    ],
+)
 def test_it_comes_back_as_it_went(report: HealthReport) -> None:
     assert report_of(json.loads(json.dumps(plain_of(report), allow_nan=False))) == report
     assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
@@ -28,7 +37,7 @@ def test_health_codec_drops_unknown_keys() -> None:
 
 def test_report_of_a_robot_without_progress_is_understood() -> None:
     plain = plain_of(replace(WELL, progress=Progress(60, 87, 3)))
-    del plain["progress"]
+    del plain["progress"], plain["plugins"]
     assert report_of(plain) == WELL
 
 

@@ -58,3 +58,9 @@ def test_lengths_of_time(seconds: float, words: str) -> None:
 @pytest.mark.parametrize(("count", "words"), [(900, "1 kB"), (136_183_808, "136 MB"), (79_893_155_840, "79.9 GB")])
 def test_sizes(count: int, words: str) -> None:
     assert size(count) == words
+
+
+def test_plugins_in_use_have_a_row_of_their_own() -> None:
+    flight = "policies flight from flight 0.1.0, hash 1a2b3c4d"
+    assert "plug-ins" not in {row.name for row in rows_of(WELL)}
+    assert rows_of(replace(WELL, plugins=(flight,)))[-1] == ("plug-ins", flight, "")

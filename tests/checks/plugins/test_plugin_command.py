@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from behaviors.repertoire_settings import BEHAVIOURS
 from hal.plugins import loaded_plugins
+from hal.settings_files import find_config
 from kurt2rt.checks.plugins.kinds import KINDS, KindName
-from tests.cli.helpers import CommandLine
+from tests.cli.helpers import ROOT, CommandLine
 from tests.plugin_packages import install, write_parts, write_repertoire, write_task
 
 BROKEN = """
@@ -113,12 +115,14 @@ def test_skeleton_of_each_kind_passes_its_check(kurt2rt: CommandLine, plugin_fol
     project = tomllib.loads(Path("out", name, "pyproject.toml").read_text(encoding="utf-8"))["project"]
     ((group, points),) = project["entry-points"].items()
     checked = kurt2rt("plugin", "check", Path("out", name))
-    assert checked.out == f"{points[name]} ({kind}): keeps all promises\n", checked.err
+    first, *notes = checked.out.splitlines()
+    assert first == f"{points[name]} ({kind}): keeps all promises", checked.err
+    assert [note.startswith("  decide takes ") for note in notes] == [True] * (kind == KindName.LEARNERS)
     assert group == f"kurt2rt.{kind}"
     install(plugin_folder / "out" / name / "src", project["name"], {kind: points}, project["version"])
     listed = json.loads(kurt2rt("plugin", "list", "--kind", kind, "--json").out)["plugins"]
     assert {"kind": kind, "name": name, "source": f"own-{kind} 0.1.0", "note": ""} in listed
-    assert kurt2rt("plugin", "check", name).out == f"{name} ({kind}): keeps all promises\n"
+    assert kurt2rt("plugin", "check", name).out.startswith(f"{name} ({kind}): keeps all promises\n")
     assert [(each.group, each.name) for each in loaded_plugins()][-1] == (kind, name)
 
 
@@ -164,7 +168,7 @@ def test_check_of_a_task_tries_all_of_its_parts(kurt2rt: CommandLine, parts: Pat
     said = kurt2rt("plugin", "check", path)
     assert said.exit_code == 1
     first, *lines = said.out.splitlines()
-    assert first == f"{path} (tasks): breaks promises"
+    assert first.startswith(f"{path} (tasks): breaks promises, tried on the robot kurt2 ")
     assert {line.partition(":")[0].strip() for line in lines} == {"policy", "judge", "course", "action leap"}
 
 
@@ -212,6 +216,51 @@ def test_new_refuses_a_name_that_is_taken(
 ) -> None:
     (plugin_folder / "there").mkdir()
     assert told in kurt2rt.refused("plugin", "new", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "file"),
+    [
+        (("tasks", "fleeing"), "config/tasks/fleeing.yaml"),
+        (("tasks", "school/fleeing"), "kurt2rt/robots/school/data/tasks/fleeing.yaml"),
+        (("worlds", "a"), "config/worlds/a.yaml"),
+        (("robots", "school"), "kurt2rt/robots/school/data/robots/school.yaml"),
+        (("repertoires", "school/basic"), "kurt2rt/robots/school/data/repertoires/basic.yaml"),
+        (("situations", "basic"), "config/situations/basic.yaml"),
+        (("policies", "sector_fleeing"), "behaviors/policies/sector_fleeing.py"),
+        (("learners", "k-nn"), "kurt2rt/experiments/rivals/learners/k_nearest.py"),
+        (("policies", "parts_base:Turning"), "tests/plugin_parts.py"),
+        (("behaviours", "parts_base:Wiggling"), "tests/plugin_parts.py"),
+        (("worlds", "hall"), "tests/plugin_parts.py"),
+        (("worlds", "yard"), "config/worlds/b.yaml"),
+    ],
+)
+def test_show_prints_the_file_of_a_part(kurt2rt: CommandLine, parts: Path, words: tuple[str, ...], file: str) -> None:
+    (parts / "parts_yard.py").write_text(f"YARD = {str(find_config('worlds', 'b'))!r}")
+    install(parts, "places", {"worlds": {"hall": "parts_base:Turning", "yard": "parts_yard:YARD"}})
+    assert kurt2rt("plugin", "show", *words).out == (ROOT / file).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", BEHAVIOURS.shipped())
+def test_show_prints_the_settings_of_a_shipped_action(kurt2rt: CommandLine, name: str) -> None:
+    said = kurt2rt("plugin", "show", "behaviours", name).out
+    assert said.startswith("class ")
+    assert f'kind: Literal["{name}"]' in said
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("tasks", "fleing"), "no such file in tasks; give module:NAME, a path to a .yaml file or one of: circle"),
+        (("worlds", "rooms-3"), "no such file in worlds; give a path to a .yaml file or one of: a, b"),
+        (("judges", "harsh"), "there is no kind 'harsh'; give module:Name, or one of: eight, fleeing"),
+        (("behaviours", "leap"), "there is no such action; give module:Name, or one of: motor"),
+        (("policies", "parts_broken:NUMBER"), "is a int, allowed is a subclass of PolicySettings"),
+    ],
+)
+@pytest.mark.usefixtures("parts")
+def test_show_refuses_what_is_not_there(kurt2rt: CommandLine, words: tuple[str, ...], told: str) -> None:
+    assert told in kurt2rt.refused("plugin", "show", *words)
 
 
 def test_list_says_which_names_lead_elsewhere(kurt2rt: CommandLine, plugin_folder: Path) -> None:

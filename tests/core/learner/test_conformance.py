@@ -1,3 +1,5 @@
+import inspect
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -101,7 +103,6 @@ class Failing(Parrot):
         (Inventive, "`decide` names an action of the setting, or None: it does not"),
         (Late, "`decide` follows the first lesson in its situation: it does not"),
         (Moody, "the same lessons give the same decisions: it does not"),
-        (Failing, "`decide` changes nothing: raised RuntimeError: full"),
     ],
 )
 def test_broken_promise_is_named(learner: type[Parrot], promise: str) -> None:
@@ -110,3 +111,23 @@ def test_broken_promise_is_named(learner: type[Parrot], promise: str) -> None:
 
 def test_parrot_keeps_all_promises() -> None:
     assert broken_promises(Parrot, WIDE._replace(dimensions=1)) == []
+
+
+def test_error_of_many_promises_is_told_once_with_its_line() -> None:
+    source, first = inspect.getsourcelines(Failing)
+    line = first + next(place for place, text in enumerate(source) if "raise" in text)
+    (told,) = broken_promises(Failing, WIDE)
+    raised = f"raised RuntimeError: full ({__file__}, line {line})"
+    assert told == f"`decide` names an action of the setting, or None, and 4 more: {raised}"
+
+
+class Asking(Parrot):
+    """Calls a library with what it does not take."""
+
+    def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
+        return super().decide(situation.reshape(7, 7), taught=taught)
+
+
+def test_error_in_a_library_is_told_with_the_line_of_its_caller() -> None:
+    (told,) = broken_promises(Asking, WIDE)
+    assert told.endswith(f"({__file__}, line {inspect.getsourcelines(Asking.decide)[1] + 1})")

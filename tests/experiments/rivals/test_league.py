@@ -115,7 +115,7 @@ def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Done) -> None:
 def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
     plan = plan_for(Results(tmp_path), (3902,), Rival("k-nn"), Rival("k-nn", 0.5), Rival(PLAIN))
     jobs = [entry.jobs[0] for entry in plan.entries]
-    assert len({job.made_of.task for job in jobs}) == 4
+    assert len({job.made_of for job in jobs}) == 4
     assert [job.stem for job in jobs] == [
         "rla/wall_following-3902",
         "k-nn/wall_following-3902",

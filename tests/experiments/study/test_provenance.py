@@ -106,4 +106,4 @@ def test_change_in_the_source_of_a_plugin_shows(plugin_folder: Path) -> None:
     file = plugin_folder / "parts_made.py"
     file.write_text(file.read_text(encoding="utf-8") + "# changed\n", encoding="utf-8")
     changed = [fingerprints.of(each, ("a",)) for each in (task, by_action)]
-    assert [one.differences(other) for one, other in zip(made, changed, strict=True)] == [["task"], ["task"]]
+    assert [one.differences(other) for one, other in zip(made, changed, strict=True)] == [["plugins"], ["plugins"]]

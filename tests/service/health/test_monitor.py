@@ -23,6 +23,9 @@ class Keeping:
     last_write_s: float | None = 0.005
 
 
+FLIGHT = "policies flight from flight 0.1.0, hash 1a2b3c4d"
+
+
 class Robot:
     """A robot, and the watch on it."""
 
@@ -39,6 +42,7 @@ class Robot:
             boot="626f6f74",
             knowledge=folder / "not made yet" / "x.knowledge",
             now=lambda: self.now_s,
+            plugins=(FLIGHT,),
         )
         self.heard: list[HealthReport] = []
         self.watch.add_listener(self.heard.append)
@@ -152,3 +156,8 @@ def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) 
                 (tmp_path / name / file).write_text(f"{text}\n")
     assert battery_of(tmp_path) == (0.61, True)
     assert MachineMonitor(tmp_path).poll().battery == 0.61
+
+
+def test_report_names_the_plugins_in_use(robot: Robot) -> None:
+    robot.tick()
+    assert robot.report().plugins == (FLIGHT,)
