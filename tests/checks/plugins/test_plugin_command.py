@@ -7,8 +7,10 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 from hal.plugins import loaded_plugins
+from hal.settings_files import find_config
 from kurt2rt.checks.plugins.kinds import KINDS, KindName
 from tests.cli.helpers import CommandLine
 from tests.plugin_packages import install, write_parts, write_repertoire, write_task
@@ -166,6 +168,17 @@ def test_check_of_a_task_tries_all_of_its_parts(kurt2rt: CommandLine, parts: Pat
     first, *lines = said.out.splitlines()
     assert first == f"{path} (tasks): breaks promises"
     assert {line.partition(":")[0].strip() for line in lines} == {"policy", "judge", "course", "action leap"}
+
+
+def test_check_refuses_a_judge_of_a_robot_that_sees_farther(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    """KURT2's judge calls 0.25 m narrow; the school robot sees 0.14 m."""
+    sections = yaml.safe_load(find_config("tasks", "school/wall_following").read_text(encoding="utf-8"))
+    del sections["judge"]
+    path = write_task(tmp_path, **sections)
+    said = kurt2rt("plugin", "check", str(path), "--robot-settings", "school")
+    assert said.exit_code == 1
+    assert "judge: `judge` does not punish what the policy does where nothing is in view" in said.out
+    assert kurt2rt("plugin", "check", "school/wall_following").exit_code == 0
 
 
 @pytest.mark.parametrize(
