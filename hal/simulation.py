@@ -8,7 +8,7 @@ import random
 from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot import Robot
@@ -31,6 +31,10 @@ class Pose(NamedTuple):
     x_m: float
     y_m: float
     heading_rad: float
+
+
+WallSide = Literal["left", "right"]
+"""Side of a robot on which the wall is that it follows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,12 +134,19 @@ class Simulation(Protocol):
 
     @property
     def laps(self) -> float:
-        """Distance along walls on the robot's left, in lengths of the outer wall; driving backwards counts negative."""
+        """Distance along walls on one side of the robot, in lengths of the outer wall; backwards counts negative.
+
+        The side is the left until `follow_wall` names it.
+        """
         ...
 
     @property
     def lap_m(self) -> float:
         """Length of the outer wall, in m."""
+        ...
+
+    def follow_wall(self, side: WallSide) -> None:
+        """Count laps with the wall on this side of the robot, from its present place on."""
         ...
 
     def step(self) -> None:

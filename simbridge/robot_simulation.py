@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose, Position, WorldPlan
+from hal.simulation import Pose, Position, WallSide, WorldPlan
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_link import SimulatedLink
 from simbridge.simulated_robot import SimulatedRobot
@@ -86,6 +86,10 @@ class RobotSimulation:
     def lap_m(self) -> float:
         """Length of a lap along the outer wall, in m."""
         return self.simulated_robot.lap_m
+
+    def follow_wall(self, side: WallSide) -> None:
+        """Count laps with the wall on this side of the robot, from its present place on."""
+        self.simulated_robot.follow_wall(side)
 
     def step(self) -> None:
         """Advance the world by one cycle. Raises hal.bus.BusError."""

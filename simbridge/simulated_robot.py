@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose
+from hal.simulation import Pose, WallSide
 from simbridge.controller.controller import Controller
 from simbridge.robot.body import Body
 from simbridge.robot.bumpers import Bumpers, CollisionCounter
@@ -66,6 +66,7 @@ class SimulatedRobot:
         cycle_s = robot.cycle_s
         self.world = World(world)
         self._cycle_s = cycle_s
+        self._wall_side: WallSide = "left"
         self._width_scale = robot.geometry.outline_width_m / _KURT2_WIDTH_M
         self._cycles = 0
         self.infrared_noise = Noise(seed, "infrared")
@@ -116,10 +117,17 @@ class SimulatedRobot:
         self._cycles += len(poses)
         self._followed = poses[-1]
 
+    def follow_wall(self, side: WallSide) -> None:
+        """Count laps with the wall on this side of the robot, from its present place on."""
+        if side != self._wall_side:
+            self._wall_side = side
+            self._placed = self.pose
+            self.__dict__.pop("_progress", None)
+
     @cached_property
     def _progress(self) -> WallProgress:
         # Made when it is asked for: its survey takes as long as all else of a robot in a batch, which needs none.
-        progress = WallProgress(self.world, self._width_scale)
+        progress = WallProgress(self.world, self._width_scale, self._wall_side)
         progress.reset(self._placed)
         return progress
 
@@ -172,7 +180,7 @@ class SimulatedRobot:
 
     @property
     def laps(self) -> float:
-        """Progress along walls in laps, positive with the wall on the left (`WallProgress`)."""
+        """Progress along walls in laps, positive with the wall on the followed side (`WallProgress`)."""
         for passed in self._passed:
             if isinstance(passed, _Put):
                 self._progress.reset(passed.pose)

@@ -6,9 +6,9 @@ from pydantic import Field
 
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
-from behaviors.policies.distances import Distance
+from behaviors.policies.sectors import Metres
 
-OptionalDistance = Annotated[float, Field(ge=0, le=0.6)]
+OptionalDistance = Annotated[float, Field(ge=0, le=5)]
 """Distance in m; 0: the rule does not exist, as in recordings of before it."""
 
 
@@ -16,9 +16,9 @@ class EightSettings(JudgeSettings):
     """Thresholds; distances from the sensors' faces."""
 
     trouble: CommonFaults
-    front_m: Distance
+    front_m: Metres
     """Distance ahead below which the robot has to turn."""
-    last_m: Distance
+    last_m: Metres
     """Distance ahead below which driving on is bad."""
     drives_m_s: Speed
     """Speed above which the robot drives on."""
@@ -27,14 +27,14 @@ class EightSettings(JudgeSettings):
     spins_m_s: Speed
     """Speed below which a turn above `spins_rad_s` is a spin, which is bad unless the robot has to turn."""
     spins_rad_s: TurnRate
-    lost_m: Distance
+    lost_m: Metres
     """Distance at the side above which a column counts as not seen."""
     turns_rad_s: TurnRate
     """Turn rate above which turning away from the only column is bad, unless the edge sensor sees it (`edge_m`)."""
-    edge_m: Distance
-    near_m: Distance
+    edge_m: Metres
+    near_m: Metres
     """Lower bound of the good distance to a column."""
-    far_m: Distance
+    far_m: Metres
     """Upper bound of the good distance to a column."""
     round_rad_s: TurnRate
     """Turn rate towards the column above which the curve is good."""
@@ -48,7 +48,7 @@ class EightSettings(JudgeSettings):
     """Punish the first moments without a column in view, until the feature no_wall is 1."""
     straight_rad_s: TurnRate
     """Turn rate below which driving between two columns is good."""
-    unseen_m: Distance
+    unseen_m: Metres
     """Distance at both front edges above which a right turn without a column in view is bad."""
 
     def build(self) -> Judge:

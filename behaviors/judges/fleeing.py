@@ -2,18 +2,18 @@
 
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
-from behaviors.policies.distances import Distance
+from behaviors.policies.sectors import Metres
 
 
 class FleeingSettings(JudgeSettings):
     """Thresholds; distances from the sensors' faces."""
 
     trouble: CommonFaults
-    front_m: Distance
+    front_m: Metres
     """Distance ahead below which the robot has to spin left."""
-    edge_m: Distance
+    edge_m: Metres
     """Distance at a front edge below which the robot has to spin left."""
-    last_m: Distance
+    last_m: Metres
     """Distance ahead below which driving faster than `drives_m_s` is bad, unless it turns left by `escapes_rad_s`."""
     drives_m_s: Speed
     escapes_rad_s: TurnRate
@@ -21,9 +21,9 @@ class FleeingSettings(JudgeSettings):
     """Turn rate of a spin: good to the left where necessary, bad to the right in the open."""
     whirls_m_s: Speed
     """Speed below which a turn is a spin."""
-    free_front_m: Distance
+    free_front_m: Metres
     """Distance ahead above which the robot is in the open, together with `free_edge_m`."""
-    free_edge_m: Distance
+    free_edge_m: Metres
     fast_m_s: Speed
     """Speed above which a straight course is good."""
     straight_rad_s: TurnRate
@@ -31,7 +31,7 @@ class FleeingSettings(JudgeSettings):
     creeps_m_s: Speed
     """Speed below which the robot wastes the open space, together with `curves_rad_s`, unless it has just spun."""
     curves_rad_s: TurnRate
-    wary_m: Distance
+    wary_m: Metres
     """Distance at a front edge below which curving to that side is bad."""
     turns_rad_s: TurnRate
     """Turn rate above which the robot turns to a side."""

@@ -41,6 +41,19 @@ class AppraisalFeatures(NamedTuple):
     """1.0 during and shortly after a turn on the spot, else 0.0; 0.0 for a critic without this feature."""
 
 
+def mirrored(features: AppraisalFeatures) -> AppraisalFeatures:
+    """Return the features of the same drive seen in a mirror, which swaps left and right."""
+    return features._replace(
+        left_m=features.right_m,
+        right_m=features.left_m,
+        ahead_left_m=features.ahead_right_m,
+        ahead_right_m=features.ahead_left_m,
+        left_angle_rad=features.right_angle_rad,
+        right_angle_rad=features.left_angle_rad,
+        turn_rad_s=-features.turn_rad_s,
+    )
+
+
 class Judge(Protocol):
     """Memoryless reward function: a critic can only learn from its appraisal situation."""
 

@@ -1,28 +1,31 @@
-"""Judge of wall following with the wall on the left."""
+"""Judge of wall following with the wall on one side of the robot."""
 
 from typing import Annotated
 
 from pydantic import Field
 
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
-from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
-from behaviors.policies.distances import Distance
+from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings, mirrored
+from behaviors.policies.sectors import Metres
+from hal.simulation import WallSide
 
-Error = Annotated[float, Field(gt=0, le=0.6)]
+Error = Annotated[float, Field(gt=0, le=5)]
 """Difference from the set distance, in metres."""
 
 
 class WallFollowingSettings(JudgeSettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds; distances from the sensors' faces. They are those of a wall on the left."""
 
+    side: WallSide = "left"
+    """Side of the robot on which its wall is; right mirrors the thresholds."""
     trouble: CommonFaults
-    front_m: Distance
+    front_m: Metres
     """Distance ahead below which the robot has to turn right."""
-    edge_m: Distance
+    edge_m: Metres
     """Distance at the front left edge below which the robot has to turn right."""
-    near_m: Distance
+    near_m: Metres
     """Distance on the left up to which the robot has to turn right."""
-    last_m: Distance
+    last_m: Metres
     """Distance ahead below which driving on is bad."""
     drives_m_s: Speed
     """Speed above which the robot drives on."""
@@ -37,16 +40,17 @@ class WallFollowingSettings(JudgeSettings):
     """Turn rate above which the robot curves to a side."""
     corner_rad_s: TurnRate
     """Turn rate above which the robot curves past the end of the wall."""
-    bay_m: Distance
+    bay_m: Metres
     """Distance at the front right edge below which a left spin is allowed."""
-    open_front_m: Distance
+    open_front_m: Metres
     """Distance ahead above which a right spin is bad, together with the three thresholds below."""
-    open_edge_m: Distance
-    open_left_m: Distance
-    open_angle_rad: Annotated[float, Field(ge=0, le=1.6)]
-    lost_m: Distance
+    open_edge_m: Metres
+    open_left_m: Metres
+    open_angle_rad: Annotated[float, Field(ge=-1.6, le=1.6)]
+    """Angle away from the wall; a robot whose side sensors tell no angle reads 0, so it takes less than 0."""
+    lost_m: Metres
     """Distance above which the left side and the front left edge see no wall."""
-    wanted_m: Distance
+    wanted_m: Metres
     """Set distance to the wall on the left."""
     heading_weight_m: Annotated[float, Field(ge=0, le=1)]
     """Distance error in m per radian of heading error."""
@@ -56,9 +60,9 @@ class WallFollowingSettings(JudgeSettings):
     """Excess distance above which curving away is bad."""
     close_m: Error
     """Missing distance above which curving to the wall is bad."""
-    free_m: Distance
+    free_m: Metres
     """Free distance ahead that makes straight on good."""
-    free_to_wall_m: Distance
+    free_to_wall_m: Metres
     """Free distance ahead that makes curving to the wall good."""
 
     def build(self) -> Judge:
@@ -74,7 +78,7 @@ class WallFollowing:
 
     def judge(self, features: AppraisalFeatures) -> int:
         """Return the reward: -1 bad, 0 neutral, +1 good."""
-        want, now = self._settings, features
+        want, now = self._settings, features if self._settings.side == "left" else mirrored(features)
         if has_fault(now, want.trouble):
             return -1
         if now.front_m < want.front_m or now.ahead_left_m < want.edge_m or now.left_m <= want.near_m:

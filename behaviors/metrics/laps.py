@@ -1,4 +1,4 @@
-"""Way along the walls in laps, with the wall on the left."""
+"""Way along the walls in laps, with the wall on one side of the robot."""
 
 import random
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from behaviors.metrics.task_metric import (
     MetricSettings,
     TaskMetric,
 )
-from hal.simulation import Pose, Position, Simulation
+from hal.simulation import Pose, Position, Simulation, WallSide
 
 _MEASURED_AT_ONCE = 100
 """Positions of one measurement, which takes a tenth of the time of so many single ones: 10 s of a drive."""
@@ -28,6 +28,8 @@ class LapsSettings(MetricSettings):
     """Distance that is wanted from the robot's centre to the nearest wall."""
     least_speed_m_s: LeastSpeed = LEAST_SPEED_M_S
     """Mean speed along walls below which a drive gets nowhere."""
+    side: WallSide = "left"
+    """Side of the robot on which its wall is."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:
         """Return the laps of a drive of `duration_s`, in s, at the least speed."""
@@ -35,6 +37,8 @@ class LapsSettings(MetricSettings):
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. `chance` is not used."""
+        if self.side != "left":  # a simulation counts with the wall on the left by itself
+            simulation.follow_wall(self.side)
         return Laps(self, simulation, behaviours[0])
 
 

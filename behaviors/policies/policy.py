@@ -28,6 +28,11 @@ class PolicySettings(KindSettings):
     chooses_among: ClassVar[tuple[str, ...] | None] = None
     """Names of the actions that the policy chooses among; None if that is not known before it drives."""
 
+    @property
+    def required_actions(self) -> tuple[str, ...]:
+        """Names of the actions that a repertoire needs with these settings, as far as they are known."""
+        return self.chooses_among or ()
+
     @abstractmethod
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
         """Return the policy for a robot with these sensors."""

@@ -1,4 +1,4 @@
-"""Sectors of headings round a robot, so that a policy fits any robot with range sensors there."""
+"""Sectors of headings round a robot, so that policies and critics fit any robot with range sensors there."""
 
 from collections.abc import Callable
 from typing import Annotated
@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.policies.distances import Distances
-from hal.robot_settings import InfraredSettings
+from hal.robot_settings import InfraredSettings, SensorSettings
 from hal.settings import Settings, SettingsError
 
 Metres = Annotated[float, Field(gt=0, le=5)]
@@ -26,18 +26,35 @@ class Sector(Settings):
         """Return whether a heading in degrees lies in the sector."""
         return (heading_deg - self.from_deg) % 360.0 <= (self.to_deg - self.from_deg) % 360.0
 
+    @property
+    def mirrored(self) -> "Sector":
+        """Sector as in a mirror, which swaps left and right."""
+        return Sector(from_deg=-self.to_deg, to_deg=-self.from_deg)
+
+    def sensors_of(self, infrared: InfraredSettings, where: str) -> tuple[str, ...]:
+        """Return the names of the sensors that look into the sector, from front to back.
+
+        Raises hal.settings.SettingsError that names `where` if the robot has no sensor there.
+        """
+        found = [sensor for sensor in infrared.sensors if self.covers(sensor.heading_deg)]
+        if not found:
+            headings = ", ".join(f"{heading:g}" for heading in sorted({each.heading_deg for each in infrared.sensors}))
+            raise SettingsError(
+                f"no range sensor looks into the sector from {self.from_deg:g} to {self.to_deg:g} degrees",
+                where=where,
+                do=f"choose a sector with one of the headings {headings}",
+            )
+        return tuple(sensor.name for sensor in sorted(found, key=ahead_first))
+
     def nearest(self, infrared: InfraredSettings) -> Nearest:
         """Return the function that finds the least distance in m of the sector's sensors.
 
         Raises hal.settings.SettingsError if the robot has no sensor there.
         """
-        names = [sensor.name for sensor in infrared.sensors if self.covers(sensor.heading_deg)]
-        if not names:
-            headings = ", ".join(f"{heading:g}" for heading in sorted({each.heading_deg for each in infrared.sensors}))
-            raise SettingsError(
-                f"no range sensor looks into the sector from {self.from_deg:g} to {self.to_deg:g} degrees",
-                where="policy",
-                do=f"choose a sector with one of the headings {headings}",
-            )
-        distances_m = Distances(infrared).of(*names)
+        distances_m = Distances(infrared).of(*self.sensors_of(infrared, "policy"))
         return lambda counts: min(distances_m(counts))
+
+
+def ahead_first(sensor: SensorSettings) -> tuple[float, float, str]:
+    """Return the key that sorts sensors from front to back."""
+    return -sensor.x_m, abs(sensor.heading_deg), sensor.name

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot
+from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson
@@ -16,6 +16,7 @@ from kurt2rt.cli.options import (
     ALL_PROCESSORS,
     Changes,
     Jobs,
+    RobotName,
     changes_of,
     parse_seeds,
     results_option,
@@ -46,6 +47,7 @@ class _Options:
     task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
     teacher: Annotated[str, teacher_option(SUPERHUMAN)] = SUPERHUMAN
     changes: Changes = None
+    robot_settings: RobotName = None
     quick: Annotated[
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
     ] = False
@@ -115,7 +117,8 @@ def _plan(options: _Options) -> "tuple[PhasesPlan, Results]":
     from kurt2rt.experiments.study.results import Results
 
     profile = load_teacher(options.teacher)
-    robot, task = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
+    robot = load_robot_of(options.robot_settings, options.task)
+    task = taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
     results = Results(options.out or _FOLDER / (task.name + ("-quick" if options.quick else "")))
     parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     loops = requested_loops(options.lessons, options.exams)

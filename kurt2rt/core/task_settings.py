@@ -20,8 +20,9 @@ from kurt2rt.core.teacher_settings import QUICK_TEACHER, SUPERHUMAN, TeacherProf
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
+CriticName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*(/[a-z][a-z0-9_]*)?$", max_length=128)]
 AnyCritic = Annotated[
-    Annotated[Name, Tag("name")] | Annotated[CriticSettings, Tag("settings")],
+    Annotated[CriticName, Tag("name")] | Annotated[CriticSettings, Tag("settings")],
     Discriminator(lambda critic: "settings" if isinstance(critic, dict | CriticSettings) else "name"),
 ]
 AnyMid = Annotated[
@@ -219,7 +220,7 @@ class TaskSettings(Settings):
     """Settings in place of `learning` for the plain reading of the paper."""
     reinforcement: ReinforcementSettings = ReinforcementSettings()
     critic: AnyCritic = "basic"
-    """Critic, which is taught in phase 4: a name in `config/critics`, or its settings."""
+    """Critic, which is taught in phase 4: a name in `config/critics`, or of a robot's plug-in, or its settings."""
     judge: AnyJudgeSettings | None = None
     """Judge by which the scripted teacher gives rewards; None: it gives none."""
     phases: PhasesSettings | None = None

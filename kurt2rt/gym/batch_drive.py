@@ -8,7 +8,7 @@ from hal.batch_refusal import BatchRefusedError
 from hal.robot import SensorReadings
 from hal.simulation import Pose, Position
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings
@@ -52,7 +52,7 @@ class BatchDrive:
         self._metric.reset(simulation.pose)
         self._stuck = StuckDetector(task.exam.stuck_after_s, settings.cycle_s, least_m=task.exam.stuck_within_m)
         self._perception = Perception(definition, settings.infrared.names)
-        self._appraisal = AppraisalPerception(load_critic(task.critic), settings)
+        self._appraisal = AppraisalPerception(critic_of(task.critic, settings), settings)
         self._batch = factory.open_batch([simulation], [CommandedMind()], drive_settings)
         simulation.close()  # from here on it follows the batch, which has no bus
         self._commands: list[tuple[str, int]] = []

@@ -2,7 +2,7 @@
 
 import math
 
-from hal.simulation import Pose
+from hal.simulation import Pose, WallSide
 from simbridge.robot.world import World
 from simbridge.survey.wall_rings import RingPlace, WallRings
 
@@ -15,16 +15,24 @@ _LAP_FRACTION = 0.6
 
 
 class WallProgress:
-    """Signed progress along the walls of a room, forward with the wall on the left.
+    """Signed progress along the walls of a room, forward with the wall on one side of the robot, by default the left.
 
     Each ring (`WallRings`) has gates. Passing a gate is worth the distance to the next one. A gate counts again only
     after progress of 60 % of the ring's length, or in the other direction, which takes its worth back. So driving to
     and fro between two walls counts once. Jumps across the room and between rings count nothing.
     """
 
-    def __init__(self, world: World, scale: float = 1.0) -> None:
-        """`scale`: width of the robot as a multiple of KURT2's, to which all distances of the survey are fitted."""
+    def __init__(self, world: World, scale: float = 1.0, side: WallSide = "left") -> None:
+        """Survey the room of the first start pose.
+
+        Args:
+            world: walls and obstacles.
+            scale: width of the robot as a multiple of KURT2's, to which all distances of the survey are fitted.
+            side: side of the robot on which its wall is.
+        """
         self._scale = scale
+        self._forward = 1 if side == "left" else -1
+        """Direction along the rings, which have their wall on the left, that counts as forward."""
         self.laps = 0.0
         """Progress in lengths of the outer wall's ring, also along an island: one unit for a room."""
         self._world = world
@@ -46,7 +54,7 @@ class WallProgress:
         self._gates = [_Gates(length_m) for length_m in self._rings.lengths_m]
         self._progress_m = 0.0
         self._place: RingPlace | None = None
-        self._place = self._rings.place(x_m, y_m, pose.heading_rad, None)
+        self._place = self._placed(x_m, y_m, pose.heading_rad, None)
 
     def update(self, x_m: float, y_m: float, heading_rad: float) -> float:
         """Apply the pose that the robot drove to, a few decimetres from the last one; return the progress in laps.
@@ -58,15 +66,20 @@ class WallProgress:
             self.reset(Pose(x_m, y_m, heading_rad))
             return self.laps
         x_m, y_m = x_m / self._scale, y_m / self._scale
-        place, last = self._rings.place(x_m, y_m, heading_rad, self._place), self._place
+        place, last = self._placed(x_m, y_m, heading_rad, self._place), self._place
         if place is None:
             return self.laps
         if last is not None and last.ring == place.ring:
             step_m = self._gates[place.ring].pass_through(last.along_m, place.along_m, self._progress_m)
             self._progress_m += step_m
-            self.laps += step_m / self._rings.lengths_m[0]
+            self.laps += self._forward * step_m / self._rings.lengths_m[0]
         self._place = place
         return self.laps
+
+    def _placed(self, x_m: float, y_m: float, heading_rad: float, followed: RingPlace | None) -> RingPlace | None:
+        """Return the place on a ring that the robot follows: the wall on its right is on the left looking back."""
+        ahead_rad = heading_rad if self._forward > 0 else heading_rad + math.pi
+        return self._rings.place(x_m, y_m, ahead_rad, followed)
 
     def _survey(self, pose: Pose) -> None:
         self._surveyed = self._world.settings

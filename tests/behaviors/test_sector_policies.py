@@ -10,6 +10,7 @@ from behaviors.policies.sector_wall_following import SectorWallFollowingSettings
 from behaviors.policies.sectors import Sector
 from hal.robot_settings import InfraredSettings, load_robot
 from hal.settings import SettingsError
+from hal.simulation import WallSide
 
 SCHOOL, KURT2 = load_robot("school").infrared, load_robot().infrared
 AHEAD, LEFT, RIGHT = ((-25.0, 25.0), (30.0, 100.0), (-100.0, -30.0))
@@ -81,6 +82,19 @@ def test_sector_fleeing_turns_away(
     assert policy.choose(seen(infrared, **{each: d * unit_m for each, d in distances.items()}), "") == action
 
 
+def wall_following(side: WallSide) -> SectorWallFollowingSettings:
+    return SectorWallFollowingSettings(
+        kind="sector_wall_following",
+        side=side,
+        front=sector(AHEAD),
+        left=sector(LEFT),
+        wanted_m=0.08,
+        tolerance_m=0.01,
+        front_m=0.06,
+        lost_m=0.13,
+    )
+
+
 @pytest.mark.parametrize(
     ("distances", "action"),
     [
@@ -94,16 +108,16 @@ def test_sector_fleeing_turns_away(
     ],
 )
 def test_sector_wall_following_holds_the_distance(distances: dict[str, float], action: str) -> None:
-    policy = SectorWallFollowingSettings(
-        kind="sector_wall_following",
-        front=sector(AHEAD),
-        left=sector(LEFT),
-        wanted_m=0.08,
-        tolerance_m=0.01,
-        front_m=0.06,
-        lost_m=0.13,
-    ).build(SCHOOL)
-    assert policy.choose(seen(SCHOOL, **distances), "") == action
+    assert wall_following("left").build(SCHOOL).choose(seen(SCHOOL, **distances), "") == action
+    on_the_right = {"right" if side == "left" else side: distance_m for side, distance_m in distances.items()}
+    turned = action.replace("left", "RIGHT").replace("right", "left").lower()
+    assert wall_following("right").build(SCHOOL).choose(seen(SCHOOL, **on_the_right), "") == turned
+
+
+def test_sector_wall_following_needs_the_actions_of_its_side() -> None:
+    assert "spin_right" in wall_following("left").required_actions
+    assert "spin_left" in wall_following("right").required_actions
+    assert "spin_right" not in wall_following("right").required_actions
 
 
 @pytest.mark.parametrize(

@@ -52,6 +52,18 @@ def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLin
     assert f"kurt2rt phases --task {task} --quick --seeds 0" in (folder / "report.html").read_text()
 
 
+@pytest.mark.parametrize("task", ["school/fleeing", "turtlebot/wall_following"])
+@pytest.mark.deep
+def test_phases_quick_trains_another_robot(kurt2rt: CommandLine, task: str) -> None:
+    told = kurt2rt(*QUICK, "--task", task)
+    assert told.exit_code == 0, told.err
+    folder = Path(f"results/phases/{task.replace('/', '_')}-quick")
+    results = list(folder.glob("results/*/*.json"))
+    assert len(results) == 14
+    _, trusted, _ = zip(*map(alone, folder.glob("results/critic-[as]*/*.json")), strict=True)
+    assert all(trusted)
+
+
 @pytest.mark.deep
 def test_phases_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
     for loop in ("batch", "bus"):

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, cast
 from pydantic import TypeAdapter, ValidationError
 
 from behaviors.metrics.task_metric import MetricSettings
+from behaviors.primitives import primitive_speeds
 from behaviors.registry import JUDGES, METRICS, POLICIES, AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from behaviors.repertoire_settings import BEHAVIOURS, ActionSettings, PluginAction, RepertoireSettings
 from hal.robot_kind import RobotKind, simulations_of
@@ -17,11 +18,19 @@ from hal.settings_files import TASKS, WORLDS, find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.kinds import NoPluginError, Subject
 from kurt2rt.checks.plugins.learner_check import Finding, check_learner
-from kurt2rt.checks.plugins.promises import broken_of_action, broken_of_judge, broken_of_metric, broken_of_policy
+from kurt2rt.checks.plugins.promises import (
+    broken_of_action,
+    broken_of_judge,
+    broken_of_judge_on_robot,
+    broken_of_metric,
+    broken_of_policy,
+)
 from kurt2rt.checks.plugins.robot_promises import broken_of_robot
+from kurt2rt.core.critic.appraisal_features import AppraisalPerception
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.learner.conformance import broken_among
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
@@ -113,12 +122,19 @@ class PluginCheck:
         entries = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
         broken = {
             "policy": broken_of_policy(task.policy, robot, actions, task.behaviours),
-            "judge": [] if task.judge is None else broken_of_judge(task.judge),
+            "judge": self._of_judge_in(task),
             "course": self._metric_in(task.course, task.teaching.world, task.behaviours),
         }
         actions_of_plugins = (each for each in entries if isinstance(each, PluginAction))
         broken |= {f"action {each.name}": broken_of_action(each, robot) for each in actions_of_plugins}
         return [f"{part}: {line}" for part, lines in broken.items() for line in lines]
+
+    def _of_judge_in(self, task: TaskSettings) -> list[str]:
+        AppraisalPerception(critic_of(task.critic, self._robot), self._robot)  # refuses sensors that the robot lacks
+        if task.judge is None:
+            return []
+        on_robot = broken_of_judge_on_robot(task.judge, task.policy, self._robot, primitive_speeds(task.repertoire))
+        return broken_of_judge(task.judge) + on_robot
 
     def _of_world(self, name: str) -> list[str]:
         self._factory.require_worlds(name)

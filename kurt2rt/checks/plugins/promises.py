@@ -3,7 +3,7 @@
 import json
 import math
 import random
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TypeVar
 
 from behaviors.behaviour import Behaviour
@@ -11,7 +11,7 @@ from behaviors.judges.judge import AppraisalFeatures, JudgeSettings
 from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire_settings import PluginAction
-from hal.robot import HIGHEST_COUNTS, SensorReadings
+from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from hal.simulation import Pose, Simulation
@@ -63,6 +63,32 @@ def broken_of_judge(settings: JudgeSettings) -> list[str]:
             ("`judge` has no memory", lambda: _has_no_memory(rewards, features)),
         )
     )
+
+
+def broken_of_judge_on_robot(
+    judge: JudgeSettings, policy: PolicySettings, robot: RobotSettings, speeds: Mapping[str, WheelSpeeds]
+) -> list[str]:
+    """Return the promises that a judge breaks on a robot, each in a sentence.
+
+    Thresholds of a robot that sees farther call each place narrow.
+
+    Args:
+        judge: of the task.
+        policy: of the task.
+        robot: that is judged.
+        speeds: wheel speeds of the motor primitives by name.
+    """
+    infrared = robot.infrared
+
+    def accepts_the_open() -> bool:
+        names = {
+            policy.build(infrared).choose((infrared.floor_counts,) * len(infrared.names), behaviour)
+            for behaviour in policy.behaviours or ("",)
+        }
+        rewards = [judge.build().judge(_in_the_open(speeds[name], robot)) for name in names if name in speeds]
+        return -1 not in rewards
+
+    return broken_among((("`judge` does not punish what the policy does where nothing is in view", accepts_the_open),))
 
 
 def broken_of_metric(settings: MetricSettings, simulation: Simulation, behaviours: tuple[str, ...]) -> list[str]:
@@ -162,6 +188,15 @@ def _has_no_memory(answers: Callable[[Sequence[_InputT]], Sequence[object]], ask
     random.Random(_SEED).shuffle(order)
     first, second = answers(asked), answers([asked[place] for place in order])
     return [first[place] for place in order] == list(second)
+
+
+def _in_the_open(speeds: WheelSpeeds, robot: RobotSettings) -> AppraisalFeatures:
+    """Return the features of a drive at these wheel speeds where nothing is in view."""
+    far_m, names = robot.infrared.far_m, AppraisalFeatures._fields
+    view = AppraisalFeatures(*(far_m if each.endswith("_m") else 0.0 for each in names))
+    left_m_s, right_m_s = speeds
+    turn_rad_s = (right_m_s - left_m_s) / robot.geometry.effective_track_m
+    return view._replace(speed_m_s=(left_m_s + right_m_s) / 2, turn_rad_s=turn_rad_s, no_wall=1.0)
 
 
 def _views(sensors: int) -> list[tuple[int, ...]]:

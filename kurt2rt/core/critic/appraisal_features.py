@@ -10,6 +10,7 @@ from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.critic.turn_memory import TurnMemory
 from kurt2rt.core.numerics import round_portable
 
@@ -18,9 +19,11 @@ class AppraisalPerception:
     """Converter from SensorReadings to AppraisalFeatures, once per tick, in constant memory."""
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
-        """Prepare tables for a robot. Raises SettingsError for an unknown sensor."""
+        """Prepare tables for a robot. Raises SettingsError for an unknown sensor, or a sector without one."""
+        critic = critic_of(critic, robot)
         want, period_s = critic.perception, robot.cycle_s
         sensors, infrared = want.sensors, robot.infrared
+        assert sensors is not None  # critic_of names them
         missing = sorted(sensors.used - set(infrared.names))
         if missing:
             raise SettingsError(
@@ -166,14 +169,14 @@ def _counts_of(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[
 
 
 def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
-    """Return the distance in m from a side's last sensor forward to its first; infinite if they look different ways.
+    """Return the distance in m from a side's last sensor forward to its first; infinite if they tell no angle.
 
-    Only sensors that look the same way tell the angle of a wall by their difference. Raises SettingsError if the first
-    is not ahead of the last.
+    Only two sensors that look the same way tell the angle of a wall by their difference. Raises SettingsError if the
+    first is not ahead of the last.
     """
     of = {sensor.name: sensor for sensor in infrared.sensors}
     first, last = of[side[0]], of[side[-1]]
-    if first.heading_deg != last.heading_deg:
+    if first is last or first.heading_deg != last.heading_deg:
         return math.inf
     baseline_m = first.x_m - last.x_m
     if baseline_m <= 0:

@@ -12,6 +12,7 @@ from pydantic import Field, field_validator, model_validator
 from behaviors.judges.judge import AppraisalFeatures
 from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
+from kurt2rt.core.critic.side_settings import SideSectors, SideSensors
 from kurt2rt.core.rla.feature_set import LevelFeatures
 
 Seconds = Annotated[float, Field(gt=0, le=100_000)]
@@ -19,7 +20,6 @@ Metres = Annotated[float, Field(gt=0, le=10)]
 Share = Annotated[float, Field(ge=0, le=1)]
 Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
-Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
 *_ALWAYS, SURPRISED, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
@@ -33,24 +33,6 @@ class AppraisalSettings(Settings):
     value: Annotated[int, Field(ge=-1, le=1)]
     trace_s: Seconds
     """Time constant of the eligibility trace."""
-
-
-class SideSensors(Settings):
-    """Sensors of each side; left and right from front to back."""
-
-    left: Annotated[Sensors, Field(min_length=2)]
-    right: Annotated[Sensors, Field(min_length=2)]
-    front: Sensors
-    rear: Sensors
-    ahead_left: Sensors
-    ahead_right: Sensors
-    wall: Sensors
-    """Sensors for the feature no_wall."""
-
-    @property
-    def used(self) -> frozenset[str]:
-        """Names of all sensors."""
-        return frozenset(name for names in self.model_dump().values() for name in names)
 
 
 class CirclingSettings(Settings):
@@ -87,7 +69,10 @@ class SpunSettings(Settings):
 class AppraisalPerceptionSettings(Settings):
     """Settings of the appraisal features: sensors, distances and times."""
 
-    sensors: SideSensors
+    sensors: SideSensors | None = None
+    """Sensors of each side by name; None: by `sectors`."""
+    sectors: SideSectors | None = None
+    """Sectors of each side, for any robot; None as well: by the headings that are nearest to each side."""
     wall_m: Metres
     """Greatest distance of a wall; farther objects have no angle."""
     no_wall_s: Seconds
@@ -106,6 +91,12 @@ class AppraisalPerceptionSettings(Settings):
     """None: the feature grazing does not exist."""
     spun: SpunSettings | None = None
     """None: the feature spun does not exist."""
+
+    @model_validator(mode="after")
+    def _sides_are_named_once(self) -> Self:
+        if self.sensors is not None and self.sectors is not None:
+            raise ValueError("sensors and sectors say the same thing twice; leave one out")
+        return self
 
 
 class AppraisalWeights(Settings):

@@ -2,8 +2,10 @@
 
 import math
 
+from behaviors.policies.sectors import ahead_first
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
-from kurt2rt.core.critic.settings import CriticSettings, SideSensors, load_critic
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.critic.side_settings import SideSensors
 
 _SIDES_DEG = {"front": 0.0, "ahead_left": 45.0, "left": 90.0, "rear": 180.0, "right": -90.0, "ahead_right": -45.0}
 _HALF_WIDTH_DEG = 22.5
@@ -11,15 +13,18 @@ _FEWEST = {"left": 2, "right": 2}
 
 
 def critic_of(critic: str | CriticSettings, robot: RobotSettings) -> CriticSettings:
-    """Return the critic of a task for a robot.
+    """Return the critic of a task for a robot, with the sensors of each side by name.
 
-    The sides of a shipped critic are those of KURT2's sensors. For a robot without them they go by the headings of its
-    sensors. Raises hal.settings.SettingsError.
+    Sectors take the robot's sensors that look into them. The sides of a shipped critic are those of KURT2's sensors: a
+    robot without these takes the sensors whose headings fit best. Raises hal.settings.SettingsError.
     """
     settings = load_critic(critic)
-    if isinstance(critic, CriticSettings) or settings.perception.sensors.used <= set(robot.infrared.names):
+    wanted, infrared = settings.perception, robot.infrared
+    named = wanted.sensors
+    if named is not None and (isinstance(critic, CriticSettings) or named.used <= set(infrared.names)):
         return settings
-    perception = settings.perception.model_copy(update={"sensors": sides_of(robot.infrared)})
+    sensors = sides_of(infrared) if wanted.sectors is None else wanted.sectors.sensors_of(infrared)
+    perception = wanted.model_copy(update={"sensors": sensors, "sectors": None})
     return settings.model_copy(update={"perception": perception})
 
 
@@ -38,5 +43,4 @@ def _sensors_at(infrared: InfraredSettings, heading_deg: float, fewest: int) -> 
     nearest = sorted(infrared.sensors, key=lambda sensor: (away_deg(sensor), sensor.name))
     looking = [sensor for sensor in nearest if away_deg(sensor) <= _HALF_WIDTH_DEG]
     found = looking if len(looking) >= fewest else nearest[:fewest]
-    ahead_first = sorted(found, key=lambda sensor: (-sensor.x_m, abs(sensor.heading_deg), sensor.name))
-    return tuple(sensor.name for sensor in ahead_first)
+    return tuple(sensor.name for sensor in sorted(found, key=ahead_first))

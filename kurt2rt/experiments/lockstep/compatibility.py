@@ -28,7 +28,7 @@ def require_actions(task: TaskSettings, robot: RobotSettings) -> None:
     Raises hal.settings.SettingsError that names the task and the missing actions.
     """
     repertoire = load_task_repertoire(task, robot)
-    missing = [name for name in task.policy.chooses_among or () if name not in repertoire]
+    missing = [name for name in task.policy.required_actions if name not in repertoire]
     if missing:
         raise SettingsError(
             f"the policy {task.policy.kind} may say {', '.join(missing)}, which repertoire {task.repertoire} lacks",

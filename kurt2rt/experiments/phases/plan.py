@@ -3,8 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -76,7 +78,7 @@ def make_plan(
     """
     factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     if quick:
-        task = _shortened(task)
+        task = _shortened(task, robot)
     steps = tuple(steps_of(task))
     worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
     factory.require_worlds(*worlds)
@@ -84,7 +86,7 @@ def make_plan(
     source = source_of(factory)
     # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
-    critic = load_critic(task.critic).model_dump_json()
+    critic = critic_of(task.critic, robot).model_dump_json()
     by_name = {step.name: step for step in steps}
 
     def made_of(step: PhaseStep | None) -> Provenance:
@@ -125,7 +127,7 @@ def _depth(step: PhaseStep, by_name: dict[str, PhaseStep]) -> int:
     return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
 
 
-def _shortened(task: TaskSettings) -> TaskSettings:
+def _shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:
     share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
     times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
     worlds = task.exam.worlds[:1]
@@ -135,7 +137,7 @@ def _shortened(task: TaskSettings) -> TaskSettings:
             "teaching": task.teaching.model_copy(update=times),
             "exam": task.exam.model_copy(update=exam),
             "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
-            "critic": _hastened(load_critic(task.critic)),
+            "critic": _hastened(critic_of(task.critic, robot)),
             "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
         }
     )

@@ -6,6 +6,8 @@ import pytest
 
 from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import load_repertoire
+from hal.robot_kind import simulations_of
+from hal.robot_settings import load_robot_of
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
@@ -13,7 +15,6 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.behaviors.helpers import ROBOT, counts
 
 Shares = dict[int, float]
@@ -46,17 +47,17 @@ class BlindOnTheRight:
 
 async def judged(task_name: str, seconds: float, other: ReferencePolicy | None = None, since_s: float = 0.5) -> Shares:
     """Return the fractions of the driven time after `since_s` by reward; `other` replaces the task's policy."""
-    task = load_task(task_name)
+    task, robot = load_task(task_name), load_robot_of(None, task_name)
     assert task.judge is not None
     judge = task.judge.build()
-    simulation = Kurt2Simulation(ROBOT, task.teaching.world, 1, "exam")
+    simulation = simulations_of(robot).open(task.teaching.world, 1, "exam")
     wanted = ActiveBehaviour(task.behaviours)
-    policy = task.policy.build(ROBOT.infrared) if other is None else other
-    level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
+    policy = task.policy.build(robot.infrared) if other is None else other
+    level = PolicyLevel(policy, load_repertoire(task.repertoire, robot), 10, wanted)
     clock = LockstepClock(simulation.step)
     runtime = build_runtime(
         simulation.robot,
-        ROBOT,
+        robot,
         task,
         (),
         NoTeachingAllowed(),
@@ -74,22 +75,33 @@ async def judged(task_name: str, seconds: float, other: ReferencePolicy | None =
     return {value: heard[value] / heard.total() for value in (-1, 0, 1)}
 
 
-@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+OF_KURT2 = ("wall_following", "fleeing", "eight")
+OF_OTHERS = ("school/wall_following", "school/fleeing", "turtlebot/wall_following", "turtlebot/fleeing")
+
+
+@pytest.mark.parametrize("task", OF_KURT2)
 async def test_judges_reward_the_teachers_own_drive(task: str) -> None:
     shares = await judged(task, seconds=8)
     assert shares[1] > 0.5
     assert shares[-1] < 0.02
 
 
+@pytest.mark.parametrize("task", OF_OTHERS)
+async def test_judges_of_other_robots_reward_their_teacher(task: str) -> None:
+    shares = await judged(task, seconds=12)
+    assert shares[1] > 0.4
+    assert shares[-1] < 0.02
+
+
 @pytest.mark.deep
-@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+@pytest.mark.parametrize("task", [*OF_KURT2, *OF_OTHERS])
 async def test_judges_reward_the_teachers_drive_for_minutes(task: str) -> None:
     shares = await judged(task, seconds=240)
-    assert shares[1] > 0.55
+    assert shares[1] > (0.55 if task in OF_KURT2 else 0.4)
     assert shares[-1] < 0.01
 
 
-@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
+@pytest.mark.parametrize("task", [*OF_KURT2, *OF_OTHERS])
 @pytest.mark.parametrize("action", ["stand", "back"])
 async def test_judges_punish_standing_and_backing(task: str, action: str) -> None:
     assert (await judged(task, seconds=3, other=Always(action)))[-1] > 0.95

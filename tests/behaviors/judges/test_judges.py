@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from behaviors.judges.judge import AppraisalFeatures, Judge
+from behaviors.judges.judge import AppraisalFeatures, Judge, mirrored
 from kurt2rt.core.task_settings import load_task
 from tests.examples import examples
 
@@ -42,6 +42,20 @@ def thinks(task: str, **circumstances: float) -> int:
 
 
 # Of all
+
+
+def test_mirrored_features_are_the_same_twice_mirrored() -> None:
+    one_sided = OPEN._replace(left_m=0.1, ahead_right_m=0.2, right_angle_rad=0.3, turn_rad_s=0.4)
+    assert mirrored(one_sided) == OPEN._replace(right_m=0.1, ahead_left_m=0.2, left_angle_rad=0.3, turn_rad_s=-0.4)
+    assert mirrored(mirrored(one_sided)) == one_sided
+
+
+@given(circumstances=anywhere)
+@examples(100)
+def test_wall_on_the_right_is_judged_as_in_a_mirror(circumstances: AppraisalFeatures) -> None:
+    settings = load_task("wall_following", changes={"judge.side": "right"}).judge
+    assert settings is not None
+    assert settings.build().judge(mirrored(circumstances)) == JUDGES["wall_following"].judge(circumstances)
 
 
 @pytest.mark.parametrize("task", TASKS)

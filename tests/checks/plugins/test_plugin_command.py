@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 from behaviors.repertoire_settings import BEHAVIOURS
 from hal.plugins import loaded_plugins
@@ -170,6 +171,17 @@ def test_check_of_a_task_tries_all_of_its_parts(kurt2rt: CommandLine, parts: Pat
     first, *lines = said.out.splitlines()
     assert first.startswith(f"{path} (tasks): breaks promises, tried on the robot kurt2 ")
     assert {line.partition(":")[0].strip() for line in lines} == {"policy", "judge", "course", "action leap"}
+
+
+def test_check_refuses_a_judge_of_a_robot_that_sees_farther(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    """KURT2's judge calls 0.25 m narrow; the school robot sees 0.14 m."""
+    sections = yaml.safe_load(find_config("tasks", "school/wall_following").read_text(encoding="utf-8"))
+    del sections["judge"]
+    path = write_task(tmp_path, **sections)
+    said = kurt2rt("plugin", "check", str(path), "--robot-settings", "school")
+    assert said.exit_code == 1
+    assert "judge: `judge` does not punish what the policy does where nothing is in view" in said.out
+    assert kurt2rt("plugin", "check", "school/wall_following").exit_code == 0
 
 
 @pytest.mark.parametrize(

@@ -177,13 +177,13 @@ def test_features_are_deterministic_and_finite(ticks: list[tuple[list[int], int,
 
 
 def test_perception_unknown_sensors_are_refused() -> None:
-    sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"ahead_left": ["s15", "s99"]}
+    sensors = CRITIC.model_dump(mode="json")["perception"]["sensors"] | {"ahead_left": ["s15", "s99"]}
     with pytest.raises(SettingsError, match=r"critic basic: perception\.sensors: .* s99;"):
         AppraisalPerception(changed(sensors=sensors), ROBOT)
 
 
 def test_perception_reversed_side_is_refused() -> None:
-    sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"right": ["s6", "s5"]}
+    sensors = CRITIC.model_dump(mode="json")["perception"]["sensors"] | {"right": ["s6", "s5"]}
     with pytest.raises(SettingsError, match=r"perception\.sensors: s6 .*s5;"):
         AppraisalPerception(changed(sensors=sensors), ROBOT)
 

@@ -1,12 +1,15 @@
 """Sides of a robot by the headings of its sensors."""
 
+import json
 import math
 
 import pytest
 
+from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
+from hal.settings import SettingsError
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.critic.sides import critic_of, sides_of
 
 
@@ -16,6 +19,7 @@ def test_critic_of_kurt2_is_the_shipped_one() -> None:
 
 def test_sides_of_kurt2_look_where_the_shipped_critic_says() -> None:
     shipped, found = load_critic("basic").perception.sensors, sides_of(load_robot().infrared)
+    assert shipped is not None
     for side in ("left", "right", "front", "rear", "ahead_left", "ahead_right"):
         assert set(getattr(found, side)) == set(getattr(shipped, side)), side
 
@@ -39,3 +43,59 @@ def test_critic_of_each_robot_fits_its_sensors(robot: str) -> None:
 def test_critic_with_own_settings_is_taken_as_it_is() -> None:
     own = load_critic("basic")
     assert critic_of(own, load_robot("school")) is own
+
+
+def in_sectors(**changed: object) -> CriticSettings:
+    """Return the shipped critic with sectors, of the given ones or 45 degrees round each side, in place of sensors."""
+    headings = {"front": 0, "ahead_left": 45, "left": 90, "rear": 180, "right": -90, "ahead_right": -45, "wall": 90}
+    content = load_critic("basic").model_dump(mode="json")
+    sectors = {
+        side: {"from_deg": deg - 22, "to_deg": deg + 22 if deg + 22 <= 180 else deg - 338}
+        for side, deg in headings.items()
+    }
+    content["perception"] |= {"sensors": None, "sectors": {**sectors, **changed}}
+    return CriticSettings.model_validate_json(json.dumps(content))
+
+
+def test_sectors_take_the_sensors_that_look_into_them() -> None:
+    found = critic_of(in_sectors(), load_robot())
+    headings = sides_of(load_robot().infrared)
+    assert found.perception.sensors is not None
+    for side in ("left", "right", "front", "rear", "ahead_left", "ahead_right"):
+        assert getattr(found.perception.sensors, side) == getattr(headings, side), side
+    assert found.perception.sectors is None
+    assert critic_of(found, load_robot()) is found
+
+
+def test_sector_without_a_sensor_is_refused_by_its_side() -> None:
+    with pytest.raises(SettingsError, match=r"critic: left: .*from 68 to 112 degrees.*-40, -20, 0"):
+        critic_of(in_sectors(), load_robot("school"))
+
+
+def test_critic_without_sides_goes_by_headings() -> None:
+    content = load_critic("basic").model_dump(mode="json")
+    del content["perception"]["sensors"]
+    critic, robot = CriticSettings.model_validate_json(json.dumps(content)), load_robot("school")
+    assert critic_of(critic, robot).perception.sensors == sides_of(robot.infrared)
+
+
+def test_sensors_and_sectors_together_are_refused() -> None:
+    content = in_sectors().model_dump(mode="json")
+    content["perception"]["sensors"] = load_critic("basic").model_dump(mode="json")["perception"]["sensors"]
+    with pytest.raises(ValueError, match=r"sensors and sectors .* leave one out"):
+        CriticSettings.model_validate_json(json.dumps(content))
+
+
+@pytest.mark.parametrize("robot", ["school", "turtlebot"])
+def test_shipped_critic_of_a_robot_sees_each_side(robot: str) -> None:
+    """An object that one side alone sees is nearer there than on the opposite side."""
+    settings = load_robot(robot)
+    infrared, perception = settings.infrared, AppraisalPerception(load_critic(f"{robot}/basic"), settings)
+    for side, opposite in (("left_m", "right_m"), ("ahead_right_m", "ahead_left_m"), ("front_m", "rear_m")):
+        heading_deg = {"left_m": 50.0, "ahead_right_m": -40.0, "front_m": 0.0}[side]
+        nearest = min(infrared.sensors, key=lambda each: abs(each.heading_deg - heading_deg))
+        counts = [round(infrared.counts_at(infrared.near_m)) if each is nearest else 0 for each in infrared.sensors]
+        features = perception.perceive(SensorReadings(0.0, tuple(counts), 0.0, 0, 0, 0.0, 0, 0.0), driving=True)
+        assert getattr(features, side) == pytest.approx(infrared.near_m, abs=0.01)
+        assert getattr(features, opposite) == infrared.far_m
+        assert features.left_angle_rad == 0.0

@@ -2,6 +2,10 @@
 
 from pathlib import Path
 
+import pytest
+
+from hal.robot_kind import simulations_of
+from hal.robot_settings import load_robot
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.jobs import StepJob
@@ -90,6 +94,16 @@ def test_quick_is_every_step_for_seconds() -> None:
     quick = planned(quick=True)
     assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
     assert sum(job.robot_time_s for job in quick.jobs) < 1200
+
+
+@pytest.mark.parametrize("robot", ["school", "turtlebot"])
+def test_quick_critic_of_another_robot_has_its_sensors(robot: str) -> None:
+    settings, task = load_robot(robot), load_task(f"{robot}/wall_following")
+    parts = JobParts(factory=simulations_of(settings), robot=settings, results=Results(Path("never-made")))
+    critic = load_critic(make_plan(task, (0,), parts, quick=True, source_of=lambda _: "s").task.critic)
+    assert critic.perception.sensors is not None
+    assert critic.perception.sensors.used <= set(settings.infrared.names)
+    assert critic.need.bad_share == 0.0
 
 
 def test_quick_plan_shortens_intervals_and_thresholds() -> None:

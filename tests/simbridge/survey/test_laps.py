@@ -10,7 +10,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.simulation import Pose
+from hal.simulation import Pose, WallSide
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
 from simbridge.survey.wall_rings import WallRings
@@ -205,6 +205,27 @@ def test_wall_progress_round_an_island_counts_its_length() -> None:
     assert progress.lap_m == pytest.approx(lap_m)
     assert counted(progress, *once, *once[1:]) == pytest.approx(2 * way_m / lap_m, rel=0.03)
     assert counted(progress, *reversed(once)) == pytest.approx(-way_m / lap_m, rel=0.03)
+
+
+def test_wall_progress_with_the_wall_on_the_right_is_a_mirror() -> None:
+    world = World(room(boxes=[ISLAND]))
+    left, right = WallProgress(world), WallProgress(world, side="right")
+    corners: tuple[Point, ...] = ((0.4, 0.4), (0.4, 3.6), (3.6, 3.6), (3.6, 0.4), (0.4, 0.4))
+    assert counted(right, *reversed(corners)) == pytest.approx(1.0, abs=0.03)
+    assert counted(right, *corners) == pytest.approx(-1.0, abs=0.03)
+    mirrored: list[Point] = [(4.0 - x_m, y_m) for x_m, y_m in corners]
+    assert counted(right, *mirrored) == pytest.approx(counted(left, *corners), abs=0.005)
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_wall_progress_in_a_corridor_follows_its_own_side(side: WallSide) -> None:
+    """Both walls are in reach: up and down again is two ways along the wall of the side, whichever it is."""
+    progress = WallProgress(World(room(walls=[board((0.81, 0.0), (0.81, 3.2))])), side=side)
+    up_m, down_m = (0.3, 0.5) if side == "left" else (0.5, 0.3)
+    once = ((up_m, 1.0), (up_m, 2.8), (down_m, 2.8), (down_m, 1.0))
+    laps = driven(progress, *once)
+    assert min(steps_of(laps)) >= -0.01
+    assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.8, abs=0.8)
 
 
 def test_wall_progress_counts_no_jump_between_wall_and_island() -> None:
