@@ -25,6 +25,7 @@ from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
+from kurt2rt.core.teaching.hindrance import tell_hindrance
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.core.tick_record import TickRecord
@@ -330,6 +331,7 @@ class Tick:
         standing_at_s = max(now_s, motion.drove_at_s)
         error = choice.saving_error or self._handler.learner_failure
         standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
+        results = tell_hindrance(choice.results, standing, motion.result)
         self._timer.lap(_PUBLISH)
         return TickRecord(
             tick=tick,
@@ -338,7 +340,7 @@ class Tick:
             situation=view.situation,
             decision=decision,
             guard_result=motion.result,
-            results=tuple(choice.results),
+            results=results,
             behaviour=choice.behaviour,
             appraisal_features=view.appraisal_features,
             opinion=view.opinion,

@@ -166,6 +166,27 @@ def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> Stand
     return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None
 
 
+_GO_DOES_NOT_HELP = frozenset(
+    (
+        *LATCHED.values(),
+        *(StandReason.BLIND, StandReason.UNSAVED, StandReason.UNATTENDED, StandReason.LEARNER_FAILED),
+        *(StandReason.HALTED, StandReason.STOPPED),
+    )
+)
+_SILENT = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)
+
+
+def hindrance_after_resume(standing: Standing, guard_result: GuardResult) -> Standing | None:
+    """Return what holds the robot in the very tick of a resume; None if it may drive.
+
+    `standing`: after the tick. `guard_result`: of the tick, because silent sensors count as standing only later.
+    """
+    if standing.reason in _GO_DOES_NOT_HELP:
+        return standing
+    silent = next((_HELD[each] for each in guard_result.reasons if each in _SILENT), None)
+    return None if silent is None else Standing(silent)
+
+
 class BumperWatch:
     """Detector of an RLA that pushes toward what a bumper touches while the guard lets no wheel turn.
 

@@ -108,6 +108,12 @@ def question_text(standing: Standing) -> str:
     return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_resume else ""
 
 
+def hindrance_text(standing: Standing) -> str:
+    """Return what holds a robot that was resumed, and what to do about it, as the end of a sentence."""
+    to_do = _TEXTS[standing.reason].to_do
+    return reason_text(standing) + (f"; {to_do[0].lower()}{to_do[1:]}" if to_do else "")
+
+
 def short_text(standing: Standing) -> str:
     """Return why the robot stands, for a status line; empty while it drives or asks what to do."""
     if standing.needs_resume:
