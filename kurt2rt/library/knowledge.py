@@ -34,7 +34,9 @@ class Knowledge:
     rlas: tuple[Rla, ...]
     """Active RLAs of the basic level."""
     events: tuple[TeachingEvent, ...]
-    """Lessons, in the order of teaching."""
+    """Lessons, undos and beginnings of sessions, in the order of teaching."""
+    lessons: int
+    """Number of lessons that stand, as `kurt2rt knowledge show` counts them."""
     statistics: Statistics
     """Uses and values of the RLAs."""
 
@@ -56,19 +58,20 @@ class Knowledge:
         settings = load_robot(robot)
         events, statistics = read_knowledge(file, settings, load_task(name))
         with Journal.read_only(file) as journal:
-            rlas = fold_journal(journal, radius=math.inf).rlas
+            system = fold_journal(journal, radius=math.inf)
         return cls(
             path=file,
             task=name,
             robot=robot,
-            rlas=rlas,
+            rlas=system.rlas,
             events=tuple(events),
+            lessons=system.standing_lessons,
             statistics=statistics,
         )
 
     def __repr__(self) -> str:
-        """Return task, numbers and file."""
-        return f"Knowledge of {self.task}: {len(self.rlas)} RLAs from {len(self.events)} lessons ({self.path})"
+        """Return task, number of RLAs, number of lessons, and file."""
+        return f"Knowledge of {self.task}: {len(self.rlas)} RLAs from {self.lessons} lessons ({self.path})"
 
 
 def teach(
