@@ -11,6 +11,7 @@ from hal.robot_settings import load_robot, load_robot_of, robot_named
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
@@ -100,6 +101,7 @@ def teach(
     if file.exists():
         raise UserError("there is a file already", where=file, do="give the path of a new file")
     loaded = taught_by_named(load_task(task, changes=_duration(seconds)), teacher)
+    require_robot_of(loaded, task, settings)
     factory = open_factory(settings)
     require_course(factory, loaded, [loaded.teaching.world])
 

@@ -17,6 +17,7 @@ from kurt2rt.core.learner.learner import Learner, LearnerFactory
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -87,6 +88,7 @@ class SimulatedRobot:
         self._robot = robot_named(robot or (None if knowledge is None else knowledge.robot), self._task)
         settings = load_robot(self._robot)
         loaded = load_task(self._task)
+        require_robot_of(loaded, self._task, settings)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world
         self._settings, self._loaded, self._seed = settings, loaded, seed
