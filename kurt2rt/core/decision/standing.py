@@ -43,6 +43,8 @@ class StandReason(StrEnum):
     FOREIGN_CONTROL = "foreign control"
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
+    ROBOT_FAULT = "robot fault"
+    """The robot itself tells a fault; the health report has its text."""
     HALTED = "halted"
     """The robot program stopped the robot, because it ends or waits for a dependency."""
     LATE = "late"
@@ -83,6 +85,7 @@ LATCHED: dict[str, StandReason] = {
     GuardReason.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
     GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
     GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
+    GuardReason.ROBOT_FAULT: StandReason.ROBOT_FAULT,
 }
 """Reasons by the guard's code for an emergency stop; the program itself gave any other code."""
 

@@ -38,6 +38,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.FOREIGN_CONTROL: _Text("another program drives it, too", "Find and end that one"),
     StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
     StandReason.INFRARED_FROZEN: _Text("its infra-red readings are frozen", "Switch it off and on"),
+    StandReason.ROBOT_FAULT: _Text("it tells a fault of its own", "Mend what the fault names"),
     StandReason.HALTED: _Text("{says}"),
     StandReason.LATE: _Text("the computer is too slow", "End other work on it"),
     StandReason.CLOCK: _Text("the computer's clock ran backwards", "Wait until it is right again"),
