@@ -25,6 +25,8 @@ class GuardReason(StrEnum):
     FOREIGN_CONTROL = "another CONTROL sender"
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
+    ROBOT_FAULT = "robot fault"
+    """The robot itself tells a fault."""
     TICKS_CEASED = "ticks ceased"
     CLOSED = "closed"
     """The driver was closed."""

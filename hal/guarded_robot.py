@@ -108,7 +108,7 @@ class GuardedRobot(ABC):
         self._link_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._foreign_control = self._receive_failures = 0
-        self._receive_trouble = self._alarm = ""
+        self._receive_trouble = self._alarm = self._fault = ""
 
     @abstractmethod
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
@@ -158,11 +158,15 @@ class GuardedRobot(ABC):
         self._guard.emergency_stop(reason)
 
     def release(self) -> None:
-        """End a latched stop; the robot still stands until it is driven. While the link is lost it stays stopped."""
+        """End a latched stop; the robot still stands until it is driven.
+
+        While the link is lost, or the robot tells a fault, it stays stopped.
+        """
         if self._link_lost:
             return  # readings from just before would do for some ticks
         self._alarm = ""
         self._guard.release()
+        self._stop_for_fault()
 
     def close(self) -> None:
         """Brake, end the watchdog and close the link; may be called twice."""
@@ -199,6 +203,7 @@ class GuardedRobot(ABC):
             self._stop(GuardReason.BUS_OFF)
         if arrivals.foreign_control:
             self._stop(GuardReason.FOREIGN_CONTROL, f"{self._link_name}: {self.foreign_alarm}")
+        self._stop_for_fault()
         disobedience = self._wheel_watch.check(
             readings.encoder_left_ticks,
             readings.encoder_right_ticks,
@@ -214,6 +219,10 @@ class GuardedRobot(ABC):
         freeze = self._infrared_watch.check_frozen(readings.time_s, driving=self._command != STANDSTILL and not paused)
         if freeze:
             self._stop(GuardReason.INFRARED_FROZEN, freeze)
+
+    def _stop_for_fault(self) -> None:
+        if self._fault and self._guard.latched is None:
+            self._stop(GuardReason.ROBOT_FAULT, f"{self._link_name}: the robot tells a fault: {self._fault}; mend it")
 
     def _stop(self, reason: GuardReason, alarm: str = "") -> None:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it

@@ -9,7 +9,7 @@ from hal.bus import BusError
 from hal.guarded_robot import Arrivals, GuardedRobot
 from hal.infrared_watch import InfraredWatch
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
-from hal.robot_link import BumperReport, RangeReport, Report, RobotLink, WheelReport
+from hal.robot_link import AlarmReport, BumperReport, RangeReport, Report, RobotLink, WheelReport
 from hal.robot_settings import RobotSettings
 from hal.wheel_port import WheelCommand
 
@@ -17,6 +17,8 @@ _BOARD = "robot"
 _BRAKE: Final = object()
 _LATE_S = 0.01
 """A report from later than this after the present is junk: the clocks do not agree."""
+_LONGEST_FAULT = 200
+"""Characters of a fault that are told, in one line."""
 
 
 class LinkPort:
@@ -100,6 +102,8 @@ class LinkedRobot(GuardedRobot):
             case BumperReport(pressed=pressed):
                 self._bumpers = pressed & self._bumper_mask
                 self._bumpers_at_s = at_s
+            case AlarmReport(text=text):
+                self._fault = " ".join(text.split())[:_LONGEST_FAULT] or ("no text" if text else "")
             case _:
                 arrivals.foreign_control += 1
         return True

@@ -44,7 +44,15 @@ class ForeignCommandReport(NamedTuple):
     at_s: float
 
 
-Report = RangeReport | WheelReport | BumperReport | ForeignCommandReport
+class AlarmReport(NamedTuple):
+    """Fault that the robot tells of itself, such as a hot motor. It lasts until a report without a text."""
+
+    at_s: float
+    text: str
+    """Sentence for the user; empty: there is no fault any more."""
+
+
+Report = RangeReport | WheelReport | BumperReport | ForeignCommandReport | AlarmReport
 
 
 class RobotLink(Protocol):

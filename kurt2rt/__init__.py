@@ -10,6 +10,7 @@ These names are promised; all other modules may change without notice:
     Examination     result of `examine`, with a table and a plot
     replay          decide a recorded run again, and compare bit for bit
     ReplayedRun     result of `replay`, with decisions and a plot
+    learner_setting setting that a learner of a task is made with
     Error           base of the errors that you can mend
 
 A first plot:
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
     from hal.errors import UserError as Error
     from kurt2rt.library.examination import Examination, examine
     from kurt2rt.library.knowledge import Knowledge, teach
+    from kurt2rt.library.learners import learner_setting
     from kurt2rt.library.replay import ReplayedRun, replay
     from kurt2rt.library.simulated_robot import SimulatedRobot
     from kurt2rt.teacher.client.teacher import Teacher
@@ -64,6 +66,7 @@ __all__ = [
     "Teacher",
     "__version__",
     "examine",
+    "learner_setting",
     "replay",
     "teach",
 ]
@@ -76,6 +79,7 @@ _PLACES = {
     "SimulatedRobot": ("kurt2rt.library.simulated_robot", "SimulatedRobot"),
     "Teacher": ("kurt2rt.teacher.client.teacher", "Teacher"),
     "examine": ("kurt2rt.library.examination", "examine"),
+    "learner_setting": ("kurt2rt.library.learners", "learner_setting"),
     "replay": ("kurt2rt.library.replay", "replay"),
     "teach": ("kurt2rt.library.knowledge", "teach"),
 }

@@ -62,7 +62,7 @@ LAYERS_OF_CORE = (
     {"reinforcement"},
     {"task_settings", "phase_settings", "teacher_settings"},
     {"teaching"},
-    {"layer_stack", "tick_record"},
+    {"layer_stack", "task_robot", "tick_record"},
     {"tick", "tick_parts", "tick_steps", "progress_meter"},
 )
 """Folders and files of core, low to high: each imports only lower ones and itself."""

@@ -16,6 +16,7 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.broken.plan import BrokenDrives, chosen_sensors, make_plan, read_study
 from kurt2rt.experiments.broken.tables import all_tables
@@ -92,6 +93,7 @@ def broken(options: _Options) -> None:
     """
     robot = load_robot_of(options.robot_settings, options.task)
     task, results = load_task(options.task), Results(options.out)
+    require_robot_of(task, options.task, robot)
     worlds = tuple(options.world or task.exam.worlds)
     sensors = chosen_sensors(robot.infrared.names, options.sensor)
     drives = BrokenDrives(

@@ -24,6 +24,7 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
@@ -71,6 +72,7 @@ def demo(options: _Options) -> None:
 
     settings = load_robot_of(options.robot_settings, options.task)
     task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
+    require_robot_of(task, options.task, settings)
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)

@@ -14,6 +14,7 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
 from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
 from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
@@ -71,6 +72,7 @@ def doubt(options: _Options) -> None:
 
     settings = load_robot_of(options.robot_settings, options.task)
     task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
+    require_robot_of(task, options.task, settings)
     factory = simulations_of(settings)
     worlds = options.world or list(task.exam.worlds)
     seeds = parse_seeds(options.seeds)

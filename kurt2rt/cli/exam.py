@@ -15,6 +15,7 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
@@ -71,6 +72,7 @@ def exam(options: _Options) -> None:
     settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)
     taught = load_task(task_name, plain=options.plain, changes=other)
+    require_robot_of(taught, task_name, settings)
     if options.task is not None:
         task_of_file(options.knowledge, options.task)
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:

@@ -28,6 +28,7 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
@@ -118,6 +119,8 @@ def rivals(options: _Options) -> None:
     names = dict.fromkeys(options.task or ("wall_following",))
     robot = load_robot_of(options.robot_settings, next(iter(names)))
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
+    for name, task in zip(names, tasks, strict=True):
+        require_robot_of(task, name, robot)
     chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or ROWS[options.league])]
     if options.check:
         _check(chosen, tasks[0], robot, options)

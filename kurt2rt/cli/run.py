@@ -258,6 +258,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from hal.robot_settings import load_robot
     from kurt2rt.cli.scripted_file import require_agreement
     from kurt2rt.cli.terminal_screen import TerminalScreen
+    from kurt2rt.core.task_robot import require_robot_of
     from kurt2rt.core.task_settings import load_task
     from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.settings import load_service
@@ -271,7 +272,8 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     if options.auto and options.knowledge is not None:
         require_agreement(options.knowledge)
     settings = _changed(options, task)
-    taught = load_task(settings.task)
+    taught, robot = load_task(settings.task), load_robot(settings.robot)
+    require_robot_of(taught, settings.task, robot)
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
@@ -285,7 +287,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     )
     if run_options.unrecorded:
         screen.print_line(run_options.unrecorded, "yellow")
-    return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
+    return RobotProgram(run_options, lambda: _changed(options, task), robot, taught, screen)
 
 
 def _run_options(

@@ -14,6 +14,7 @@ from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
 from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.table import as_rich
@@ -57,6 +58,7 @@ def surprise(options: _Options) -> None:
     """
     settings = load_robot_of(options.robot_settings, options.task)
     what = load_task(options.task)
+    require_robot_of(what, options.task, settings)
     stage = simulations_of(settings)
     work = [
         SurpriseJob(

@@ -28,6 +28,7 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
@@ -129,6 +130,7 @@ def transfer(options: _Options) -> None:
 
     robot = load_robot_of(options.robot_settings, options.task)
     task = taught_by(load_task(options.task, changes=changes_of(options.changes)), load_teacher(options.teacher))
+    require_robot_of(task, options.task, robot)
     results = Results(options.out)
     plan = make_plan(
         task,

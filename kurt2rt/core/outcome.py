@@ -27,6 +27,7 @@ class ResultCode(StrEnum):
     HOLD_RELEASED = "hold released"
     """The robot goes on by its RLAs; `lesson` names the lessons of the hold, if it gave any."""
     RESUMED = "resumed"
+    """Its field `stands`, if any, names what still holds the robot: a StandReason, with `says` as its detail."""
     PHASE_SET = "phase set"
     LESSON_SPEED_SET = "lesson speed set"
     SESSION_BEGUN = "session begun"

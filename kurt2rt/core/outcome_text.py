@@ -6,6 +6,8 @@ from string import Formatter
 
 from hal.world_refusal import WorldRefusal
 from kurt2rt.core.decision.goal_text import goal_text
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.standing_text import hindrance_text
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.rla import BASIC, rla_title
@@ -209,6 +211,9 @@ def fields_of(code: Code) -> frozenset[str]:
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher, in the words of a surface. Raises KeyError for a missing field."""
+    hindrance = _hindrance_text(outcome)
+    if hindrance:
+        return hindrance
     text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
     return text + _no_lesson_text(outcome) + _late_press_text(outcome.fields) + _contradiction_text(outcome.fields)
 
@@ -221,6 +226,16 @@ def neighbours_text(actions: Sequence[str], nearest: int) -> str:
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
     return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
+
+
+def _hindrance_text(outcome: Outcome) -> str:
+    """Return the sentence of a resume after which the robot still stands; empty for other outcomes."""
+    stands, says = outcome.fields.get("stands"), str(outcome.fields.get("says", ""))
+    if outcome.code is not ResultCode.RESUMED or not isinstance(stands, str):
+        return ""
+    known = stands in StandReason.__members__.values()  # a newer robot may have other reasons
+    standing = Standing(StandReason(stands), says=says) if known else Standing(StandReason.HALTED, says=stands)
+    return f"the robot still stands: {hindrance_text(standing)}"
 
 
 def _no_lesson_text(outcome: Outcome) -> str:

@@ -14,6 +14,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import AUTONOMOUS
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
+from kurt2rt.core.teaching.hindrance import tell_hindrance
 from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
@@ -247,6 +248,7 @@ class Tick:
         standing_at_s = max(now_s, motion.drove_at_s)
         error = choice.saving_error or self._handler.learner_failure
         standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
+        results = tell_hindrance(choice.results, standing, motion.result)
         self._timer.lap(_PUBLISH)
         return TickRecord(
             tick=tick,
@@ -255,7 +257,7 @@ class Tick:
             situation=view.situation,
             decision=decision,
             guard_result=motion.result,
-            results=tuple(choice.results),
+            results=results,
             behaviour=choice.behaviour,
             appraisal_features=view.appraisal_features,
             opinion=view.opinion,

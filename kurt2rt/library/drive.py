@@ -24,7 +24,7 @@ class Drive(Episode):
     ) -> None:
         """Build the runtime in lockstep with the simulation. Raises hal.settings.SettingsError."""
         self._clock = LockstepClock(simulation.step)
-        options = RuntimeOptions(statistics=training.statistics, checkpoint=training.saved)
+        options = RuntimeOptions(statistics=training.statistics, checkpoint=training.saved, learners=training.learners)
         runtime = build_runtime(simulation.robot, settings, task, training.events, training.store, self._clock, options)
         super().__init__(
             simulation,

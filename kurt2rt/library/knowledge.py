@@ -11,6 +11,7 @@ from hal.robot_settings import load_robot, load_robot_of, robot_named
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
@@ -34,7 +35,9 @@ class Knowledge:
     rlas: tuple[Rla, ...]
     """Active RLAs of the basic level."""
     events: tuple[TeachingEvent, ...]
-    """Lessons, in the order of teaching."""
+    """Lessons, undos and beginnings of sessions, in the order of teaching."""
+    lessons: int
+    """Number of lessons that stand, as `kurt2rt knowledge show` counts them."""
     statistics: Statistics
     """Uses and values of the RLAs."""
 
@@ -56,19 +59,20 @@ class Knowledge:
         settings = load_robot(robot)
         events, statistics = read_knowledge(file, settings, load_task(name))
         with Journal.read_only(file) as journal:
-            rlas = fold_journal(journal, radius=math.inf).rlas
+            system = fold_journal(journal, radius=math.inf)
         return cls(
             path=file,
             task=name,
             robot=robot,
-            rlas=rlas,
+            rlas=system.rlas,
             events=tuple(events),
+            lessons=system.standing_lessons,
             statistics=statistics,
         )
 
     def __repr__(self) -> str:
-        """Return task, numbers and file."""
-        return f"Knowledge of {self.task}: {len(self.rlas)} RLAs from {len(self.events)} lessons ({self.path})"
+        """Return task, number of RLAs, number of lessons, and file."""
+        return f"Knowledge of {self.task}: {len(self.rlas)} RLAs from {self.lessons} lessons ({self.path})"
 
 
 def teach(
@@ -97,6 +101,7 @@ def teach(
     if file.exists():
         raise UserError("there is a file already", where=file, do="give the path of a new file")
     loaded = taught_by_named(load_task(task, changes=_duration(seconds)), teacher)
+    require_robot_of(loaded, task, settings)
     factory = open_factory(settings)
     require_course(factory, loaded, [loaded.teaching.world])
 

@@ -3,6 +3,7 @@
 import math
 import tempfile
 from contextlib import ExitStack, closing
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from types import TracebackType
@@ -12,9 +13,11 @@ from hal.errors import UserError
 from hal.robot_settings import load_robot, robot_named
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.learner.learner import Learner, LearnerFactory
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -25,6 +28,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.drive import Drive
 from kurt2rt.library.knowledge import Knowledge
+from kurt2rt.library.learners import new_team, require_alone
 from kurt2rt.library.senses import Senses
 from kurt2rt.library.simulation import open_factory
 from kurt2rt.runs.explain.collect import collect_facts
@@ -58,6 +62,7 @@ class SimulatedRobot:
         robot: str | None = None,
         bus: str | None = None,
         record: str | PathLike[str] | None = None,
+        learner: LearnerFactory | None = None,
     ) -> None:
         """Put the robot into its world and take its first step, so that it has readings.
 
@@ -71,18 +76,23 @@ class SimulatedRobot:
             bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
                 shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
             record: folder of recordings, in which this run gets a folder, for `kurt2rt.replay`; None: no recording.
+            learner: class or function that makes a learner of a setting, which decides in place of the RLAs; not with
+                `knowledge` or `record`. None: RLAs decide.
 
         Raises:
             UserError: as kurt2rt.Error, a name is unknown, settings do not fit, there is a file at `path`, `bus` is
                 missing, real or taken, or nothing can be written to `record`.
         """
+        require_alone(learner, knowledge=knowledge, record=record)
         self._task = task or ("wall_following" if knowledge is None else knowledge.task)
         self._robot = robot_named(robot or (None if knowledge is None else knowledge.robot), self._task)
         settings = load_robot(self._robot)
         loaded = load_task(self._task)
+        require_robot_of(loaded, self._task, settings)
         _require_one_behaviour(loaded)
         self._world = world or loaded.teaching.world
         self._settings, self._loaded, self._seed = settings, loaded, seed
+        self._make = learner
         self._factory = open_factory(settings, bus)
         self._factory.require_worlds(self._world)
         require_course(self._factory, loaded, [self._world])
@@ -99,7 +109,9 @@ class SimulatedRobot:
             self._keeping = opened.enter_context(lessons_kept(self._file, settings, loaded, self._on_saved))
             simulation = self._factory.open(self._world, seed, _PURPOSE)
             opened.callback(simulation.close)
-            self._drive = Drive(simulation, settings, loaded, self._keeping.training, seed)
+            self._team = new_team(learner, loaded, settings, seed)
+            training = replace(self._keeping.training, learners=self._team)
+            self._drive = Drive(simulation, settings, loaded, training, seed)
             if record is not None:
                 self._recorder = self._start_recording(Path(record), simulation)
                 opened.callback(self._end_recording, self._recorder)
@@ -161,7 +173,8 @@ class SimulatedRobot:
         number = self._tick_at(at, tick)
         opened = self._keeping.opened
         counter = StatisticsCounter(dict(opened.saved.uses), dict(opened.saved.transitions))
-        training = TrainingStore(InMemoryEventStore(), opened.events, counter, opened.saved)
+        team = new_team(self._make, self._loaded, self._settings, self._seed)
+        training = TrainingStore(InMemoryEventStore(), opened.events, counter, opened.saved, team)
         with closing(open_factory(self._settings).open(self._world, self._seed, _PURPOSE)) as simulation:
             again = Drive(simulation, self._settings, self._loaded, training, self._seed)
             if not again.repeat(self._drive, number):
@@ -214,6 +227,11 @@ class SimulatedRobot:
     def rlas(self) -> tuple[Rla, ...]:
         """Active RLAs of the basic level."""
         return self._drive.runtime.level.system.rlas
+
+    @property
+    def learner(self) -> Learner | None:
+        """Learner that decides in place of the RLAs; None if they decide."""
+        return None if self._team is None else self._team.learner(self._drive.runtime.active_behaviour.behaviour)
 
     @property
     def recording(self) -> Path | None:

@@ -286,3 +286,10 @@ def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tm
 def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = copied(lessons, tmp_path / "taught-\udcff.knowledge")
     assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["demo", "lesson", "run", "rivals", "transfer"])
+def test_task_of_another_robot_is_refused_with_that_robot(kurt2rt: CommandLine, command: str) -> None:
+    refused = kurt2rt.refused(command, "--task", "school/fleeing", "--robot-settings", "kurt2")
+    assert "task school/fleeing: is for the robot school (got the robot kurt2" in refused
+    assert refused.endswith("; give --robot-settings school")

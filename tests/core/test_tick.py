@@ -51,6 +51,7 @@ class CorridorRobot:
         self.driven: list[WheelSpeeds] = []
         self.closed = False
         self.touches_in_front = False
+        self.latches_for = GuardReason.OTHER
 
     def sense(self, now_s: float) -> SensorReadings:
         return SensorReadings(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
@@ -58,7 +59,7 @@ class CorridorRobot:
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         self.command_ages_s.append(now_s - decided_at_s)
         self.latched = self.latched or self.relatches
-        applied, reasons = (STANDSTILL, (GuardReason.OTHER,)) if self.latched else (wanted, ())
+        applied, reasons = (STANDSTILL, (self.latches_for,)) if self.latched else (wanted, ())
         if self.touches_in_front and max(applied) > 0.0:
             applied, reasons = WheelSpeeds(min(applied[0], 0.0), min(applied[1], 0.0)), (GuardReason.FRONT_BUMPER,)
         self.driven.append(applied)

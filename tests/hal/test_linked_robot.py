@@ -10,7 +10,7 @@ from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.linked_robot import LinkedRobot
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from hal.robot_link import BumperReport, ForeignCommandReport, RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, BumperReport, ForeignCommandReport, RangeReport, Report, WheelReport
 from hal.robot_settings import RobotSettings
 from tests.hal.helpers import ROBOT, SENSORS, TICK_S
 
@@ -226,6 +226,33 @@ def test_foreign_command_stops_the_robot(scene: Scene) -> None:
     assert scene.tick().reasons == (GuardReason.FOREIGN_CONTROL,)
     assert scene.robot.health.alarm == "link of a test: another program commands the wheels; find and end it"
     assert scene.robot.health.foreign_control == 1
+
+
+def test_fault_of_the_robot_stops_it_until_over_and_released(scene: Scene) -> None:
+    scene.drive()
+    scene.link.reports = [AlarmReport(scene.now_s, "motor\nhot " + 300 * "!")]
+    assert scene.tick() == GuardResult(STANDSTILL, (GuardReason.ROBOT_FAULT,), latched=True)
+    alarm = scene.robot.health.alarm
+    assert alarm == f"link of a test: the robot tells a fault: motor hot {190 * '!'}; mend it"
+    assert scene.link.sent[-1] == "brake"
+    scene.robot.release()
+    assert scene.tick().reasons == (GuardReason.ROBOT_FAULT,)
+    assert scene.robot.health.alarm == alarm
+    scene.link.reports = [AlarmReport(scene.now_s, "")]
+    assert scene.tick().latched
+    scene.robot.release()
+    assert scene.drive().reasons == ()
+    assert scene.robot.health.alarm == ""
+
+
+def test_fault_after_another_stop_keeps_the_robot_stopped(scene: Scene) -> None:
+    scene.drive()
+    scene.robot.emergency_stop(GuardReason.OTHER)
+    scene.link.reports = [AlarmReport(scene.now_s, " ")]
+    assert scene.tick().reasons == (GuardReason.OTHER,)
+    scene.robot.release()
+    assert scene.tick().reasons == (GuardReason.ROBOT_FAULT,)
+    assert "tells a fault: no text; mend it" in scene.robot.health.alarm
 
 
 def test_wheels_that_do_not_obey_stop_the_robot(scene: Scene) -> None:

@@ -3,11 +3,17 @@
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 import kurt2rt
+from kurt2rt.core.rla.events import LessonUndone, SessionBegun, TeachingEvent
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.knowledge import knowledge_data, render_knowledge
 
 
 @pytest.fixture
@@ -84,7 +90,7 @@ def test_simulated_robot_goes_on_from_saved_knowledge(robot: kurt2rt.SimulatedRo
     with kurt2rt.SimulatedRobot(knowledge=first, world="a", seed=1) as again:
         again.teach("stand")
         second = again.save(tmp_path / "second.knowledge")
-    assert len(second.events) == len(first.events) + 1
+    assert (first.lessons, second.lessons) == (1, 2)
     assert first.path.read_bytes() == before
 
 
@@ -110,3 +116,26 @@ async def test_examine_works_where_an_event_loop_runs(robot: kurt2rt.SimulatedRo
     assert [drive.learned.seed for drive in result.drives] == [1, 2]
     assert repr(result).endswith(f"{result.passed} of {result.judged} judged drives passed")
     assert result._repr_html_().count("<tr>") == 3
+
+
+def test_knowledge_counts_lessons_as_the_command_does(
+    robot: kurt2rt.SimulatedRobot, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    robot.teach("forward")
+    robot.teach("stand")
+    saved = robot.save(tmp_path / "mine.knowledge")
+    with Journal.read_only(saved.path) as journal:
+        binding = journal.binding
+    with Journal.open(saved.path, binding) as journal:
+        newest = journal.events()[-1].origin.command_id
+        said: list[TeachingEvent] = [LessonUndone(newest, replace(journal.events()[-1].origin, command_id="undo"))]
+        said += [SessionBegun("s", replace(said[0].origin, command_id="session"))]
+        journal.append([JournalEntry(each, "2026-11-28T00:00:00Z") for each in said])
+    known = kurt2rt.Knowledge.load(saved.path)
+    assert (len(known.events), known.lessons) == (4, 1)
+    assert "1 RLAs from 1 lessons" in repr(known)
+    with Journal.read_only(saved.path) as journal:
+        shown = render_knowledge(journal)
+        assert knowledge_data(journal)["lessons"] == 1
+    Console(width=200).print(shown)
+    assert "1 RLAs from 1 lessons (" in capsys.readouterr().out

@@ -83,10 +83,10 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
 
 
 def progress_in(progress: Progress) -> str:
-    """Return a text: percentage driven by RLAs and number of questions, over the last minute."""
+    """Return a text: percentage driven by RLAs, and how often it stood and asked what to do, over the last minute."""
     if progress.driven_percent is None:
         return "nothing was driven yet"
-    asks = "1 question" if progress.asks == 1 else f"{progress.asks} questions"
+    asks = "asked what to do once" if progress.asks == 1 else f"asked what to do {progress.asks} times"
     over = "the last minute" if progress.seconds >= WINDOW_S else f"the first {progress.seconds} s"
     return f"{progress.driven_percent} % driven by itself, {asks} in {over}"
 

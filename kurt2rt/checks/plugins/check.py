@@ -29,7 +29,7 @@ from kurt2rt.checks.plugins.robot_promises import broken_of_robot
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.learner.conformance import broken_among
-from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
@@ -115,9 +115,9 @@ class PluginCheck:
     def _of_task(self, name: str) -> list[str]:
         robot, task = self._robot, load_task(name)
         worlds = (task.teaching.world, *task.exam.worlds)
+        require_robot_of(task, name, robot)
         self._factory.require_worlds(*worlds)
         require_course(self._factory, task, worlds)
-        load_situation(task.situation, robot.infrared.names)
         actions = load_task_repertoire(task, robot)
         entries = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
         broken = {

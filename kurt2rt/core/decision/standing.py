@@ -43,6 +43,8 @@ class StandReason(StrEnum):
     FOREIGN_CONTROL = "foreign control"
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
+    ROBOT_FAULT = "robot fault"
+    """The robot itself tells a fault; the health report has its text."""
     HALTED = "halted"
     """The robot program stopped the robot, because it ends or waits for a dependency."""
     LATE = "late"
@@ -83,6 +85,7 @@ LATCHED: dict[str, StandReason] = {
     GuardReason.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
     GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
     GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
+    GuardReason.ROBOT_FAULT: StandReason.ROBOT_FAULT,
 }
 """Reasons by the guard's code for an emergency stop; the program itself gave any other code."""
 
@@ -164,6 +167,27 @@ def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> Stand
     if front and rear:
         return StandReason.BOTH_BUMPERS
     return StandReason.FRONT_BUMPER if front else StandReason.REAR_BUMPER if rear else None
+
+
+_GO_DOES_NOT_HELP = frozenset(
+    (
+        *LATCHED.values(),
+        *(StandReason.BLIND, StandReason.UNSAVED, StandReason.UNATTENDED, StandReason.LEARNER_FAILED),
+        *(StandReason.HALTED, StandReason.STOPPED),
+    )
+)
+_SILENT = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)
+
+
+def hindrance_after_resume(standing: Standing, guard_result: GuardResult) -> Standing | None:
+    """Return what holds the robot in the very tick of a resume; None if it may drive.
+
+    `standing`: after the tick. `guard_result`: of the tick, because silent sensors count as standing only later.
+    """
+    if standing.reason in _GO_DOES_NOT_HELP:
+        return standing
+    silent = next((_HELD[each] for each in guard_result.reasons if each in _SILENT), None)
+    return None if silent is None else Standing(silent)
 
 
 class BumperWatch:

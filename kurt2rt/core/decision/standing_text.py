@@ -38,6 +38,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.FOREIGN_CONTROL: _Text("another program drives it, too", "Find and end that one"),
     StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
     StandReason.INFRARED_FROZEN: _Text("its infra-red readings are frozen", "Switch it off and on"),
+    StandReason.ROBOT_FAULT: _Text("it tells a fault of its own", "Mend what the fault names"),
     StandReason.HALTED: _Text("{says}"),
     StandReason.LATE: _Text("the computer is too slow", "End other work on it"),
     StandReason.CLOCK: _Text("the computer's clock ran backwards", "Wait until it is right again"),
@@ -106,6 +107,12 @@ def reason_text(standing: Standing) -> str:
 def question_text(standing: Standing) -> str:
     """Return the question of a robot at a bumper; empty if it asks nothing or something else."""
     return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_resume else ""
+
+
+def hindrance_text(standing: Standing) -> str:
+    """Return what holds a robot that was resumed, and what to do about it, as the end of a sentence."""
+    to_do = _TEXTS[standing.reason].to_do
+    return reason_text(standing) + (f"; {to_do[0].lower()}{to_do[1:]}" if to_do else "")
 
 
 def short_text(standing: Standing) -> str:

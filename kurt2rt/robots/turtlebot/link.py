@@ -6,7 +6,7 @@ import numpy as np
 
 from hal.bus import BusError
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import ForeignCommandReport, RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, ForeignCommandReport, RangeReport, Report, WheelReport
 from kurt2rt.robots.turtlebot.sectors import Sectors
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
 from kurt2rt.ros.diagnostics import DiagnosticErrors
@@ -19,7 +19,7 @@ from kurt2rt.ros.twist import Twists
 
 
 class TurtlebotLink:
-    """Link over topics; lost while nothing is connected, or while /diagnostics tells an error of the base."""
+    """Link over topics; lost while nothing is connected."""
 
     remedy = "check the network, the bridge or router, and the robot's bringup"
     unconfirmed = 0
@@ -39,6 +39,7 @@ class TurtlebotLink:
         self._wheels = TurnedWheels(settings.geometry, settings.motors.maximum_speed_m_s)
         self._errors = DiagnosticErrors(topics.stops_on_errors_of)
         self._last_ranges = b""
+        self._told_error = ""
 
     @property
     def junk(self) -> int:
@@ -48,7 +49,7 @@ class TurtlebotLink:
     def receive(self, now_s: float) -> Sequence[Report]:
         """Return all reports that arrived; `now_s` on the runtime's clock.
 
-        Raises hal.bus.BusError while nothing is connected or the base tells an error.
+        Raises hal.bus.BusError while nothing is connected.
         """
         reports: list[Report] = []
         for each in self._scans.take(lambda scan, age_s: self._ranges(scan, now_s - age_s)):
@@ -58,6 +59,10 @@ class TurtlebotLink:
         for array in self._diagnostics.take(lambda array, _: array):
             self._errors.update(array)
         self._require_link()
+        # After the check: a report that is lost with the link would not be told again.
+        if self._errors.text != self._told_error:
+            self._told_error = self._errors.text
+            reports.append(AlarmReport(now_s, self._told_error))
         return reports
 
     def applied(self, speeds: WheelSpeeds) -> WheelSpeeds:
@@ -70,7 +75,7 @@ class TurtlebotLink:
         self._publish(speeds)
 
     def brake(self) -> None:
-        """Send a twist of 0, also while the base tells an error. Raises hal.bus.BusError."""
+        """Send a twist of 0, also while nothing is connected. Raises hal.bus.BusError."""
         self._publish(STANDSTILL)
 
     def forget_unconfirmed(self) -> None:
@@ -98,9 +103,4 @@ class TurtlebotLink:
 
     def _require_link(self) -> None:
         if not self._port.connected:
-            raise self._lost("no robot is connected")
-        if self._errors.text:
-            raise self._lost(f"the robot tells an error: {self._errors.text}")
-
-    def _lost(self, what: str) -> BusError:
-        return BusError(what, where=self.name, do=self.remedy)
+            raise BusError("no robot is connected", where=self.name, do=self.remedy)

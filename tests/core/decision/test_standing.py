@@ -122,7 +122,12 @@ def test_each_latch_of_the_guard_has_a_text_with_go(word: GuardReason) -> None:
 
 def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
     alarms = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.BUS_OFF, GuardReason.FOREIGN_CONTROL}
-    assert alarms | {GuardReason.WHEELS_DISOBEY, GuardReason.INFRARED_FROZEN, GuardReason.TICKS_CEASED} == set(LATCHED)
+    assert alarms | {
+        GuardReason.WHEELS_DISOBEY,
+        GuardReason.INFRARED_FROZEN,
+        GuardReason.ROBOT_FAULT,
+        GuardReason.TICKS_CEASED,
+    } == set(LATCHED)
 
 
 def test_a_stop_of_the_program_is_told_in_its_own_words() -> None:

@@ -94,7 +94,7 @@ def test_render_knowledge_counts_rewards_undos_and_sessions(path: Path) -> None:
         journal.append([JournalEntry(event, STAMP) for event in events])
         lines = printed(render_knowledge(journal))
 
-    assert numbers(lines[1])[:6] == [3, 10, 0, 1, 5, 3]
+    assert numbers(lines[1])[:6] == [3, 7, 0, 1, 5, 3]
     assert re.search(r"Ann, Joachim\b.* Hertha,", lines[1])
     assert numbers(lines[1])[-3:] == [2, 1, 12]
     assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]

@@ -217,14 +217,30 @@ def test_drive_error_of_the_base_stops_and_names_it() -> None:
     fine = DiagnosticArray(Header(Time(1, 0), ""), [DiagnosticStatus(0, "turtlebot3: motors", "", "", [])])
     rig.send("diagnostics", errors)
     result = rig.tick()
-    assert (result.latched, result.wheel_speeds, result.reasons) == (True, STANDSTILL, (GuardReason.BUS_LOST,))
-    assert "the robot tells an error: turtlebot3: motors: too hot" in rig.robot.health.bus_trouble
+    assert (result.latched, result.wheel_speeds, result.reasons) == (True, STANDSTILL, (GuardReason.ROBOT_FAULT,))
+    told = "the robot tells a fault: turtlebot3: motors: too hot; mend it"
+    assert told in rig.robot.health.alarm
+    assert (rig.robot.health.receive_failures, rig.robot.health.send_failures) == (0, 0)
     rig.robot.release()
-    assert rig.run(1.5).latched
+    assert rig.run(1.5).reasons == (GuardReason.ROBOT_FAULT,)
     rig.send("diagnostics", fine)
-    rig.run(1.5)
+    assert rig.run(0.1).latched
+    assert told in rig.robot.health.alarm  # until a person has seen it
     rig.robot.release()
     assert rig.run(1.0).wheel_speeds == FORWARD
+
+
+def test_drive_error_at_a_loss_of_connection_is_not_forgotten() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    status = DiagnosticStatus(2, "turtlebot3: motors", "too hot", "", [])
+    rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [status]))
+    rig.link.topics.connected = False
+    assert rig.tick().reasons == (GuardReason.BUS_LOST,)
+    rig.link.topics.connected = True
+    rig.run(1.5)
+    rig.robot.release()
+    assert rig.run(0.1).reasons == (GuardReason.ROBOT_FAULT,)
 
 
 def test_drive_error_of_another_node_is_none_of_the_base() -> None:

@@ -21,5 +21,7 @@ export function progress({ progress, rlas }, measure = "") {
 export function showProgress(state, measure) {
   const line = document.getElementById("progress");
   setText(line, progress(state, measure));
-  line.title = "In the last minute: time driven by its own rules, and number of questions; progress in the task since the start of the run";
+  line.title =
+    "In the last minute: time driven by its own rules, and how often it asked: it stood, because nothing that it was taught is near enough, until " +
+    "it was told what to do. Progress in the task is since the start of the run";
 }

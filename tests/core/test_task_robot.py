@@ -1,0 +1,44 @@
+"""A task that is driven by another robot's sensors is refused with the robot that it is for."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.robot_settings import load_robot
+from hal.settings import SettingsError
+from hal.settings_files import find_config
+from kurt2rt.core.task_robot import require_robot_of
+from kurt2rt.core.task_settings import load_task
+
+
+@pytest.mark.parametrize(
+    ("task", "robot"), [("fleeing", "kurt2"), ("school/fleeing", "school"), ("turtlebot/circle", "turtlebot")]
+)
+def test_robot_with_the_sensors_of_a_task_is_taken(task: str, robot: str) -> None:
+    require_robot_of(load_task(task), task, load_robot(robot))
+
+
+@pytest.mark.parametrize(
+    ("task", "robot", "told"),
+    [
+        ("school/fleeing", "kurt2", "is for the robot school (got the robot kurt2, which lacks its sensors); give "),
+        ("fleeing", "school", "is for the robot kurt2 (got the robot school, which lacks its sensors); give --robot-s"),
+    ],
+)
+def test_robot_without_the_sensors_of_a_task_is_refused(task: str, robot: str, told: str) -> None:
+    with pytest.raises(SettingsError) as refused:
+        require_robot_of(load_task(task), task, load_robot(robot))
+    assert f"task {task}: {told}" in str(refused.value)
+
+
+def test_copy_of_a_robots_task_says_how_to_name_its_robot(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(find_config("tasks", "school/fleeing").read_bytes())
+    with pytest.raises(SettingsError, match="give --robot-settings school, or write robot: school in its file"):
+        require_robot_of(load_task(str(path)), str(path), load_robot("kurt2"))
+
+
+def test_situation_that_does_not_exist_keeps_its_own_error() -> None:
+    task = load_task("fleeing").model_copy(update={"situation": "nowhere"})
+    with pytest.raises(SettingsError, match="no such file in situations"):
+        require_robot_of(task, "fleeing", load_robot("kurt2"))

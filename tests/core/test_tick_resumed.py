@@ -1,0 +1,77 @@
+"""A resume says what still holds the robot."""
+
+import pytest
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult
+from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, hindrance_after_resume
+from kurt2rt.core.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome_text import text_of
+from tests.core.test_tick import Corridor
+from tests.teacher.helpers import resume, stop, teach
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    corridor = Corridor()
+    corridor.run(100, teach("forward"))
+    return corridor
+
+
+@pytest.mark.parametrize(
+    ("reason", "stands"), [(GuardReason.BUS_LOST, StandReason.BUS_LOST), (GuardReason.OTHER, StandReason.HALTED)]
+)
+def test_tick_resume_tells_the_stop_that_lasts(driving: Corridor, reason: GuardReason, stands: StandReason) -> None:
+    driving.robot.latches_for = reason
+    driving.robot.emergency_stop(reason)
+    driving.run()
+    driving.robot.relatches = True
+    (result,) = driving.run(100, resume("too early")).results
+    assert result.outcome.fields["stands"] == stands
+    driving.robot.relatches = False
+    assert driving.run(100, resume("in time")).results[0].outcome == Outcome(ResultCode.RESUMED)
+
+
+def test_tick_resume_tells_what_holds_a_blind_robot(driving: Corridor) -> None:
+    driving.run(100, stop())
+    driving.robot.infrared_age_s = 1.0
+    (result,) = driving.run(100, resume()).results
+    assert text_of(result.outcome) == (
+        "the robot still stands: its infra-red sensors are silent; check its power and cable"
+    )
+
+
+def test_tick_resume_tells_of_lessons_that_cannot_be_saved(driving: Corridor) -> None:
+    driving.run(100, stop())
+    driving.notebook.saving_error = "disk full"
+    assert "lessons cannot be saved" in text_of(driving.run(100, resume()).results[0].outcome)
+
+
+@pytest.mark.parametrize(
+    ("standing", "reasons", "told"),
+    [
+        (DRIVES, (), None),
+        (DRIVES, (GuardReason.SLEW_LIMIT,), None),
+        (DRIVES, (GuardReason.ENCODER_STALE,), Standing(StandReason.ENCODERS_SILENT)),
+        (Standing(StandReason.ASKS, asks=True), (), None),
+        (Standing(StandReason.AT_GOAL, says="at the door"), (), None),
+        (Standing(StandReason.UNATTENDED), (), Standing(StandReason.UNATTENDED)),
+    ],
+)
+def test_hindrance_is_what_a_resume_cannot_end(
+    standing: Standing, reasons: tuple[GuardReason, ...], told: Standing | None
+) -> None:
+    assert hindrance_after_resume(standing, GuardResult(STANDSTILL, reasons, latched=False)) == told
+
+
+@pytest.mark.parametrize(
+    ("fields", "text"),
+    [
+        ({}, "the robot may drive"),
+        ({"stands": "bus lost"}, "the robot still stands: its bus is lost; check its power and cable"),
+        ({"stands": "halted", "says": "the run is over"}, "the robot still stands: the run is over"),
+        ({"stands": "of a newer robot"}, "the robot still stands: of a newer robot"),
+    ],
+)
+def test_text_of_a_resume_says_what_holds_the_robot(fields: dict[str, str], text: str) -> None:
+    assert text_of(Outcome(ResultCode.RESUMED, fields)) == text
