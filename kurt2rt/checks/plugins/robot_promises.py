@@ -26,6 +26,10 @@ _SLOW = 0.4
 """Fraction of the guard's highest speed at which it is tried."""
 
 
+Promise = tuple[str, Callable[[], bool | str]]
+"""Sentence, and a function that returns whether it holds, or else a text that says what happened."""
+
+
 class _Tick(NamedTuple):
     readings: SensorReadings
     result: GuardResult
@@ -72,15 +76,21 @@ class _Drive:
         return self.simulation.pose
 
 
-def broken_of_robot(kind: RobotKind, where: str) -> list[str]:
-    """Return the promises that a kind of robot breaks, each in a sentence; `where`: its name, for errors.
+def broken_of_robot(kind: RobotKind, where: str, *, only: str = "") -> list[str]:
+    """Return the promises that a kind of robot breaks, each in a sentence.
+
+    Args:
+        kind: of robot, tried with each of its settings.
+        where: its name, for errors.
+        only: text within the promises to try; empty: all.
 
     Raises hal.settings.SettingsError for settings that cannot be read.
     """
     broken: list[str] = []
     for path in _settings_files(kind, where):
         settings: RobotSettings = settings_of(content_of(path), kind.settings, path)
-        broken += [f"{path.stem}: {line}" for line in _broken_of(kind, settings, _world_of(kind))]
+        promises = [each for each in _promises_of(kind, settings, _world_of(kind)) if only in each[0]]
+        broken += [f"{path.stem}: {line}" for line in broken_among(promises)]
     return broken
 
 
@@ -97,7 +107,7 @@ def _world_of(kind: RobotKind) -> str:
     return (own or shipped_names("worlds"))[0]
 
 
-def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str]:
+def _promises_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[Promise]:
     factory = kind.simulations(settings, NO_WIRE)
     fastest_m_s = settings.guard.maximum_speed_m_s
     slow_m_s = _SLOW * fastest_m_s
@@ -224,22 +234,20 @@ def _broken_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[str
         return drives[0] == drives[1]
 
     ends = [end for end in BumperEnd if any(bumper.end is end for bumper in settings.bumpers)]
-    return broken_among(
-        (
-            ("it senses with each sensor of its table, in counts", tried(reads)),
-            ("it stands unless it is told to drive", tried(stands_if_told_to)),
-            ("equal set points drive it ahead, and its encoders count the way", tried(goes_ahead)),
-            ("a quicker right side turns it to the left", tried(turns_left)),
-            ("no set point passes the guard's limits", tried(stays_within_limits)),
-            ("it stands for a set point that is not a number", tried(takes_no_nan)),
-            ("it stands for a command that is too old", tried(takes_no_old_command)),
-            ("it stands when its senses are silent", tried(notices_silence)),
-            ("a stop lasts until it is released", tried(stays_stopped)),
-            ("it brakes by itself when no command comes", tried(brakes_by_itself)),
-            ("it stands after it was closed, which may be twice", tried(brakes_when_closed)),
-            ("its readings are those of its sensors, in the order of the table", tried(reads_what_is_there)),
-            ("a stop sends the brake", tried(sends_the_brake)),
-            *((f"a {end} bumper that touches blocks that way", tried(feels(end))) for end in ends),
-            ("equal seeds give equal drives", drives_the_same_again),
-        )
-    )
+    return [
+        ("it senses with each sensor of its table, in counts", tried(reads)),
+        ("it stands unless it is told to drive", tried(stands_if_told_to)),
+        ("equal set points drive it ahead, and its encoders count the way", tried(goes_ahead)),
+        ("a quicker right side turns it to the left", tried(turns_left)),
+        ("no set point passes the guard's limits", tried(stays_within_limits)),
+        ("it stands for a set point that is not a number", tried(takes_no_nan)),
+        ("it stands for a command that is too old", tried(takes_no_old_command)),
+        ("it stands when its senses are silent", tried(notices_silence)),
+        ("a stop lasts until it is released", tried(stays_stopped)),
+        ("it brakes by itself when no command comes", tried(brakes_by_itself)),
+        ("it stands after it was closed, which may be twice", tried(brakes_when_closed)),
+        ("its readings are those of its sensors, in the order of the table", tried(reads_what_is_there)),
+        ("a stop sends the brake", tried(sends_the_brake)),
+        *((f"a {end} bumper that touches blocks that way", tried(feels(end))) for end in ends),
+        ("equal seeds give equal drives", drives_the_same_again),
+    ]

@@ -92,6 +92,7 @@ def _run_here(
 ) -> list[ResultT]:
     results: dict[int, ResultT] = {}
     before_s = 0.0
+    frozen_before = gc.get_freeze_count()
     try:
         for place in order:
             job = jobs[place]
@@ -106,7 +107,8 @@ def _run_here(
             before_s += job.robot_time_s
             on_done(place)
     finally:
-        gc.unfreeze()
+        if frozen_before == 0:  # a caller keeps its frozen objects
+            gc.unfreeze()
     on_progress(PoolProgress(before_s, ()))
     return [results[place] for place in range(len(jobs))]
 

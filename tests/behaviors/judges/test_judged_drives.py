@@ -97,8 +97,9 @@ async def test_judges_of_other_robots_reward_their_teacher(task: str) -> None:
 @pytest.mark.parametrize("task", [*OF_KURT2, *OF_OTHERS])
 async def test_judges_reward_the_teachers_drive_for_minutes(task: str) -> None:
     shares = await judged(task, seconds=240)
-    assert shares[1] > (0.55 if task in OF_KURT2 else 0.4)
-    assert shares[-1] < 0.01
+    most_good, most_bad = (0.55, 0.01) if task in OF_KURT2 else (0.4, 0.02)
+    assert shares[1] > most_good
+    assert shares[-1] < most_bad
 
 
 @pytest.mark.parametrize("task", [*OF_KURT2, *OF_OTHERS])

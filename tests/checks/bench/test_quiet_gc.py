@@ -1,19 +1,13 @@
 """No collection within, all as before after it."""
 
 import gc
-import weakref
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import pytest
 
 from kurt2rt.platform.gc_control import gc_frozen
-
-
-class Loop:
-    """Holds itself, so that only the collector can free it."""
-
-    def __init__(self) -> None:
-        self.itself = self
 
 
 @pytest.fixture(autouse=True)
@@ -26,28 +20,40 @@ def collector_as_it_was() -> Iterator[None]:
         gc.disable()
 
 
-@pytest.fixture
-def nothing_set_aside() -> Iterator[None]:
-    """Unfreeze the suite's own objects (tests/conftest.py) during the test; every collection then walks them."""
-    gc.unfreeze()
-    yield
-    gc.freeze()
+_BLOCKS = """
+import gc, weakref
+from kurt2rt.platform.gc_control import gc_frozen
 
+class Loop:
+    def __init__(self):
+        self.itself = self
 
-@pytest.mark.usefixtures("nothing_set_aside")
-def test_gc_frozen_collects_only_before_and_after_outermost() -> None:
-    gone = weakref.ref(Loop())
-    gc.enable()
+gone = weakref.ref(Loop())
+assert gone() is not None
+with gc_frozen():
+    assert gone() is None
+    assert not gc.isenabled()
+    assert gc.get_freeze_count() > 0
     with gc_frozen():
-        assert gone() is None
-        assert not gc.isenabled()
-        assert gc.get_freeze_count() > 0
-        with gc_frozen():
-            pass
-        assert not gc.isenabled()
-        assert gc.get_freeze_count() > 0
-    assert gc.isenabled()
-    assert gc.get_freeze_count() == 0
+        pass
+    assert not gc.isenabled()
+    assert gc.get_freeze_count() > 0
+assert gc.isenabled()
+assert gc.get_freeze_count() == 0
+"""
+
+
+def test_gc_frozen_collects_only_before_and_after_outermost() -> None:
+    # A process of its own, because all objects of the suite are frozen (tests/conftest.py).
+    subprocess.run([sys.executable, "-c", _BLOCKS], check=True)
+
+
+def test_gc_frozen_keeps_objects_frozen_before_it() -> None:
+    before = gc.get_freeze_count()
+    assert before > 0
+    with gc_frozen():
+        pass
+    assert gc.get_freeze_count() >= before
 
 
 def test_an_error_is_an_end_too() -> None:

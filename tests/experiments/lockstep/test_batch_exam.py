@@ -17,7 +17,7 @@ from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
-EXAM_S = 40.0 if IS_COMPILED else 2.0
+EXAM_S = 15.0 if IS_COMPILED else 2.0
 
 
 def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequence[int]) -> list[BatchExam]:
@@ -92,7 +92,7 @@ def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds:
 
 def test_robot_without_a_way_on_is_put_elsewhere_as_on_the_bus() -> None:
     # A policy that never turns comes to junctions that lead to the sides only.
-    task = load_task("straight_on", changes={"exam.duration_s": str(EXAM_S)})
+    task = load_task("straight_on", changes={"exam.duration_s": "40" if IS_COMPILED else "2"})
     exam = BatchExam(ExamSetup("manhattan", 3, teacher_policy=True))
     (result,) = examine_in_batch(STAGE, ROBOT, task, [exam])
     assert result == exam_on_bus(task, exam)

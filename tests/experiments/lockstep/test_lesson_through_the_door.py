@@ -37,8 +37,8 @@ def task_of(name: str, teacher: str, seconds: float) -> TaskSettings:
     plain = {"doubt": None, "passes_over_guesses": False, "holds_yield": False}
     parts = {
         "learning": task.learning.model_copy(update=plain),
-        "teaching": task.teaching.model_copy(update={"supervised_s": 30.0, "corrections_s": seconds - 30.0}),
-        "exam": task.exam.model_copy(update={"duration_s": 40.0}),
+        "teaching": task.teaching.model_copy(update={"supervised_s": seconds / 2, "corrections_s": seconds / 2}),
+        "exam": task.exam.model_copy(update={"duration_s": seconds / 2}),
     }
     return taught_by(task.model_copy(update=parts), load_teacher(teacher))
 
@@ -63,7 +63,7 @@ def drive(task: TaskSettings, seed: int, team: LearnerTeam | None) -> Robot:
 @pytest.mark.parametrize(
     ("name", "teacher", "seconds", "seed"),
     [
-        ("wall_following", "superhuman", 60.0, 3501),
+        ("wall_following", "superhuman", 30.0, 3501),
         pytest.param("wall_following", "ordinary", 120.0, 3502, marks=pytest.mark.deep),
         pytest.param("streets", "ordinary", 60.0, 3503, marks=pytest.mark.deep),  # three behaviours
     ],

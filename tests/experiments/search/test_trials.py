@@ -124,10 +124,11 @@ def test_search_interrupted_between_robots_goes_on(
     assert run(tiny_plan(tmp_path)) == whole
 
 
-def test_journal_cut_at_any_line_goes_on_to_the_same(whole: list[Trial], copied: SearchPlan) -> None:
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.deep)])
+def test_journal_cut_at_any_line_goes_on_to_the_same(step: int, whole: list[Trial], copied: SearchPlan) -> None:
     journal = copied.folder / FILE
     lines = journal.read_bytes().splitlines(keepends=True)
-    for count in range(len(lines)):
+    for count in range(0, len(lines), step):
         journal.write_bytes(b"".join(lines[:count]) + lines[count][: len(lines[count]) // 2])
         Path(f"{journal}.lock").symlink_to("gone")  # a killed process leaves it
         assert run(copied) == whole

@@ -1,5 +1,6 @@
 """Many jobs: in this process, and in others."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -54,6 +55,13 @@ def test_run_jobs_error_ends_other_jobs() -> None:
         run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, on_done=done.append)
     assert done == [1]
     assert caught.value.__notes__ == ["middle"]
+
+
+def test_run_jobs_unfreezes_only_what_it_froze() -> None:
+    before = gc.get_freeze_count()
+    assert before > 0  # tests/conftest.py
+    run_jobs(JOBS, 1)
+    assert gc.get_freeze_count() >= before
 
 
 def test_no_jobs_are_no_work() -> None:
