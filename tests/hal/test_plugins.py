@@ -1,10 +1,13 @@
 """Plug-ins by entry point and by module:Name, and their errors."""
 
 import sys
+from contextlib import suppress
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
 
+from hal import plugins
 from hal.plugins import (
     PluginError,
     PluginKind,
@@ -12,6 +15,8 @@ from hal.plugins import (
     loaded_plugins,
     settings_from_elsewhere,
 )
+from hal.settings import SettingsError
+from hal.settings_files import TASKS, find_config
 from tests.plugin_packages import install
 
 NUMBERS = PluginKind("numbers", "number", "an int", lambda found: isinstance(found, int), lambda: ("one", "seven"))
@@ -37,6 +42,27 @@ def test_plugin_of_the_current_folder_names_its_file(plugin_folder: Path) -> Non
     assert NUMBERS.find("plug_b:Held.NINE") == 9
     assert [each.source for each in loaded_plugins()] == [str(plugin_folder / "plug_b.py")]
     assert sys.path[-1] == str(plugin_folder)  # for the processes of a study
+
+
+@pytest.mark.parametrize("name", ["no_such_task", "no/such_task", "school/fleeing"])
+def test_name_of_a_task_reads_entry_points_once(
+    plugin_folder: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    reads: list[int] = []
+
+    def counted() -> object:
+        reads.append(1)
+        return entry_points()
+
+    monkeypatch.setattr(plugins, "entry_points", counted)
+    install(plugin_folder, "tasks", {"tasks": {"mine": "plug_a:MINE"}})
+    for _ in range(2):
+        with suppress(SettingsError):
+            find_config("tasks", name)
+    assert len(reads) == 1
+    install(plugin_folder, "more", {"tasks": {"yours": "plug_a:YOURS"}})
+    assert [each.name for each in TASKS.installed()] == ["mine", "yours"]
+    assert len(reads) == 2
 
 
 def test_unknown_plugin_lists_all_names_and_the_nearest(plugin_folder: Path) -> None:

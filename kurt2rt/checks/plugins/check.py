@@ -37,7 +37,7 @@ from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 _TASK = "wall_following"
-"""Shipped task with whose world, repertoire and situation a part is tried on a robot without tasks of its own."""
+"""Task of KURT2 with whose world, repertoire and situation a part is tried that no task names."""
 _SEED, _PURPOSE = 1, "plug-in check"
 
 
@@ -75,7 +75,6 @@ class PluginCheck:
         """Take the robot, and what opens its simulations."""
         self._robot = robot
         self._factory = factory
-        self._task = find_task_of_robot(robot.kind) or _TASK
         self._checks: Mapping[str, Callable[[str], list[str]]] = {
             POLICIES.group: self._of_policy,
             JUDGES.group: lambda name: broken_of_judge(_settings(AnyJudgeSettings, name)),
@@ -89,17 +88,28 @@ class PluginCheck:
     def of(self, subject: Subject) -> Finding:
         """Return what was found about a plug-in. Raises UserError if it cannot be loaded, so that nothing is tried."""
         if subject.group == LEARNERS.group:
-            setting = learner_setting(load_task(self._task), self._robot, seed=_SEED)
+            setting = learner_setting(self._task(), self._robot, seed=_SEED)
             return check_learner(find_learner(subject.name), setting)
         return Finding(self._checks[subject.group](subject.name))
 
+    def _task(self) -> TaskSettings:
+        """Return the task to try parts with that no task names. Raises NoPluginError for a robot without tasks."""
+        name = _TASK if self._robot.kind == DEFAULT_KIND else find_task_of_robot(self._robot.kind)
+        if name is None:
+            raise NoPluginError(
+                "has no task, so nothing says its actions",
+                where=f"robot {self._robot.kind}",
+                do="add a task to its folder, or check the YAML of a task that names the part",
+            )
+        return load_task(name)
+
     def _of_policy(self, name: str) -> list[str]:
         settings = _settings(AnyPolicySettings, name)
-        actions = load_task_repertoire(load_task(self._task), self._robot)
+        actions = load_task_repertoire(self._task(), self._robot)
         return broken_of_policy(settings, self._robot, actions, settings.behaviours or ("",))
 
     def _of_metric(self, name: str) -> list[str]:
-        task = load_task(self._task)
+        task = self._task()
         return self._metric_in(_settings(AnyMetricSettings, name), task.teaching.world, task.behaviours)
 
     def _metric_in(self, settings: MetricSettings, world: str, behaviours: tuple[str, ...]) -> list[str]:

@@ -8,6 +8,7 @@ import yaml
 
 from hal.settings_files import find_config
 from tests.cli.helpers import CommandLine
+from tests.plugin_packages import install
 
 POLICY = """
 from behaviors.policies.distances import Distances
@@ -79,6 +80,14 @@ def test_parts_of_a_folder_follow_a_robots_own_files(kurt2rt: CommandLine, folde
     said = kurt2rt("plugin", "check", ".", "--robot-settings", "turtlebot", "--json")
     tried = {each["name"]: each["robot"] for each in json.loads(said.out)["plugins"]}
     assert tried == {"parts_school:Dodging": "school", "parts_kurt2:Careful": "turtlebot"}
+
+
+def test_policy_of_a_robot_without_tasks_is_refused(kurt2rt: CommandLine, folder: Path) -> None:
+    assert kurt2rt("plugin", "new", "robots", "lone").exit_code == 0
+    (folder / "lone/src/lone/data/tasks/fleeing.yaml").unlink()
+    install(folder / "lone/src", "lone", {"robots": {"lone": "lone:LONE"}})
+    refused = kurt2rt.refused("plugin", "check", "parts_school:Dodging", "--robot-settings", "lone")
+    assert "robot lone: has no task, so nothing says its actions; add a task to its folder" in refused
 
 
 @pytest.mark.usefixtures("folder")
