@@ -1,5 +1,6 @@
 """Codes for why the guard limits or stops the wheels; recordings and the wire keep their values."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 from typing import Final
 
@@ -46,6 +47,11 @@ class GuardReason(StrEnum):
 
 
 _BY_VALUE: Final = {reason.value: reason for reason in GuardReason}
+
+
+def reasons_text(reasons: Iterable[str]) -> str:
+    """Return codes for users; the values of the range sensors are from before there were other ones than infra-red."""
+    return ", ".join(reasons).replace("infra-red", "range sensors")
 
 
 def guard_reason(value: str) -> GuardReason:

@@ -12,7 +12,7 @@ from hal.guard import Guard
 from hal.guard_reason import GuardReason
 from hal.health import Health
 from hal.infrared_watch import InfraredWatch
-from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds, readings_before_the_first
 from hal.robot_settings import RobotSettings
 from hal.watchdog import Watchdog
 from hal.wheel_port import WheelPort
@@ -94,16 +94,7 @@ class GuardedRobot(ABC):
         self._times_s: list[float] = []
         self._bumpers = 0
         self._encoder_at_s = self._bumpers_at_s = -math.inf
-        self._readings = SensorReadings(
-            time_s=-math.inf,
-            infrared_counts=tuple(self._counts),
-            infrared_age_s=math.inf,
-            encoder_left_ticks=0,
-            encoder_right_ticks=0,
-            encoder_age_s=math.inf,
-            bumpers=0,
-            bumper_age_s=math.inf,
-        )
+        self._readings = readings_before_the_first(len(self._counts))
         self._command = STANDSTILL
         self._link_lost = self._closed = False
         self._reopen_at_s = math.inf

@@ -1,5 +1,6 @@
 """Robot protocol: sensor readings, wheel speeds and the result of the guard."""
 
+import math
 from typing import NamedTuple, Protocol
 
 from hal.guard_reason import GuardReason
@@ -39,6 +40,20 @@ class SensorReadings(NamedTuple):
     """Bit n set: bumper n of the robot's table is pressed."""
     bumper_age_s: float
     """Age of the newest BUMPERC frame; infinite before the first."""
+
+
+def readings_before_the_first(sensors: int) -> SensorReadings:
+    """Return readings of so many distance sensors before anything arrived: all ages are infinite."""
+    return SensorReadings(
+        time_s=-math.inf,
+        infrared_counts=(0,) * sensors,
+        infrared_age_s=math.inf,
+        encoder_left_ticks=0,
+        encoder_right_ticks=0,
+        encoder_age_s=math.inf,
+        bumpers=0,
+        bumper_age_s=math.inf,
+    )
 
 
 class GuardResult(NamedTuple):

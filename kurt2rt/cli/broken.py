@@ -73,7 +73,7 @@ class _Options:
 
 @takes_options(_Options)
 def broken(options: _Options) -> None:
-    """Break each infra-red sensor in turn, and measure whether the robot notices and collides.
+    """Break each range sensor in turn, and measure whether the robot notices and collides.
 
     Each robot drives without a teacher; after 2 s one sensor breaks. At the
     notice the robot stands and gets its Go, on which the neighbours' readings

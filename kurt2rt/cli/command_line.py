@@ -52,7 +52,7 @@ _PANELS = {
         "rivals": "Compare learners of other kinds with the RLA system, taught by the same teacher.",
         "doubt": "Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.",
         "certify": "Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.",
-        "broken": "Break each infra-red sensor in turn, and measure whether the robot notices and collides.",
+        "broken": "Break each range sensor in turn, and measure whether the robot notices and collides.",
         "search": "Search settings of a task on search seeds, and check the best once on other seeds and worlds.",
         "worker": "Run jobs of studies that another machine sends, one at a time, until Ctrl-C.",
         "results": "Look at the results of studies, and put together those of several machines.",

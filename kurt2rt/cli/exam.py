@@ -45,7 +45,7 @@ class _Options:
         typer.Option(
             "--broken-sensor",
             metavar="SENSOR=FAULT",
-            help="Let an infra-red sensor of the robot break after 2 s, such as s15=low; faults as in kurt2rt broken.",
+            help="Let a range sensor of the robot break after 2 s, such as s15=low; faults as in kurt2rt broken.",
         ),
     ] = None
     robot_settings: RobotName = None

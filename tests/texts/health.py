@@ -29,7 +29,7 @@ _NUMBERS = {
 }
 _NAMES = {
     TroubleCode.SENSORS_UNHEARD: "bumpers",
-    TroubleCode.SENSORS_SILENT: "infra-red sensors",
+    TroubleCode.SENSORS_SILENT: "range sensors",
     TroubleCode.SENSOR_STUCK: "front left edge (s15)",
     TroubleCode.SENSOR_OUT_OF_RANGE: "left front (s1)",
     TroubleCode.SENSOR_SEES_NOTHING: "front centre (s11)",

@@ -145,7 +145,7 @@ def _lately(late: TickLateness) -> str:
 
 
 def _ages(ages: SensorAges) -> str:
-    named = (("infra-red", ages.infrared_s), ("encoders", ages.encoders_s), ("bumpers", ages.bumpers_s))
+    named = (("range sensors", ages.infrared_s), ("encoders", ages.encoders_s), ("bumpers", ages.bumpers_s))
     return ", ".join(f"{name} {_age(age_s)}" for name, age_s in named)
 
 

@@ -16,19 +16,19 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
     TroubleCode.SENSORS_UNHEARD: ("the {name} have never been heard", _SWITCH_ON),
     TroubleCode.SENSORS_SILENT: ("the {name} are silent, the newest is {0:.1f} s old", _SWITCH_ON),
     TroubleCode.SENSOR_STUCK: (
-        "the infra-red sensor {name} is stuck at {0:.0f} counts while the others flicker",
+        "the range sensor {name} is stuck at {0:.0f} counts while the others flicker",
         _CHECK_SENSOR,
     ),
     TroubleCode.SENSOR_OUT_OF_RANGE: (
-        "the infra-red sensor {name} reads {0:.0f} counts, as no working sensor does",
+        "the range sensor {name} reads {0:.0f} counts, as no working sensor does",
         _CHECK_SENSOR,
     ),
     TroubleCode.SENSOR_SEES_NOTHING: (
-        "the infra-red sensor {name} stays at {0:.0f} counts while both sensors next to it see something near",
+        "the range sensor {name} stays at {0:.0f} counts while both sensors next to it see something near",
         _CHECK_SENSOR,
     ),
     TroubleCode.SENSOR_SEES_A_PHANTOM: (
-        "the infra-red sensor {name} stays at {0:.0f} counts while both sensors next to it see nothing so near",
+        "the range sensor {name} stays at {0:.0f} counts while both sensors next to it see nothing so near",
         _CHECK_SENSOR,
     ),
     TroubleCode.TICKS_MISSED: ("{0:.0f} {ticks} missed in the last minute, {1:.0f} in all", _END_OTHER_WORK),

@@ -27,7 +27,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.BOTH_BUMPERS: _Text("it touches something in front and behind", "Set it free"),
     StandReason.STOPPED: _Text("{stop}"),
     StandReason.UNATTENDED: _Text("no teacher looks at it", "Take the robot"),
-    StandReason.BLIND: _Text("its infra-red sensors are silent", "Check its power and cable"),
+    StandReason.BLIND: _Text("its range sensors are silent", "Check its power and cable"),
     StandReason.UNSAVED: _Text("lessons cannot be saved", "Look at the disk"),
     StandReason.AT_GOAL: _Text("{says}"),
     StandReason.NO_WAY: _Text("{says}"),
@@ -37,7 +37,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.BUS_OFF: _Text("its bus failed too often", "Check cable, termination and bit rate"),
     StandReason.FOREIGN_CONTROL: _Text("another program drives it, too", "Find and end that one"),
     StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
-    StandReason.INFRARED_FROZEN: _Text("its infra-red readings are frozen", "Switch it off and on"),
+    StandReason.INFRARED_FROZEN: _Text("its range sensors are frozen", "Switch it off and on"),
     StandReason.ROBOT_FAULT: _Text("it tells a fault of its own", "Mend what the fault names"),
     StandReason.HALTED: _Text("{says}"),
     StandReason.LATE: _Text("the computer is too slow", "End other work on it"),
@@ -64,6 +64,11 @@ _STOPS: dict[StopReason, str] = {
 }
 """Sentences of stops, which older devices read and recordings keep, in the order in which they are recognised."""
 
+_SHOWN: dict[StopReason, str] = {
+    StopReason.SENSOR_BROKEN: "its range sensor {name} is broken",
+}
+"""Sentences for users in place of those that speak of infra-red sensors alone."""
+
 _STOPS_TO_DO: dict[StopReason, str] = {
     StopReason.SENSOR_BROKEN: "The sensors next to it stand in for it. Check its plug and its lens",
 }
@@ -78,8 +83,14 @@ _QUESTIONS = {
 
 
 def stop_text(stop: ActiveStop | None) -> str:
-    """Return the sentence of a stop; empty without one."""
+    """Return the sentence of a stop for the wire and recordings; empty without one."""
     return "" if stop is None else _STOPS[stop.reason].format(name=stop.name)
+
+
+def shown_stop_text(stop: ActiveStop | None) -> str:
+    """Return the sentence of a stop for users; empty without one."""
+    shown = None if stop is None else _SHOWN.get(stop.reason)
+    return stop_text(stop) if stop is None or shown is None else shown.format(name=stop.name)
 
 
 def stop_of_text(text: str) -> ActiveStop | None:
@@ -100,7 +111,7 @@ def reason_text(standing: Standing) -> str:
     """Return the reason in a few words that continue "stands: "; empty while the robot drives."""
     stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
     return _TEXTS[standing.reason].why.format(
-        says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
+        says=standing.says or standing.reason, stop=shown_stop_text(standing.stop) or standing.reason, stall=stall
     )
 
 

@@ -2,9 +2,10 @@
 
 import math
 
+from hal.guard_reason import reasons_text
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
-from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
+from kurt2rt.core.decision.standing_text import reason_text, short_text, shown_stop_text
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
@@ -70,7 +71,8 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     lines = []
     if facts.latched:
         lines.append(
-            f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
+            f"The guard stopped the robot for {reasons_text(facts.reasons)}, and keeps it stopped until a teacher "
+            "says Go."
         )
     if facts.cause == DecisionCause.RLA:
         lines += [*_rla_drives(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
@@ -104,7 +106,7 @@ def _slow_lesson(facts: DecisionFacts) -> list[str]:
 def _broken_sensors(facts: DecisionFacts) -> list[str]:
     """Describe the sensors that did not count in this decision."""
     return [
-        f"The infra-red sensor {title} is broken: the readings of the sensors next to it count in its place."
+        f"The range sensor {title} is broken: the readings of the sensors next to it count in its place."
         for title in facts.broken_sensors
     ]
 
@@ -113,9 +115,9 @@ def _stands(facts: DecisionFacts) -> str:
     match facts.cause:
         case DecisionCause.BLIND:
             age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
-            return f"The infra-red readings {age}: there is no situation to decide on, nor to ask about."
+            return f"The readings of the range sensors {age}: there is no situation to decide on, nor to ask about."
         case DecisionCause.STOPPED:
-            return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
+            return f"The robot was stopped: {shown_stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
         case DecisionCause.UNATTENDED:
             return "The robot knows what to do, but drives only while a teacher is there, and none is."
         case DecisionCause.UNSAVED:

@@ -125,7 +125,7 @@ class Diagnostics:
     def _of_readings(self, snapshot: Snapshot) -> Iterator[_Found]:
         guard = self._settings.guard
         for name, age_s, stale_s in (
-            ("infra-red sensors", snapshot.infrared_age_s, guard.stale_infrared_s),
+            ("range sensors", snapshot.infrared_age_s, guard.stale_infrared_s),
             ("encoders", snapshot.encoder_age_s, guard.stale_encoder_s),
             ("bumpers", snapshot.bumper_age_s, guard.stale_bumper_s),
         ):

@@ -36,7 +36,7 @@ WELL = HealthReport(
     drops=(Drops("lines for the terminal", 0),),
     troubles=(),
 )
-SILENT = Trouble(TroubleCode.SENSORS_SILENT, 2.4, True, "infra-red sensors", (2.5,))
+SILENT = Trouble(TroubleCode.SENSORS_SILENT, 2.4, True, "range sensors", (2.5,))
 LATE = Trouble(TroubleCode.TICKS_MISSED, 185.0, False, numbers=(3, 7))
 ILL = replace(
     WELL,

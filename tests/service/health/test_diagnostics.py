@@ -81,7 +81,7 @@ def test_a_robot_that_is_well_has_no_trouble(ward: Ward) -> None:
 
 def test_silent_sensors_are_urgent_and_it_is_known_for_how_long(ward: Ward) -> None:
     first = ward.one(replace(CALM, infrared_age_s=0.6))
-    assert first == Trouble(TroubleCode.SENSORS_SILENT, 0.0, True, "infra-red sensors", (0.6,))
+    assert first == Trouble(TroubleCode.SENSORS_SILENT, 0.0, True, "range sensors", (0.6,))
     later = ward.one(replace(CALM, infrared_age_s=1.6))
     assert (later.numbers, later.since_s) == ((1.6,), 1.0)
     assert ward.look() == ()

@@ -56,7 +56,7 @@ def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) ->
     phone.touch("#link")
     lesson.reads("#health-says", "well; late 0.31 ms (p99), missed 0")
     rows = phone.text("#health-rows")
-    for words in ("forward by RLA 12", "infra-red 4 ms old", "knowledge: 79.9 GB free", "battery 83%, discharging"):
+    for words in ("forward by RLA 12", "range sensors 4 ms old", "knowledge: 79.9 GB free", "battery 83%, discharging"):
         assert words in rows
     phone.touch("#stop")  # which is never covered
     phone.wait(lambda: lesson.robot.told.count(("stop",)) == 1, "the robot is stopped")
