@@ -28,7 +28,13 @@ def env() -> Iterator[TaskEnvironment]:
         yield opened
 
 
-@pytest.mark.parametrize("name", ENVIRONMENTS)
+QUICK = ("kurt2rt/WallFollowing-v0", "kurt2rt/StraightOn-v0")
+"""One in a room and one in streets; tests/gym/test_loops.py drives all others, too."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=[] if each in QUICK else [pytest.mark.deep]) for each in ENVIRONMENTS]
+)
 def test_environment_passes_the_checker_without_warning(name: str) -> None:
     with closing(gymnasium.make(name, render_mode="rgb_array")) as made:
         check_env(made.unwrapped)

@@ -59,7 +59,9 @@ def require_equal(folder: Path, rival: Rival, task: TaskSettings, seed: int = 39
     return batch
 
 
-@pytest.mark.parametrize("name", ["rla", "rla-vote", "rla-acts", "weighted-vote"])
+@pytest.mark.parametrize(
+    "name", ["rla-acts", "weighted-vote", *(pytest.param(name, marks=pytest.mark.deep) for name in ("rla", "rla-vote"))]
+)
 def test_rival_is_equal_in_batch_and_on_the_bus(name: str, tmp_path: Path) -> None:
     outcome = require_equal(tmp_path, Rival(name), short())
     assert outcome.tick_p99_us is None  # it did not leave the batch

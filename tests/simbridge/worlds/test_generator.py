@@ -99,7 +99,7 @@ def has_a_square(world: WorldSettings) -> bool:
     return len(world.names) < len(columns) * len(rows)
 
 
-@pytest.mark.parametrize("some", seeds(range(0, 100, 6), range(1100)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 16), range(1100)))
 def test_floors_have_thin_things_and_room_to_turn(some: range) -> None:
     for seed in some:
         world = generated(f"floors-{seed}")
@@ -113,7 +113,7 @@ def test_floors_have_thin_things_and_room_to_turn(some: range) -> None:
         assert all(leg.radius_m <= 0.05 for leg in world.round_obstacles)
 
 
-@pytest.mark.parametrize("some", seeds(range(0, 100, 6), range(1100)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 16), range(1100)))
 def test_floors_leave_no_gap_in_which_a_robot_gets_stuck(some: range) -> None:
     for seed in some:
         world = generated(f"floors-{seed}")
@@ -132,7 +132,7 @@ def pieces_of(world: WorldSettings) -> list[shapely.Geometry]:
     return [shapely.convex_hull(shapely.union_all(each)) for each in parts.values()]
 
 
-@pytest.mark.parametrize("some", seeds(range(0, 100, 12), range(1100)))
+@pytest.mark.parametrize("some", seeds(range(0, 100, 24), range(1100)))
 def test_flats_let_the_robot_turn_in_all_rooms(some: range) -> None:
     for seed in some:
         world = generated(f"flats-{seed}")
@@ -161,7 +161,7 @@ def test_generated_worlds_are_equal_on_every_machine() -> None:
 
 
 def test_generated_worlds_differ_between_seeds() -> None:
-    assert len({digest(f"{kind}-{i}") for kind in ("rooms", "flats", "streets", "floors") for i in range(10)}) == 40
+    assert len({digest(f"{kind}-{i}") for kind in ("rooms", "flats", "streets", "floors") for i in range(3)}) == 12
 
 
 def test_seeded_random_reaches_its_bounds() -> None:
