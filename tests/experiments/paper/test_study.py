@@ -120,7 +120,7 @@ def test_report_lists_all_settings(tiny: Tiny) -> None:
     shipped, plain = (
         dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "wall following"
     )
-    assert shipped["weights that are not 1"].startswith("3.5: s15; 2: maximum front; 0: minimum front; 0.5: s5, s6")
+    assert shipped["weights that are not 1"].startswith("1.5: s15; 2: maximum front; 0: minimum front; 0.5: s5, s6")
     assert plain["weights that are not 1"] == "none"
     assert {shipped["teacher"], plain["teacher"]} == {load_task("wall_following").teaching.default_teacher}
     eight = next(dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "eight")
