@@ -33,14 +33,13 @@ class RlaLearner:
 
     def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
         """Insert an RLA at a situation (d,), or replace the action of the one that is near."""
+        if why in _ESTIMATED and self.decide(situation, taught=True) == action:
+            return
         nearest = self.system.match(situation)
         if nearest is not None:
-            says_so = nearest.rla.action == action
-            if says_so and nearest.known and why in _ESTIMATED:
-                return
             share = 0.0 if why is Why.ANSWER else self.setting.insert_beyond_share
             if nearest.distance <= share * self.system.whole_radius(nearest.rla):
-                if not says_so:
+                if nearest.rla.action != action:
                     self.system.apply(
                         ActionReplaced(nearest.rla.rla_id, action, nearest.rla.action, self._next_origin())
                     )

@@ -11,6 +11,7 @@ _ROOM = "kurt2rt.experiments.rivals.learners"
 _BUILTIN = {
     "rla-door": "kurt2rt.core.learner.rla_learner:RlaLearner",
     "rla-vote": f"{_ROOM}.rla_vote:RlaVote",
+    "rla-svm": f"{_ROOM}.rla_svm:RlaSvm",
     "1-nn": f"{_ROOM}.nearest_neighbour:NearestNeighbour",
     "k-nn": f"{_ROOM}.k_nearest:KNearest",
     "weighted-vote": f"{_ROOM}.weighted_vote:WeightedVote",

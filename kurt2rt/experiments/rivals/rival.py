@@ -26,7 +26,7 @@ ASKS_AT_RANDOM = "vote-asks-at-random"
 """Name of the vote without a gate whose robot asks at random."""
 _FAR = 1000.0
 """Factor of R in exams of `ACTS`: farther than any situation."""
-_DOOR = ("rla-door", "rla-vote")
+_DOOR = ("rla-door", "rla-vote", "rla-svm")
 """Variants of the RLA system that are taught through the door of the learners."""
 _LEARNING = "learning."
 _TITLES = {
@@ -36,6 +36,7 @@ _TITLES = {
     ACTS: "RLA, acts beyond R in exams",
     "rla-door": "RLA through the door",
     "rla-vote": "RLA through the door, vote of RLAs within R",
+    "rla-svm": "RLA through the door, SVM of the RLAs",
     "1-nn": "1-NN without R",
     "k-nn": "5-NN with R",
     "weighted-vote": "locally weighted vote with R",

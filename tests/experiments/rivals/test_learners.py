@@ -119,6 +119,14 @@ def test_rlas_within_r_outvote_a_nearer_one() -> None:
     assert says(voting, 9.0, 9.0) == "b"
 
 
+def test_svm_of_rlas_outvotes_a_single_wrong_one() -> None:
+    grid = [(float(x), float(y), "a") for x in (-2, -1, 0, 1, 2) for y in (-2, -1, 1, 2)]
+    labels = [*grid, (40.0, 0.0, "b"), (0.1, 0.1, "b")]
+    assert says(taught("rla-door", *labels), 0.1, 0.1) == "b"
+    machine = taught("rla-svm", *labels)
+    assert [says(machine, *place) for place in ((0.1, 0.1), (40.0, 0.0), (100.0, 0.0))] == ["a", "b", None]
+
+
 @pytest.mark.parametrize("classes", [2, 3, 6])
 def test_pair_votes_are_those_of_scikit_learn(classes: int) -> None:
     rng = np.random.default_rng(classes)

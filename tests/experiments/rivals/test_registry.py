@@ -29,7 +29,7 @@ def test_find_learner_by_entry_point(plugin_folder: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("k-n", "there is no such learner; give module:Name, or one of: rla-door, rla-vote, 1-nn"),
+        ("k-n", "there is no such learner; give module:Name, or one of: rla-door, rla-vote, rla-svm, 1-nn"),
         (
             "no_such_module:Mine",
             "there is no module 'no_such_module' on Python's path or in ",
