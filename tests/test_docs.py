@@ -313,7 +313,7 @@ def test_robot_of_the_docs_is_made_checked_and_taught(kurt2rt: CommandLine, plug
     install(plugin_folder / "rover" / "src", "rover", {"robots": project["entry-points"]["kurt2rt.robots"]})
     said = kurt2rt(*shlex.split(checked)[1:])
     assert f"$ {checked}\n{said.out}" in text
-    short = ("teaching.supervised_s=20", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
+    short = ("teaching.supervised_s=5", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
     said = kurt2rt(*shlex.split(taught)[1:], *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
     assert Path("results/demo/rover_fleeing-620.knowledge").is_file()

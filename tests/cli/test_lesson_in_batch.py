@@ -12,11 +12,11 @@ SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0"
 
 @pytest.mark.parametrize("driven", [pytest.param("--exams", marks=pytest.mark.deep), "--lessons"])
 def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: str) -> None:
-    told = [
-        json.loads(kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", driven, each).out)
-        for each in ("batch", "bus")
-    ]
-    assert told[0]["robots"] == told[1]["robots"]
+    words = ("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", driven)
+    batch, bus = (kurt2rt(*words, each) for each in ("batch", "bus"))
+    assert "2 jobs in the batch, 2 of them on the CAN bus too\n" in batch.err
+    assert len(list(Path("results/lesson/results/witnesses").glob("*.json"))) == 2
+    assert json.loads(batch.out)["robots"] == json.loads(bus.out)["robots"]
 
 
 @pytest.mark.parametrize("option", ["--exams", "--lessons"])
@@ -32,12 +32,6 @@ def test_lesson_of_an_unknown_task_goes_to_the_bus_and_says_so(kurt2rt: CommandL
     told = kurt2rt("lesson", *SHORT, "--seeds", "1", "--jobs", "1", *asks)
     assert told.exit_code == 0, told.err
     assert "wall_following: lessons on the CAN bus, because a batch does not know a robot that asks" in told.err
-
-
-def test_lesson_says_how_many_jobs_are_in_the_batch(kurt2rt: CommandLine) -> None:
-    told = kurt2rt("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--lessons", "batch")
-    assert "2 jobs in the batch, 2 of them on the CAN bus too\n" in told.err
-    assert len(list(Path("results/lesson/results/witnesses").glob("*.json"))) == 2
 
 
 def test_lesson_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: CommandLine) -> None:

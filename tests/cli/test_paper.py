@@ -94,6 +94,7 @@ def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine
     assert changed == [place == 3 for place in range(28)]
 
 
+@pytest.mark.deep  # quick ones: a lesson of many robots in test_lesson_in_batch, and the witness of a job
 def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
     words = ("paper", "--task", short_task(tmp_path), "--seeds", "100-101", "--jobs", "1", "--no-plain")
     told = {loop: kurt2rt(*words, "--out", loop, "--lessons", loop, "--exams", loop) for loop in ("batch", "bus")}

@@ -13,7 +13,7 @@ from tests.experiments.helpers import ROBOT, STAGE
 
 
 def test_guided_tour_counts_the_holds_of_a_person_as_corrections(tmp_path: Path) -> None:
-    task = taught_by(load_task("errands", changes={"teaching.corrections_s": "60"}), load_teacher("ordinary"))
+    task = taught_by(load_task("errands", changes={"teaching.corrections_s": "30"}), load_teacher("ordinary"))
 
     async def lead() -> int:
         with (

@@ -85,7 +85,7 @@ def test_coach_draws_by_situation_and_equally_twice() -> None:
 
 
 def test_robot_is_taught_by_rewards_alone() -> None:
-    lesson = lesson_by("tamer", short_task())
+    lesson = lesson_by("tamer", short_task(5.0, 4.0))
     assert lesson.result.asks == 0
     assert lesson.result.corrections == 0
     signals = lesson.marks[-1].lessons
@@ -93,7 +93,7 @@ def test_robot_is_taught_by_rewards_alone() -> None:
 
 
 def test_rla_system_is_answered_and_rewarded() -> None:
-    lesson = lesson_by(REWARDED, short_task())
+    lesson = lesson_by(REWARDED, short_task(5.0, 4.0))
     assert lesson.result.asks > 0
     assert lesson.result.corrections == 0
 
