@@ -1,6 +1,7 @@
 """A phone with the page open: a real browser without a window, touched as a finger does it."""
 
 import os
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,9 +14,7 @@ from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.wait import WebDriverWait
 
-BROWSERS = (Path("/usr/bin/chromium-headless-shell"), Path("/usr/bin/chromium"))
-"""The first that is there is taken: the shell, which has no window, takes half of the processor."""
-DRIVER = Path("/usr/bin/chromedriver")
+BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 800)
 PATIENCE_S = 30.0
 """Ends a story whose event never comes."""
@@ -247,21 +246,21 @@ class Phone:
 @contextmanager
 def phone(screenshots: Path | None) -> Iterator[Phone]:
     """Start a browser without data. Skips if none is installed, unless this is CI."""
-    browser = next((each for each in BROWSERS if each.exists()), None)
-    if browser is None or not DRIVER.exists():
+    if not (BROWSER.exists() and DRIVER.exists()):
         why = "the browser's stories need Debian's chromium and chromium-driver"
         if os.environ.get("CI") == "true":
             pytest.fail(why)
         pytest.skip(why)
-    options = webdriver.ChromeOptions()
-    options.binary_location = str(browser)
-    for flag in _FLAGS:  # the profile is the driver's: the shell opens no page with another one
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options, Service(str(DRIVER)))
-    try:
-        opened = Phone(driver, screenshots)
-        opened.turn(PORTRAIT)
-        yield opened
-    finally:
-        driver.quit()
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        options = webdriver.ChromeOptions()
+        options.binary_location = str(BROWSER)
+        for flag in (*_FLAGS, f"--user-data-dir={profile}"):
+            options.add_argument(flag)
+        options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+        driver = webdriver.Chrome(options, Service(str(DRIVER)))
+        try:
+            opened = Phone(driver, screenshots)
+            opened.turn(PORTRAIT)
+            yield opened
+        finally:
+            driver.quit()
