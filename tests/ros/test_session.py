@@ -122,7 +122,7 @@ def test_session_other_end_closed_is_noticed_and_found_again(bridged: Ends) -> N
     robot = bridged.listen()
     robot.subscribe(CMD_VEL, received.append)
     bridged.deliver(received)
-    assert bridged.runtime.connected
+    wait_for(lambda: bridged.runtime.connected)
 
 
 def test_session_without_other_end_is_refused_at_once() -> None:

@@ -63,10 +63,11 @@ def robot(tmp_path: Path) -> Robot:
 
 
 def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> None:
-    made = threading.Event()
+    ticked, made = threading.Event(), threading.Event()
     work = robot.watch.report
 
     def report(snapshot: object) -> HealthReport:
+        assert ticked.wait(PATIENCE_S)  # a thread that is quicker than the tick would be heard by it
         try:
             return work(snapshot)  # type: ignore[arg-type]
         finally:
@@ -77,6 +78,7 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
         robot.tick(99)
         assert not made.is_set()
         robot.tick()
+        ticked.set()
         assert made.wait(PATIENCE_S)
         maker = next(each for each in threading.enumerate() if each.name == "health")
     maker.join(PATIENCE_S)  # the monitor's end waits for 0.2 s only, which a busy processor may not give the thread
