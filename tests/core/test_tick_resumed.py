@@ -37,7 +37,7 @@ def test_tick_resume_tells_what_holds_a_blind_robot(driving: Corridor) -> None:
     driving.robot.infrared_age_s = 1.0
     (result,) = driving.run(100, resume()).results
     assert text_of(result.outcome) == (
-        "the robot still stands: its infra-red sensors are silent; check its power and cable"
+        "the robot still stands: its range sensors are silent; check its power and cable"
     )
 
 
