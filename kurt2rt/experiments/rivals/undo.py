@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.learner.learner import Label, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
-from kurt2rt.core.rla.events import LessonUndone, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import LessonRedone, LessonUndone, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -58,12 +58,23 @@ def undo_of_rlas(system: RlaSystem, other: RlaSystem, events: Sequence[TeachingE
     if last is None or not places:
         return Undo(0.0, True)
     system.radius_share = other.radius_share  # the robot was taught until now, and asked sooner
-    other.apply_all(event for event in events if event.origin.command_id != last)
+    other.apply_all(event for event in events if _stands_without(last, event, system))
     began_s = time.thread_time()
     system.apply(LessonUndone(last, Origin("undo", "", Phase.CORRECTIONS, 0)))
     _choice(system, places[-1])
     seconds = time.thread_time() - began_s
     return Undo(seconds, all(_choice(system, place) == _choice(other, place) for place in places))
+
+
+def _stands_without(last: str, event: TeachingEvent, system: RlaSystem) -> bool:
+    """Return whether an event is left where the last lesson, and each undone one with its undo, never was.
+
+    An undone lesson may be about an RLA that the last standing lesson created, so it cannot be learnt without that.
+    """
+    if isinstance(event, LessonUndone | LessonRedone):
+        return False
+    lesson = system.lesson(event.origin.command_id)
+    return lesson is None or not (lesson.undone or event.origin.command_id == last)
 
 
 def _situation(lesson: Label | Signal) -> NDArray[np.float64]:

@@ -13,7 +13,7 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.rla_learner import RlaLearner
-from kurt2rt.core.rla.events import ActionWithdrawn, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -205,6 +205,19 @@ def test_undo_of_rlas_is_compared_at_the_whole_radius() -> None:
     taught.radius_share = 0.1
     assert undo_of_rlas(taught, other, events).restores
     assert [rla.rla_id for rla in taught.rlas] == [1, 2]
+
+
+def test_undo_of_rlas_with_an_undone_lesson_about_the_last() -> None:
+    taught, other = RlaSystem(1, 10.0), RlaSystem(1, 10.0)
+    created = [
+        RlaCreated(Rla(number, (place,), "a", None, Origin(f"t-{number}", "Ann", Phase.SUPERVISED, number)))
+        for number, place in enumerate((0.0, 30.0), 1)
+    ]
+    slip = ActionReplaced(2, "b", "a", Origin("c-1", "Ann", Phase.CORRECTIONS, 3))
+    events: list[TeachingEvent] = [*created, slip, LessonUndone("c-1", Origin("u-1", "Ann", Phase.CORRECTIONS, 4))]
+    taught.apply_all(events)
+    assert undo_of_rlas(taught, other, events).restores
+    assert [rla.rla_id for rla in taught.rlas] == [1]
 
 
 def test_clock_counts_the_decision_after_a_lesson() -> None:
