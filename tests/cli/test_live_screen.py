@@ -133,9 +133,9 @@ def test_run_in_a_pipe_prints_lines_and_accepts_a_phone(tmp_path: Path) -> None:
         # What listens on 127.0.0.1 alone is not at 127.0.0.2.
         at = f"127.0.0.2:{phone.port}"
         headers = {"Cookie": cookie_of(phone._replace(netloc=at).geturl()), "Origin": f"http://{at}"}
-        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None) as websocket:
+        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=60) as websocket:
             websocket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
-            while json.loads(websocket.recv(timeout=30))["kind"] != "state":
+            while json.loads(websocket.recv(timeout=60))["kind"] != "state":
                 continue
         robot.wait_for("RLAs | ")
         said = robot.end(signal.SIGTERM)

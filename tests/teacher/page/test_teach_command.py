@@ -28,7 +28,7 @@ def free_udp_port() -> int:
 def cookie_of(address: str) -> str:
     """Open the address that was printed, as a browser does."""
     parts = urlsplit(address)
-    connection = http.client.HTTPConnection(parts.netloc, timeout=10)
+    connection = http.client.HTTPConnection(parts.netloc, timeout=60)
     try:
         connection.request("GET", f"{parts.path}?{parts.query}")
         response = connection.getresponse()
@@ -46,7 +46,7 @@ def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path)
         assert address.startswith("http://127.0.0.1:")
         at = urlsplit(address).netloc
         headers = {"Cookie": cookie_of(address), "Origin": f"http://{at}"}
-        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None) as websocket:
+        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=60) as websocket:
             said: dict[str, str] = {}
             while said.get("kind") != "silent":
                 said = json.loads(websocket.recv(timeout=10))
