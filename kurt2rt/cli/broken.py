@@ -7,7 +7,6 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -16,8 +15,7 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.experiments.broken.plan import BrokenDrives, chosen_sensors, make_plan, read_study
 from kurt2rt.experiments.broken.tables import all_tables
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
@@ -91,9 +89,8 @@ def broken(options: _Options) -> None:
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was.
     """
-    robot = load_robot_of(options.robot_settings, options.task)
-    task, results = load_task(options.task), Results(options.out)
-    require_robot_of(task, options.task, robot)
+    task, robot = load_task_and_robot(options.task, options.robot_settings)
+    results = Results(options.out)
     worlds = tuple(options.world or task.exam.worlds)
     sensors = chosen_sensors(robot.infrared.names, options.sensor)
     drives = BrokenDrives(

@@ -7,7 +7,6 @@ from typing import Annotated
 import anyio
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
@@ -24,8 +23,8 @@ from kurt2rt.cli.options import (
 )
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task, taught_by_named
+from kurt2rt.core.task_robot import load_task_and_robot
+from kurt2rt.core.task_settings import taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
@@ -70,9 +69,9 @@ def demo(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 
-    settings = load_robot_of(options.robot_settings, options.task)
-    task = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
-    require_robot_of(task, options.task, settings)
+    task, settings = load_task_and_robot(
+        options.task, options.robot_settings, plain=options.plain, changes=changes_of(options.changes)
+    )
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)

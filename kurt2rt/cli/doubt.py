@@ -9,13 +9,11 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
 from kurt2rt.cli.tables import console_of, tables_of
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
 from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
 from kurt2rt.experiments.study.pool import run_jobs
@@ -70,9 +68,8 @@ def doubt(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
 
-    settings = load_robot_of(options.robot_settings, options.task)
-    task = with_doubt(load_task(options.task), DoubtResponse.TELLS)
-    require_robot_of(task, options.task, settings)
+    taught, settings = load_task_and_robot(options.task, options.robot_settings)
+    task = with_doubt(taught, DoubtResponse.TELLS)
     factory = simulations_of(settings)
     worlds = options.world or list(task.exam.worlds)
     seeds = parse_seeds(options.seeds)

@@ -7,7 +7,6 @@ import anyio
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
@@ -20,8 +19,8 @@ from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
+from kurt2rt.core.task_robot import load_task_and_robot
+from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
@@ -113,9 +112,9 @@ def _task_name(options: LessonOptions) -> str:
 
 
 def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
-    robot = load_robot_of(options.robot_settings, task_name)
-    task = load_task(task_name, plain=options.plain, changes=changes_of(options.changes))
-    require_robot_of(task, task_name, robot)
+    task, robot = load_task_and_robot(
+        task_name, options.robot_settings, plain=options.plain, changes=changes_of(options.changes)
+    )
     taught = taught_by(task, load_teacher(options.teacher))
     command = typed_command("lesson", options, {"task": task_name, "task_word": None})
     return LessonSetup(simulations_of(robot, options.wire), robot, taught, command)

@@ -9,13 +9,11 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
 from kurt2rt.cli.tables import console_of, tables_of
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.surprise.jobs import DIFFERENT_S, LEARNS_S, SurpriseJob, surprise_table
@@ -56,9 +54,7 @@ def surprise(options: _Options) -> None:
         kurt2rt lesson --task streets --seeds 0-9
         kurt2rt surprise results/lesson
     """
-    settings = load_robot_of(options.robot_settings, options.task)
-    what = load_task(options.task)
-    require_robot_of(what, options.task, settings)
+    what, settings = load_task_and_robot(options.task, options.robot_settings)
     stage = simulations_of(settings)
     work = [
         SurpriseJob(

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from hal.robot_kind import simulations_of
-from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.executor_option import OnOption
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -28,8 +27,8 @@ from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.core.task_robot import require_robot_of
-from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.task_robot import load_task_and_robot
+from kurt2rt.core.task_settings import taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.jobs import JobParts
@@ -128,9 +127,8 @@ def transfer(options: _Options) -> None:
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.transfer.figures import draw_curves
 
-    robot = load_robot_of(options.robot_settings, options.task)
-    task = taught_by(load_task(options.task, changes=changes_of(options.changes)), load_teacher(options.teacher))
-    require_robot_of(task, options.task, robot)
+    shipped, robot = load_task_and_robot(options.task, options.robot_settings, changes=changes_of(options.changes))
+    task = taught_by(shipped, load_teacher(options.teacher))
     results = Results(options.out)
     plan = make_plan(
         task,

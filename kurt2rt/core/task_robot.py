@@ -1,10 +1,32 @@
-"""Check that a task is driven by a robot with its sensors."""
+"""A task with the robot that is to drive it, which must have its sensors."""
+
+from collections.abc import Mapping
 
 from hal.robot_plugins import robot_of_task
-from hal.robot_settings import DEFAULT_KIND, RobotSettings, load_robot, robot_that_task_names
+from hal.robot_settings import DEFAULT_KIND, RobotSettings, load_robot, load_robot_of, robot_that_task_names
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.task_settings import TaskSettings, load_task
+
+
+def load_task_and_robot(
+    name: str, robot: str | None, *, plain: bool = False, changes: Mapping[str, str] | None = None
+) -> tuple[TaskSettings, RobotSettings]:
+    """Load a task, and the robot that is to drive it.
+
+    Args:
+        name: of the task, or its path.
+        robot: by name or path; None: the robot of the task.
+        plain: take the task's settings of the plain reading (load_task).
+        changes: of the task's keys (load_task).
+
+    Raises:
+        hal.settings.SettingsError: one of them cannot be loaded, or the robot lacks sensors of the task.
+    """
+    settings = load_robot_of(robot, name)
+    task = load_task(name, plain=plain, changes=changes)
+    require_robot_of(task, name, settings)
+    return task, settings
 
 
 def require_robot_of(task: TaskSettings, name: str, robot: RobotSettings) -> None:
