@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 
 from hal.robot_kind import simulations_of
 from hal.robot_settings import RobotSettings, load_robot_of
@@ -31,7 +32,7 @@ from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
-from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
+from kurt2rt.experiments.rivals.leagues import LeagueName, rows_of_league
 from kurt2rt.experiments.rivals.rival import Rival
 from kurt2rt.experiments.rivals.tuned import load_tuned
 from kurt2rt.experiments.study.loop_choice import LoopRequest
@@ -105,10 +106,12 @@ def rivals(options: _Options) -> None:
     restores; each row is compared with the RLA system robot by robot.
 
     For example, the league with the settings that an equal tuning found;
-    another league; one learner with another gate; and your own:
+    another league, and all three on one page; one learner with another
+    gate; and your own:
 
         kurt2rt rivals --tuned presses
         kurt2rt rivals --league holds
+        kurt2rt rivals --league all --tuned presses
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
         kurt2rt rivals --learner mine:Mine --check
 
@@ -121,15 +124,14 @@ def rivals(options: _Options) -> None:
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
     for name, task in zip(names, tasks, strict=True):
         require_robot_of(task, name, robot)
-    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or ROWS[options.league])]
+    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or rows_of_league(options.league))]
     if options.check:
         _check(chosen, tasks[0], robot, options)
         return
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.rivals.figures import draw_curves
     from kurt2rt.experiments.rivals.plan import make_plan, read_league
-    from kurt2rt.experiments.rivals.report import write_report
-    from kurt2rt.experiments.rivals.tables import all_tables
+    from kurt2rt.experiments.rivals.report import overview_tables, write_report
+    from kurt2rt.experiments.rivals.sections import make_sections, report_name
     from kurt2rt.experiments.study.eligibility import reasons_against_judging
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
@@ -152,18 +154,23 @@ def rivals(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    name = "" if options.league is LeagueName.PRESSES else f"{options.league}-"
-    report, not_judged = options.out / f"{name}report.html", list(reasons_against_judging(plan.seeds))
+    not_judged = list(reasons_against_judging(plan.seeds))
     with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
-        bar.say("figure and report")
+        bar.say("figures and report")
         league = read_league(plan, results)
-        tables = list(all_tables(league))
-        picture = draw_curves(league, options.out / f"{name}rivals.png")
-        write_report(league, tables, picture, not_judged, command, report)
+        sections = make_sections(league, options.out)
+        report = options.out / report_name(sections)
+        write_report(league, sections, not_judged, command, report)
+    overview = overview_tables(league, sections)
     if options.as_json:
-        print_json({"tables": tables_of(tables), "not_judged": not_judged, "report": report})
+        own = (table | {"league": each.name} for each in sections for table in tables_of(each.tables))
+        tables = [*tables_of(overview), *own]
+        print_json({"tables": tables, "not_judged": not_judged, "report": report})
         return
-    print_whole(console_of(), *map(as_rich, tables), *not_judged, f"report  {report}")
+    shown: list[RenderableType] = [*map(as_rich, overview)]
+    for each in sections:
+        shown += ([each.title] if overview else []) + [*map(as_rich, each.tables)]
+    print_whole(console_of(), *shown, *not_judged, f"report  {report}")
 
 
 def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, options: _Options) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from enum import StrEnum
 
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
-from kurt2rt.experiments.rivals.rival import ACTS, ASKS_AT_RANDOM, PLAIN, SHIPPED, TUNED
+from kurt2rt.experiments.rivals.rival import ACTS, ASKS_AT_RANDOM, PLAIN, SHIPPED, TUNED, Rival
 from kurt2rt.experiments.rivals.signals.rows import TITLES as SIGNALS
 
 
@@ -17,9 +17,17 @@ class LeagueName(StrEnum):
     """The teacher takes charge of the robot, drives it by held actions, and gives it back."""
     SIGNALS = "signals"
     """Rewards of +1 and -1 by the judge of the task, and nothing else."""
+    ALL = "all"
+    """The three leagues, on one page."""
 
 
-ROWS: Mapping[LeagueName, tuple[str, ...]] = {
+TITLES: Mapping[LeagueName, str] = {
+    LeagueName.PRESSES: "Taught by presses",
+    LeagueName.HOLDS: "Taught by a teacher in charge",
+    LeagueName.SIGNALS: "Taught by rewards",
+}
+"""Title of each league but `ALL`, in the order of a page."""
+_ROWS: Mapping[LeagueName, tuple[str, ...]] = {
     LeagueName.PRESSES: (
         SHIPPED,
         TUNED,
@@ -41,4 +49,17 @@ ROWS: Mapping[LeagueName, tuple[str, ...]] = {
     LeagueName.HOLDS: (SHIPPED, *HOLDS),
     LeagueName.SIGNALS: (SHIPPED, *SIGNALS),
 }
-"""Names of the rivals of each league, in the order of the tables."""
+
+
+def rows_of_league(name: LeagueName) -> tuple[str, ...]:
+    """Return the names of the rivals of a league, each once, in the order of the tables."""
+    if name is LeagueName.ALL:
+        return tuple(dict.fromkeys(row for rows in _ROWS.values() for row in rows))
+    return _ROWS[name]
+
+
+def league_of(rival: Rival) -> LeagueName:
+    """Return the league of a rival, by what a teacher gives it. Raises NoLearnerError."""
+    if rival.is_held:
+        return LeagueName.HOLDS
+    return LeagueName.SIGNALS if rival.is_rewarded else LeagueName.PRESSES

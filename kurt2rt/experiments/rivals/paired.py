@@ -1,8 +1,11 @@
 """Paired comparison of two rivals: McNemar's exact test, and Holm's correction for many of them."""
 
 from collections.abc import Sequence
-from math import comb
+from math import comb, sqrt
+from statistics import mean, stdev
 from typing import NamedTuple
+
+from scipy.stats import t as students_t
 
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 
@@ -19,6 +22,27 @@ def pairs_of(first: Sequence[RivalOutcome], second: Sequence[RivalOutcome]) -> P
     ends = [(one.checkpoints[-1], other.checkpoints[-1]) for one, other in zip(first, second, strict=True)]
     judged = [(one.passed, other.passed) for one, other in ends if one.judged and other.judged]
     return Pairs(judged.count((True, False)), judged.count((False, True)))
+
+
+class Saving(NamedTuple):
+    """Presses that the second of two rivals needs fewer on the same robot: mean, and its 95 % interval."""
+
+    mean: float
+    low: float
+    high: float
+
+
+def saving_of(first: Sequence[RivalOutcome], second: Sequence[RivalOutcome]) -> Saving | None:
+    """Return the presses that the second of two rivals saves on robots of equal seeds; None for a single robot.
+
+    The interval is Student's, of the differences robot by robot.
+    """
+    fewer = [one.presses - other.presses for one, other in zip(first, second, strict=True)]
+    if len(fewer) < 2:
+        return None
+    middle = mean(fewer)
+    half = float(students_t.ppf(0.975, len(fewer) - 1)) * stdev(fewer) / sqrt(len(fewer))
+    return Saving(middle, middle - half, middle + half)
 
 
 def mcnemar_p(pairs: Pairs) -> float:

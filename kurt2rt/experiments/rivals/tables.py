@@ -6,7 +6,7 @@ from statistics import median
 from kurt2rt.experiments.rivals.cells import heading, rows_of, share_text
 from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
-from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
+from kurt2rt.experiments.rivals.paired import Saving, holm, mcnemar_p, pairs_of, saving_of
 from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
@@ -72,15 +72,24 @@ def comparison_table(league: League) -> Table:
         pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
         p_values = [mcnemar_p(each) for each in pairs]
         for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
-            rows.append((*heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}"))
+            saved = _saving_text(saving_of(shipped.outcomes, row.outcomes))
+            rows.append((*heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}", saved))
     return Table(
         "Compared with the RLA system as shipped, robot by robot",
-        ("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
+        (
+            *("task", "learner", "only the RLA system passes", "only the learner passes", "p", "p by Holm"),
+            "presses fewer, mean (95 %)",
+        ),
         tuple(rows),
         words=2,
         note="At the end of the lessons, on the same robots. p: McNemar's exact test, two-sided; by Holm: corrected "
-        "for the number of rows of the task.",
+        "for the number of rows of the task. Presses fewer than the RLA system's: mean of the differences robot by "
+        "robot, with Student's interval; below 0 the learner takes more.",
     )
+
+
+def _saving_text(saved: Saving | None) -> str:
+    return "-" if saved is None else f"{saved.mean:.1f} ({saved.low:.1f} to {saved.high:.1f})"
 
 
 def effort_table(league: League) -> Table:

@@ -15,7 +15,7 @@ from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
 from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
 from kurt2rt.experiments.rivals.jobs import RivalJob
-from kurt2rt.experiments.rivals.leagues import ROWS, LeagueName
+from kurt2rt.experiments.rivals.leagues import LeagueName, rows_of_league
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.plan import make_plan
 from kurt2rt.experiments.rivals.rival import ASKS_AT_RANDOM, TUNED, Rival
@@ -26,7 +26,7 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.rivals.test_league import Breaking
 
 IN_BATCH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
-IN_BATCH_TOO = [each for each in ROWS[LeagueName.PRESSES] if each not in (TUNED, ASKS_AT_RANDOM)]
+IN_BATCH_TOO = [each for each in rows_of_league(LeagueName.PRESSES) if each not in (TUNED, ASKS_AT_RANDOM)]
 """Rows with a lesson in the batch: one row has settings of a tuning, and one counts ticks of the CAN loop."""
 
 

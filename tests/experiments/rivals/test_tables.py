@@ -4,10 +4,12 @@ from pathlib import Path
 from matplotlib.image import imread
 
 from kurt2rt.experiments.rivals.claims import claim_table, hands_table
-from kurt2rt.experiments.rivals.figures import draw_curves
+from kurt2rt.experiments.rivals.leagues import TITLES, LeagueName, rows_of_league
+from kurt2rt.experiments.rivals.leagues import league_of as league_of_rival
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.report import write_report
-from kurt2rt.experiments.rivals.rival import Rival
+from kurt2rt.experiments.rivals.rival import SHIPPED, Rival
+from kurt2rt.experiments.rivals.sections import make_sections, overview_table, report_name
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
     comparison_table,
@@ -76,7 +78,14 @@ def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
 
 def test_comparison_is_paired_by_robot(tmp_path: Path) -> None:
     table = comparison_table(league_of(Results(tmp_path), OURS, THEIRS))
-    assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500"),)
+    assert table.rows == (("wall_following", "1-NN without R", "2", "0", "0.500", "0.500", "0.0 (0.0 to 0.0)"),)
+
+
+def test_presses_are_compared_robot_by_robot(tmp_path: Path) -> None:
+    more = tuple(each.model_copy(update={"presses": 8 + each.seed}) for each in OURS)
+    (row,) = comparison_table(league_of(Results(tmp_path), more, OURS)).rows
+    assert row[-1] == "2.0 (-0.5 to 4.5)"  # 1, 2 and 3 presses: Student's 4.303 / sqrt(3) about 2
+    assert comparison_table(league_of(Results(tmp_path), OURS[:1], OURS[:1])).rows[0][-1] == "-"
 
 
 def test_effort_tells_collisions_of_all_robots(tmp_path: Path) -> None:
@@ -99,11 +108,51 @@ def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
 
 def test_report_says_which_rivals_were_tuned(tmp_path: Path) -> None:
     league = league_of(Results(tmp_path), OURS, THEIRS)
-    picture = draw_curves(league, tmp_path / "rivals.png")
-    assert imread(picture.path).shape[1] > 500
-    page = tmp_path / "report.html"
-    write_report(league, list(all_tables(league)), picture, ["3 robots only"], "kurt2rt rivals", page)
+    (section,) = sections = make_sections(league, tmp_path)
+    assert imread(section.picture.path).shape[1] > 500
+    page = tmp_path / report_name(sections)
+    write_report(league, sections, ["3 robots only"], "kurt2rt rivals", page)
+    assert page.name == "report.html"
     text = page.read_text(encoding="utf-8")
     assert "with the defaults of their classes: 1-NN without R" in text
     assert "3 robots only" in text
-    assert "1-NN without R" in text
+    assert "All learners in short" not in text
+
+
+def test_page_of_all_leagues_has_a_section_for_each(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    ours, theirs = league.rows
+    others = [replace(theirs, entry=replace(theirs.entry, rival=Rival(name))) for name in ("hg-dagger", "tamer")]
+    league = replace(league, rows=(ours, theirs, *others))
+    sections = make_sections(league, tmp_path)
+    assert [[row.entry.rival.name for row in each.league.rows] for each in sections] == [
+        ["rla", "1-nn"],
+        ["rla", "hg-dagger"],
+        ["rla", "tamer"],
+    ]
+    page = tmp_path / report_name(sections)
+    write_report(league, sections, [], "kurt2rt rivals", page)
+    assert page.name == "all-report.html"
+    assert {each.name for each in tmp_path.glob("*.png")} == {"rivals.png", "holds-rivals.png", "signals-rivals.png"}
+    text = page.read_text(encoding="utf-8")
+    assert text.count("<img ") == 3
+    assert (
+        text.index("All learners in short") < text.index("<h2>Taught by presses") < text.index("<h2>Taught by rewards")
+    )
+
+
+def test_overview_has_one_row_for_each_learner(tmp_path: Path) -> None:
+    ours, theirs = overview_table(league_of(Results(tmp_path), OURS, THEIRS)).rows
+    assert ours[:3] == ("wall_following", "RLA, as shipped", "presses")
+    assert [cell.partition(" (")[0] for cell in (ours[3], theirs[3])] == ["2 of 2", "1 of 3"]
+    assert theirs[4:] == ("8", "6", "30", "3", "3 of 3", "0.500")
+    assert ours[-1] == ""
+
+
+def test_all_leagues_share_the_shipped_system() -> None:
+    every = [rows_of_league(name) for name in TITLES]
+    assert rows_of_league(LeagueName.ALL).count(SHIPPED) == 1
+    assert set(rows_of_league(LeagueName.ALL)) == set().union(*every)
+    assert all(
+        league_of_rival(Rival(row)) is name for name, rows in zip(TITLES, every, strict=True) for row in rows[1:]
+    )

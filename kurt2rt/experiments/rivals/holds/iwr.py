@@ -31,7 +31,7 @@ class Iwr(Cloning):
             actions_of(samples),
             len(self.setting.actions),
             self.setting.seed,
-            self.weights(np.array(interventions)),
+            weights=self.weights(np.array(interventions)),
         )
 
     @staticmethod

