@@ -47,15 +47,20 @@ _NOT_TUNED = "none"
 class _Options:
     """Options of `kurt2rt rivals`."""
 
-    league: Annotated[LeagueName, typer.Option(help="League whose rivals take part where no --learner is given.")] = (
-        LeagueName.PRESSES
-    )
+    league: Annotated[
+        LeagueName | None,
+        typer.Option(
+            help="League whose rivals take part, besides those of --learner. Default: presses without --learner, else "
+            "no more than those.",
+            show_default=False,
+        ),
+    ] = None
     learner: Annotated[
         list[str] | None,
         typer.Option(
             metavar="NAME[=GATE]",
             help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
-            "number by which it asks. May be given again. Default: all of the league.",
+            "number by which it asks. May be given again.",
             show_default=False,
         ),
     ] = None
@@ -106,14 +111,14 @@ def rivals(options: _Options) -> None:
     restores; each row is compared with the RLA system robot by robot.
 
     For example, the league with the settings that an equal tuning found;
-    another league, and all three on one page; one learner with another
-    gate; and your own:
+    another league; one learner with another gate; your own; and all three
+    leagues on one page, with yours:
 
         kurt2rt rivals --tuned presses
         kurt2rt rivals --league holds
-        kurt2rt rivals --league all --tuned presses
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
         kurt2rt rivals --learner mine:Mine --check
+        kurt2rt rivals --league all --tuned presses --learner mine:Mine
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. docs/add-a-learner.md says how to write
@@ -124,7 +129,7 @@ def rivals(options: _Options) -> None:
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
     for name, task in zip(names, tasks, strict=True):
         require_robot_of(task, name, robot)
-    chosen = [Rival.parse(name) for name in dict.fromkeys(options.learner or rows_of_league(options.league))]
+    chosen = [Rival.parse(name) for name in _names_of_rivals(options)]
     if options.check:
         _check(chosen, tasks[0], robot, options)
         return
@@ -171,6 +176,13 @@ def rivals(options: _Options) -> None:
     for each in sections:
         shown += ([each.title] if overview else []) + [*map(as_rich, each.tables)]
     print_whole(console_of(), *shown, *not_judged, f"report  {report}")
+
+
+def _names_of_rivals(options: _Options) -> tuple[str, ...]:
+    """Return the names of the rows, each once: those of the league, then those of --learner."""
+    own = options.learner or ()
+    league = options.league or (None if own else LeagueName.PRESSES)
+    return tuple(dict.fromkeys((*(rows_of_league(league) if league else ()), *own)))
 
 
 def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, options: _Options) -> None:

@@ -58,6 +58,28 @@ def test_check_names_broken_promises_and_fails(kurt2rt: CommandLine) -> None:
     assert not Path("results").exists()
 
 
+def test_learner_of_ones_own_stands_with_a_league(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("rivals", "--league", "signals", "--learner", "k-nn", "--learner", "tamer", "--check", "--json")
+    assert said.exit_code == 0, said.err
+    names = list(json.loads(said.out)["broken"])
+    assert names[-1] == "k-nn"
+    assert names.count("tamer") == 1
+    assert "coach" in names
+
+
+def test_leagues_on_one_page_say_which_table_is_whose(kurt2rt: CommandLine) -> None:
+    words = ("rivals", "--learner", "k-nn", "--learner", "tamer", *SHORT)
+    said = kurt2rt(*words, "--json")
+    assert said.exit_code == 0, said.err
+    document = json.loads(said.out)
+    overview, *tables = document["tables"]
+    assert [row[2] for row in overview["rows"]] == ["presses", "presses", "rewards"]
+    assert {table["league"] for table in tables} == {"presses", "signals"}
+    assert Path(document["report"]).name == "all-report.html"
+    shown = kurt2rt(*words).out
+    assert shown.index("All learners in short") < shown.index("Taught by presses") < shown.index("Taught by rewards")
+
+
 def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
     assert "there is no such learner" in kurt2rt.refused("rivals", "--learner", "deep-thought", *SHORT)
     assert not Path("made").exists()
