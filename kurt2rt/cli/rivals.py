@@ -54,7 +54,8 @@ class _Options:
         typer.Option(
             metavar="NAME[=GATE]",
             help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
-            "number by which it asks. May be given again. Default: all of the league.",
+            "number by which it asks; of the agents dqn, qr-dqn and ppo it is the robot life in s in which they are "
+            "trained. May be given again. Default: all of the league.",
             show_default=False,
         ),
     ] = None
@@ -105,11 +106,13 @@ def rivals(options: _Options) -> None:
     restores; each row is compared with the RLA system robot by robot.
 
     For example, the league with the settings that an equal tuning found;
-    another league; one learner with another gate; and your own:
+    another league; one learner with another gate; an agent that is trained
+    for an hour; and your own:
 
         kurt2rt rivals --tuned presses
         kurt2rt rivals --league holds
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
+        kurt2rt rivals --league signals --learner ppo=3600
         kurt2rt rivals --learner mine:Mine --check
 
     Results are kept in --out with hashes of what made them; a run that was
@@ -175,14 +178,19 @@ def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, option
         for each in chosen
         if each.is_learner
     }
+    trained = {
+        each.name: "is trained by its own trials, so lessons teach it nothing" for each in chosen if each.is_agent
+    }
     if options.as_json:
         print_json(
             {
                 "broken": {name: each.broken for name, each in found.items()},
-                "notes": {name: each.note for name, each in found.items()},
+                "notes": {name: each.note for name, each in found.items()} | trained,
             }
         )
     else:
+        for name, text in trained.items():
+            typer.echo(f"{name}: {text}")
         for name, (broken, note) in found.items():
             typer.echo(f"{name}: " + ("keeps all promises" if not broken else "breaks promises"))
             for line in (*broken, *filter(None, (note,))):

@@ -7,6 +7,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.rivals.agents.agent_job import AgentJob
 from kurt2rt.experiments.rivals.holds.jobs import HeldRivalJob
 from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
@@ -19,7 +20,7 @@ from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopCho
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 
-DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob, RandomQuestionsJob)
+DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob, RandomQuestionsJob, AgentJob)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -91,8 +92,8 @@ def make_plan(
         source_of: returns the hash of the program's source.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
-        NoLearnerError: there is no such learner.
+        hal.settings.SettingsError: a task and a world do not fit, or a task and a rival.
+        NoLearnerError: there is no such learner, or it cannot be trained.
     """
     factory = parts["factory"]
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
@@ -109,9 +110,9 @@ def make_plan(
         for rival in (row.tuned_by(None if tuned is None else tuned.of(task.name, row.name)) for row in rows):
             if rival.name == TUNED and not rival.tuned:
                 continue
-            own = rival.task(task)
+            own, kind = rival.task(task), _job_class(rival)
+            kind.require(rival, own, parts["robot"])
             made = fingerprints.of(own, worlds, repr(tuple(after)), learner=rival.source)
-            kind = _job_class(rival)
             jobs = tuple(
                 kind(
                     task=own,
@@ -130,6 +131,8 @@ def make_plan(
 
 
 def _job_class(rival: Rival) -> type[RivalJob]:
+    if rival.is_agent:
+        return AgentJob
     if rival.name == ASKS_AT_RANDOM:
         return RandomQuestionsJob
     if rival.is_held:

@@ -36,6 +36,7 @@ def write_report(
         seeds=spans(plan.seeds),
         by_holds=any(entry.rival.is_held for entry in plan.entries),
         by_rewards=any(entry.rival.is_rewarded for entry in plan.entries),
+        by_trials=any(entry.rival.is_agent for entry in plan.entries),
         command=command,
         source=plan.policy_jobs[0].made_of.source,
     )
