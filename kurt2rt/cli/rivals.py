@@ -60,7 +60,8 @@ class _Options:
         typer.Option(
             metavar="NAME[=GATE]",
             help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
-            "number by which it asks. May be given again.",
+            "number by which it asks; of the agents dqn, qr-dqn and ppo it is the robot life in s in which they are "
+            "trained. May be given again.",
             show_default=False,
         ),
     ] = None
@@ -111,12 +112,13 @@ def rivals(options: _Options) -> None:
     restores; each row is compared with the RLA system robot by robot.
 
     For example, the league with the settings that an equal tuning found;
-    another league; one learner with another gate; your own; and all three
-    leagues on one page, with yours:
+    another league; one learner with another gate; an agent that is trained
+    for an hour; your own; and all three leagues on one page, with yours:
 
         kurt2rt rivals --tuned presses
         kurt2rt rivals --league holds
         kurt2rt rivals --learner k-nn=0.8 --task fleeing --task eight
+        kurt2rt rivals --league signals --learner ppo=3600
         kurt2rt rivals --learner mine:Mine --check
         kurt2rt rivals --league all --tuned presses --learner mine:Mine
 
@@ -152,6 +154,7 @@ def rivals(options: _Options) -> None:
         parse_seeds(options.seeds),
         after,
         parts,
+        optional=set(_names_of_rivals(options)) - set(options.learner or ()),
         tuned=tuned,
         loops=requested_loops(options.lessons, options.exams),
     )
@@ -159,7 +162,7 @@ def rivals(options: _Options) -> None:
     if options.shard is not None:
         run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
         return
-    not_judged = list(reasons_against_judging(plan.seeds))
+    not_judged = [*reasons_against_judging(plan.seeds), *plan.left_out]
     with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figures and report")
         league = read_league(plan, results)
@@ -194,14 +197,19 @@ def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, option
         for each in chosen
         if each.is_learner
     }
+    trained = {
+        each.name: "is trained by its own trials, so lessons teach it nothing" for each in chosen if each.is_agent
+    }
     if options.as_json:
         print_json(
             {
                 "broken": {name: each.broken for name, each in found.items()},
-                "notes": {name: each.note for name, each in found.items()},
+                "notes": {name: each.note for name, each in found.items()} | trained,
             }
         )
     else:
+        for name, text in trained.items():
+            typer.echo(f"{name}: {text}")
         for name, (broken, note) in found.items():
             typer.echo(f"{name}: " + ("keeps all promises" if not broken else "breaks promises"))
             for line in (*broken, *filter(None, (note,))):

@@ -4,12 +4,12 @@ from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 
 
-def load_agent_task(name_or_path: str) -> TaskSettings:
-    """Return a task without its mid level.
+def load_agent_task(named: str | TaskSettings) -> TaskSettings:
+    """Return a task without its mid level. `named`: its name or path, or the task itself.
 
     Raises hal.settings.SettingsError for a missing or invalid file, or for a task with several behaviours.
     """
-    task = load_task(name_or_path)
+    task = load_task(named) if isinstance(named, str) else named
     if len(task.behaviours) > 1:
         raise SettingsError(
             f"task {task.name}: an environment has one behaviour (got {', '.join(task.behaviours)})",

@@ -8,9 +8,10 @@ import numpy as np
 from gymnasium.spaces import Discrete
 from numpy.typing import NDArray
 
-from hal.kurt2_settings import load_kurt2
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.gym.agent_task import load_agent_task
@@ -42,8 +43,9 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
 
     def __init__(
         self,
-        task: str,
+        task: str | TaskSettings,
         *,
+        robot: Kurt2Settings | None = None,
         world: str | None = None,
         averages: bool = False,
         reward: str | None = None,
@@ -55,7 +57,8 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         """Load the task.
 
         Args:
-            task: name or path of a task with one behaviour.
+            task: name or path of a task with one behaviour, or the task itself.
+            robot: settings of the KURT2; None: the shipped ones.
             world: name or path; None: the world that the task is taught in.
             averages: observe the averages of the last 10 s as well.
             reward: source of the rewards, "judge" or "teacher"; None: the judge if the task has one.
@@ -67,7 +70,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         Raises:
             hal.settings.SettingsError: for a task, world or option that cannot be used.
         """
-        self._settings = load_kurt2()
+        self._settings = robot or load_kurt2()
         self._task = load_agent_task(task)
         self._factory = Kurt2SimulationFactory(self._settings)
         self._world = world or self._task.teaching.world

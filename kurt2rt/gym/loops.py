@@ -7,6 +7,12 @@ from kurt2rt.gym.batch_drive import BatchDrive
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.moment import AgentDrive
+from simbridge.batch.compiled import IS_COMPILED
+
+
+def quickest_loop() -> DriveLoop:
+    """Return the batch, or without the compiler (extra `fast`) the CAN bus, which is quicker then."""
+    return DriveLoop.BATCH if IS_COMPILED else DriveLoop.BUS
 
 
 def read_loop(name: str) -> DriveLoop:

@@ -5,9 +5,8 @@ from typing import Any
 
 from gymnasium.vector import SyncVectorEnv
 
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.gym.environment import TaskEnvironment
-from simbridge.batch.compiled import IS_COMPILED
+from kurt2rt.gym.loops import quickest_loop
 
 
 def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
@@ -18,5 +17,5 @@ def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
     Raises:
         hal.settings.SettingsError: for a task, world or option that cannot be used.
     """
-    options.setdefault("loop", DriveLoop.BATCH.value if IS_COMPILED else DriveLoop.BUS.value)
+    options.setdefault("loop", quickest_loop().value)
     return SyncVectorEnv([partial(TaskEnvironment, **options)] * num_envs)

@@ -26,7 +26,8 @@ def claim_table(league: League) -> Table:
         _rows(league, _success_cells),
         words=1,
         note="At the end of the lessons, with the same teacher's effort for all. The best of many rows is chosen after "
-        "the fact, which favours it. Other rows of the RLA system do not count.",
+        "the fact, which favours it. Other rows of the RLA system do not count, nor do agents: a judge "
+        "rewards them ten times a second, for a robot life of their own.",
     )
 
 
@@ -47,11 +48,16 @@ def _rows(league: League, cells: Callable[[Row, Sequence[Row]], Cells | None]) -
     rows = []
     for task in league.plan.tasks:
         shipped, others = league.of_task(task.name)
-        rivals = [row for row in others if row.judged and not row.entry.rival.is_rla_system]
+        rivals = [row for row in others if row.judged and _has_its_effort(row)]
         told = cells(shipped, rivals) if shipped.judged else None
         if told is not None:
             rows.append((task.name, *told))
     return tuple(rows)
+
+
+def _has_its_effort(row: Row) -> bool:
+    """Return whether a row is of another learner, with the same teacher's effort."""
+    return not (row.entry.rival.is_rla_system or row.entry.rival.is_agent)
 
 
 def _success_cells(shipped: Row, rivals: Sequence[Row]) -> Cells | None:

@@ -7,13 +7,16 @@ from typing import ClassVar
 
 import numpy as np
 
+from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.learner.learner import OWN, Label, LearnerFactory, Signal
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.packing import pack
 from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, DriveLoops
@@ -87,6 +90,13 @@ class RivalJob(StudyJob):
     """Numbers of presses after which the robot is examined, ascending."""
     policy: PolicyJob
     """Job of the wave before, whose drives judge this one's."""
+
+    @classmethod
+    def require(cls, rival: Rival, task: TaskSettings, robot: RobotSettings) -> None:
+        """Check that such a job can be done, before any is; a subclass may refuse.
+
+        Raises NoLearnerError, and hal.settings.SettingsError.
+        """
 
     @property
     def name(self) -> str:
@@ -198,14 +208,26 @@ class RivalJob(StudyJob):
         loop: DriveLoop,
         report: Report,
     ) -> tuple[Drive, ...]:
-        """Return the drives in each world, up to the first that failed: one failure decides the success."""
-        task, team = self.rival.examined(self.task), self._new_team(clock)
+        team = self._new_team(clock)
         if team is not None:
             team.teach_all(mark.lessons)
+        return await self._drives(team, mark.events, policies, failures, loop, report)
+
+    async def _drives(
+        self,
+        team: LearnerTeam | None,
+        events: Sequence[TeachingEvent],
+        policies: Sequence[Drive],
+        failures: list[str],
+        loop: DriveLoop,
+        report: Report,
+    ) -> tuple[Drive, ...]:
+        """Return the drives in each world, up to the first that failed: one failure decides the success."""
+        task = self.rival.examined(self.task)
         drives: list[Drive] = []
         for world, policy in zip(task.exam.worlds, policies, strict=True):
             setup = ExamSetup(world, self.seed, learners=team)
-            exams = [BatchExam(setup, mark.events)]
+            exams = [BatchExam(setup, events)]
             (exam,) = await run_drives(self.factory, self.robot, task, exams, report, loop)
             drives.append(drive_of(exam, verdict_by(policy, exam, task.exam.success)))
             if team is not None:

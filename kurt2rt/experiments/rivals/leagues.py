@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from enum import StrEnum
 
+from kurt2rt.experiments.rivals.agents.rows import AGENTS
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLDS
 from kurt2rt.experiments.rivals.rival import ACTS, ASKS_AT_RANDOM, PLAIN, SHIPPED, TUNED, Rival
 from kurt2rt.experiments.rivals.signals.rows import TITLES as SIGNALS
@@ -16,7 +17,7 @@ class LeagueName(StrEnum):
     HOLDS = "holds"
     """The teacher takes charge of the robot, drives it by held actions, and gives it back."""
     SIGNALS = "signals"
-    """Rewards of +1 and -1 by the judge of the task, and nothing else."""
+    """Rewards of +1 and -1 by the judge of the task, and nothing else: a teacher's few, or those of each decision."""
     ALL = "all"
     """The three leagues, on one page."""
 
@@ -47,7 +48,7 @@ _ROWS: Mapping[LeagueName, tuple[str, ...]] = {
         "mlp-ensemble",
     ),
     LeagueName.HOLDS: (SHIPPED, *HOLDS),
-    LeagueName.SIGNALS: (SHIPPED, *SIGNALS),
+    LeagueName.SIGNALS: (SHIPPED, *SIGNALS, *AGENTS),
 }
 
 
@@ -62,4 +63,4 @@ def league_of(rival: Rival) -> LeagueName:
     """Return the league of a rival, by what a teacher gives it. Raises NoLearnerError."""
     if rival.is_held:
         return LeagueName.HOLDS
-    return LeagueName.SIGNALS if rival.is_rewarded else LeagueName.PRESSES
+    return LeagueName.SIGNALS if rival.is_rewarded or rival.is_agent else LeagueName.PRESSES

@@ -1,12 +1,14 @@
 """Plan of a league: every rival is taught as every robot, task by task, after the policy's own drives."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, replace
 
+from hal.errors import UserError
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.rivals.agents.agent_job import AgentJob
 from kurt2rt.experiments.rivals.holds.jobs import HeldRivalJob
 from kurt2rt.experiments.rivals.jobs import PolicyJob, RivalJob
 from kurt2rt.experiments.rivals.outcome import PolicyOutcome, RivalOutcome
@@ -19,7 +21,7 @@ from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopCho
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 
-DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob, RandomQuestionsJob)
+DECIDING = (PolicyJob, RivalJob, HeldRivalJob, RewardedRivalJob, RandomQuestionsJob, AgentJob)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -42,6 +44,8 @@ class LeaguePlan:
     policy_jobs: tuple[PolicyJob, ...]
     entries: tuple[Entry, ...]
 
+    left_out: tuple[str, ...] = ()
+    """Sentences about rivals that take no part in a task."""
     choice: LoopChoice = NO_CHOICE
     """Loops of the jobs."""
 
@@ -74,6 +78,7 @@ def make_plan(
     after: Sequence[int],
     parts: JobParts,
     *,
+    optional: Container[str] = (),
     tuned: TunedRivals | None = None,
     loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
@@ -86,19 +91,20 @@ def make_plan(
         seeds: one robot each.
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
+        optional: names of rivals that are left out of a task that they cannot do; others are refused.
         tuned: settings that were found for rivals; those that are not among them keep their own.
         loops: that drive lessons and exams.
         source_of: returns the hash of the program's source.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
-        NoLearnerError: there is no such learner.
+        hal.settings.SettingsError: a task and a world do not fit, or a task and a rival.
+        NoLearnerError: there is no such learner, or it cannot be trained.
     """
     factory = parts["factory"]
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     rows = tuple(dict.fromkeys((Rival(SHIPPED), *rivals)))
     policies: dict[tuple[str, int], PolicyJob] = {}
-    entries = []
+    entries, left_out = [], list[str]()
     for task in tasks:
         worlds = (task.teaching.world, *task.exam.worlds)
         factory.require_worlds(*dict.fromkeys(worlds))
@@ -109,9 +115,15 @@ def make_plan(
         for rival in (row.tuned_by(None if tuned is None else tuned.of(task.name, row.name)) for row in rows):
             if rival.name == TUNED and not rival.tuned:
                 continue
-            own = rival.task(task)
+            own, kind = rival.task(task), _job_class(rival)
+            try:
+                kind.require(rival, own, parts["robot"])
+            except UserError as error:
+                if rival.name not in optional:
+                    raise
+                left_out.append(f"{task.name}: {rival.title} takes no part, because {error.what}")
+                continue
             made = fingerprints.of(own, worlds, repr(tuple(after)), learner=rival.source)
-            kind = _job_class(rival)
             jobs = tuple(
                 kind(
                     task=own,
@@ -126,10 +138,13 @@ def make_plan(
             )
             entries.append(Entry(task.name, rival, jobs))
     plan = LeaguePlan(tuple(tasks), tuple(seeds), tuple(after), tuple(policies.values()), tuple(entries))
+    plan = replace(plan, left_out=tuple(left_out))
     return plan.driven(loops, parts["robot"])
 
 
 def _job_class(rival: Rival) -> type[RivalJob]:
+    if rival.is_agent:
+        return AgentJob
     if rival.name == ASKS_AT_RANDOM:
         return RandomQuestionsJob
     if rival.is_held:

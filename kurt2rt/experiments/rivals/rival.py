@@ -8,6 +8,7 @@ from kurt2rt.core.learner.learner import LearnerFactory
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.rivals.agents.rows import AGENTS, PACKAGES, agent_title
 from kurt2rt.experiments.rivals.holds.rows import HELD
 from kurt2rt.experiments.rivals.holds.rows import TITLES as HOLD_TITLES
 from kurt2rt.experiments.rivals.registry import NoLearnerError, find_learner, learner_names, source_of_learner
@@ -26,6 +27,8 @@ ASKS_AT_RANDOM = "vote-asks-at-random"
 """Name of the vote without a gate whose robot asks at random."""
 _FAR = 1000.0
 """Factor of R in exams of `ACTS`: farther than any situation."""
+_RLA_SYSTEMS = (SHIPPED, PLAIN, TUNED, ACTS, HELD, REWARDED)
+"""Variants that are taught by the RLA level of the robot."""
 _DOOR = ("rla-door", "rla-vote", "rla-svm")
 """Variants of the RLA system that are taught through the door of the learners."""
 _LEARNING = "learning."
@@ -59,7 +62,7 @@ class Rival:
     name: str
     """Name of the RLA system, or of a learner."""
     gate: float | None = None
-    """Number by which a learner asks, of its own unit; None: its default."""
+    """Number by which a learner asks, of its own unit, or robot life of an agent in s; None: its default."""
     tuned: tuple[tuple[str, float], ...] = ()
     """Learning settings of the task that were tuned for this rival, by their names; empty: the task's own."""
 
@@ -73,7 +76,7 @@ class Rival:
             raise NoLearnerError(
                 f"{gate!r} is no number", where=f"learner {name}", do="give NAME=GATE, such as k-nn=0.8"
             ) from error
-        if not rival.is_learner and equals:
+        if not (rival.is_learner or rival.is_agent) and equals:
             raise NoLearnerError("has no gate", where=f"learner {name}", do="give its name alone")
         if rival.is_learner:
             find_learner(name)
@@ -89,12 +92,17 @@ class Rival:
     @property
     def is_learner(self) -> bool:
         """Return whether the rival is taught through the door, and not by the RLA level of the robot."""
-        return self.name not in (SHIPPED, PLAIN, TUNED, ACTS, HELD, REWARDED)
+        return self.name not in _RLA_SYSTEMS and not self.is_agent
+
+    @property
+    def is_agent(self) -> bool:
+        """Return whether the rival is trained by its own trials, for a robot life of its own."""
+        return self.name in AGENTS
 
     @property
     def is_rla_system(self) -> bool:
         """Return whether the rival is a variant of the RLA system, so that no claim counts it as another learner."""
-        return not self.is_learner or self.name in _DOOR
+        return self.name in _RLA_SYSTEMS or self.name in _DOOR
 
     @property
     def is_held(self) -> bool:
@@ -109,6 +117,8 @@ class Rival:
     @property
     def title(self) -> str:
         """Name in tables, with a gate that is not the default."""
+        if self.is_agent:
+            return agent_title(self.name, self.gate)
         title = (_TITLES | HOLD_TITLES | SIGNAL_TITLES).get(self.name, self.name)
         return title if self.gate is None or self.tuned else f"{title} ({self.gate:g})"
 
@@ -116,11 +126,14 @@ class Rival:
     def label(self) -> str:
         """Name in file names."""
         name = self.name.replace(":", ".") + ("-tuned" if self.tuned else "")
-        return name if self.gate is None else f"{name}-gate-{self.gate:g}"
+        number = "life" if self.is_agent else "gate"
+        return name if self.gate is None else f"{name}-{number}-{self.gate:g}"
 
     @property
     def source(self) -> str:
         """Text that changes with all that decides the rival's results, besides the program. Raises NoLearnerError."""
+        if self.is_agent:
+            return " ".join([self.label, *(f"{each} {version(each)}" for each in PACKAGES)])
         if not self.is_learner:
             return self.label
         packages = " ".join(f"{name} {version(name)}" for name in ("scikit-learn", "river"))

@@ -14,17 +14,19 @@ from kurt2rt.experiments.study.table import Table
 _GATES = (
     "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
 )
+_AGENTS = "Agents have the defaults of their libraries but for a few settings, chosen on robots 3900 to 3904. "
 
 
 def tuning_text(league: League) -> str:
     """Return which rivals have settings that were searched, in a sentence or two."""
     others = [row.entry.rival for row in league.rows if row.entry.rival.name != SHIPPED]
     tuned = list(dict.fromkeys(each.title for each in others if each.tuned))
-    own = list(dict.fromkeys(each.title for each in others if not each.tuned))
+    own = list(dict.fromkeys(each.title for each in others if not (each.tuned or each.is_agent)))
     said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
     defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
+    agents = _AGENTS if any(each.is_agent for each in others) else ""
     gates = _GATES if any(each.name == "forest" and not each.tuned for each in others) else ""
-    return f"{said}{defaults}{gates}The settings of the RLA system as shipped were searched for longer."
+    return f"{said}{defaults}{gates}{agents}The settings of the RLA system as shipped were searched for longer."
 
 
 def all_tables(league: League) -> Iterator[Table]:
@@ -117,7 +119,8 @@ def effort_table(league: League) -> Table:
         words=2,
         note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
         "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
-        "teaches it nothing where it says so already. A reward is a label as well, and no press.",
+        "teaches it nothing where it says so already. A reward is a label as well, and no press. Of an "
+        "agent collisions and rescues are those of its training.",
     )
 
 
@@ -167,7 +170,7 @@ def machine_table(league: League) -> Table:
         "of a robot that never got it. A correction acts with the first tick of another action: median and 95th "
         "percentile; a hold acts at once, whatever was learned, and changes nothing where the robot does the same. "
         "Lessons followed: the next decision is as told, in the situation of the lesson; of the RLA system the lessons "
-        "that changed it.",
+        "that changed it. An agent is trained, without the time of the simulation, and cannot undo a reward.",
     )
 
 
@@ -187,7 +190,7 @@ def failure_table(league: League) -> Table:
 
 
 def _of_learner(row: Row) -> tuple[str, str]:
-    if not row.entry.rival.is_learner:
+    if not (row.entry.rival.is_learner or row.entry.rival.is_agent):
         return "", ""
     return (
         f"{median(each.retraining_s for each in row.outcomes):.2f}",

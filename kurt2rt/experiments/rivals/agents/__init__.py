@@ -1,0 +1,1 @@
+"""Agents of deep reinforcement learning, trained by the judge of a task."""
