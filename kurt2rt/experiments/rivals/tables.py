@@ -119,9 +119,14 @@ def effort_table(league: League) -> Table:
         words=2,
         note=f"Medians of {len(league.plan.seeds)} robots; collisions, alarms and rescues of all. Labels: situations "
         "with an action that the learner kept, ten a second of a hold; of the RLA system its lessons, because a hold "
-        "teaches it nothing where it says so already. A reward is a label as well, and no press. Of an "
-        "agent collisions and rescues are those of its training.",
+        "teaches it nothing where it says so already. A reward is a label as well, and no press."
+        + _if_agents(league, " Of an agent collisions and rescues are those of its training."),
     )
+
+
+def _if_agents(league: League, text: str) -> str:
+    """Return a text, or none for a league without agents."""
+    return text if any(entry.rival.is_agent for entry in league.plan.entries) else ""
 
 
 def _tick_p99_ms(row: Row) -> str:
@@ -170,7 +175,8 @@ def machine_table(league: League) -> Table:
         "of a robot that never got it. A correction acts with the first tick of another action: median and 95th "
         "percentile; a hold acts at once, whatever was learned, and changes nothing where the robot does the same. "
         "Lessons followed: the next decision is as told, in the situation of the lesson; of the RLA system the lessons "
-        "that changed it. An agent is trained, without the time of the simulation, and cannot undo a reward.",
+        "that changed it."
+        + _if_agents(league, " An agent's training is without the simulation, and it cannot undo a reward."),
     )
 
 

@@ -59,6 +59,21 @@ def test_claim_counts_no_variant_of_the_rla_system(tmp_path: Path) -> None:
     assert len(list(all_tables(own))) == len(list(all_tables(league))) - 1
 
 
+def test_claim_and_notes_tell_agents_apart(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    ours, theirs = league.rows
+    entry = replace(theirs.entry, rival=Rival("dqn", 3600.0))
+    plan = replace(league.plan, entries=(ours.entry, entry))
+    agents = replace(league, plan=plan, rows=(ours, replace(theirs, entry=entry)))
+    assert claim_table(agents).rows == ()
+    assert success_table(agents).rows[1][1] == "DQN, 1 h of robot life"
+    assert "Agents have the defaults of their libraries" in success_table(agents).note
+    assert machine_table(agents).rows[1][2:4] == ("0.50", "3.0")
+    for table in (effort_table, machine_table):
+        assert "an agent" in table(agents).note.lower()
+        assert "an agent" not in table(league).note.lower()
+
+
 def test_fewest_seconds_in_charge_are_compared(tmp_path: Path) -> None:
     right, stuck = (tuple(robot(seed, *[end] * 3) for seed in (1, 2)) for end in ("right", "stuck"))
     league = league_of(Results(tmp_path), right, right)

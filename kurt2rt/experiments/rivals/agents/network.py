@@ -40,16 +40,17 @@ class Network(NamedTuple):
 
 
 class AgentInput:
-    """Features of a situation as an agent gets them: those with a weight, weighted, in units of the highest counts."""
+    """Features of a situation as an agent gets them: those with a weight, from -1 to 1, times the weight."""
 
     def __init__(self, setting: LearnerSetting) -> None:
         self.columns = np.flatnonzero(setting.weights)
         """Places of the features in the situation, ascending."""
-        self._scale = setting.weights[self.columns] / HIGHEST_COUNTS
+        self._weights = setting.weights[self.columns]
 
     def features(self, situation: NDArray[np.float64]) -> Features:
         """Return the features (d,) of a situation, whose averages may be left out if none has a weight."""
-        return (situation[self.columns] * self._scale).astype(np.float32)
+        shares = situation[self.columns] / HIGHEST_COUNTS
+        return ((2.0 * shares - 1.0) * self._weights).astype(np.float32)
 
 
 class AgentNetwork:

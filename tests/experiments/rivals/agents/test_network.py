@@ -31,12 +31,13 @@ def test_outputs_pass_through_the_activation() -> None:
 def test_input_holds_weighted_features_alone() -> None:
     assert AgentInput(SETTING).features(HERE).tolist() == [1.0, 0.5]
     assert AgentInput(SETTING).features(HERE[:3]).tolist() == [1.0, 0.5]
+    assert AgentInput(SETTING).features(np.zeros(4)).tolist() == [-1.0, -0.5]
 
 
 def test_highest_output_names_the_action() -> None:
     learner = AgentNetwork(SETTING, network())
     assert learner.decide(HERE, taught=False) == "a"
-    assert learner.decide(np.zeros(4), taught=True) == "c"
+    assert learner.decide(np.zeros(4), taught=True) == "b"
 
 
 def test_lesson_changes_no_decision() -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
+from kurt2rt.experiments.rivals.agents.agent_job import AgentJob
 from kurt2rt.experiments.rivals.agents.network import AgentNetwork
 from kurt2rt.experiments.rivals.agents.robot_life import RobotLife
 from kurt2rt.experiments.rivals.agents.rows import AGENTS
@@ -44,7 +45,9 @@ def test_network_decides_as_its_agent(name: str) -> None:
     with closing(new_life()) as life:
         agent = new_agent(name, life, 1).learn(250)
         network = network_of(name, agent)
-        seen = np.random.default_rng(1).uniform(0.0, 1.0, (200, int((SETTING.weights != 0.0).sum()))).astype(np.float32)
+        seen = (
+            np.random.default_rng(1).uniform(-20.0, 20.0, (200, int((SETTING.weights != 0.0).sum()))).astype(np.float32)
+        )
     theirs, _ = agent.predict(seen, deterministic=True)
     ours = [int(network.outputs(each).argmax()) for each in seen]
     assert ours == theirs.tolist()
@@ -53,7 +56,11 @@ def test_network_decides_as_its_agent(name: str) -> None:
 
 @pytest.mark.parametrize("name", AGENTS)
 def test_job_of_an_agent_is_equal_twice(name: str, tmp_path: Path) -> None:
-    outcomes = [outcome_of(job_of(tmp_path / part, Rival(name, 20.0))) for part in ("first", "second")]
-    first, second = (each.model_dump(exclude=set(job_of(tmp_path, Rival(name)).machine_times)) for each in outcomes)
+    outcomes = []
+    for part in ("first", "second"):
+        folder = tmp_path / part
+        folder.mkdir()
+        outcomes.append(outcome_of(job_of(folder, Rival(name, 20.0))))
+    first, second = (each.model_dump(exclude=set(AgentJob.machine_times)) for each in outcomes)
     assert first == second
     assert outcomes[0].labels == (256 if name == "ppo" else 200)
