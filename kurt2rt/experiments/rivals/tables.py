@@ -14,7 +14,7 @@ from kurt2rt.experiments.study.table import Table
 _GATES = (
     "Default gates are first choices; the forest's is 0.2 since it asked everywhere with 0.4, on robots 4100 to 4102. "
 )
-_AGENTS = "Agents have the defaults of their libraries but for a few settings, chosen on robots 3900 to 3904. "
+_AGENTS = "Agents have the defaults of their libraries but for a few settings, chosen on robots 3900 to 3908. "
 
 
 def tuning_text(league: League) -> str:
