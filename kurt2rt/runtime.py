@@ -250,7 +250,6 @@ class _Assembly:
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
                 holds_yield=self._task.learning.holds_yield,
-                holds_add_beyond_share=self._task.learning.holds_add_beyond_share,
                 learner=self.learner,
                 lesson_speed=self._task.teaching.lesson_speed,
             ),

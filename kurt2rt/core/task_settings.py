@@ -65,8 +65,6 @@ class LearningSettings(Settings):
     """Fraction of R beyond which the robot asks in phases 1 and 2, with a teacher there; otherwise it asks beyond R."""
     holds_yield: bool = False
     """Keep the action of an RLA that an answer or a press taught where a lesson of a hold would replace it."""
-    holds_add_beyond_share: Share = 1.0
-    """A lesson of a hold that the nearest RLA says already is kept beyond this share of R from it; 1: never."""
     passes_over_guesses: bool = False
     """Let neighbours answer, without a teacher, in place of a lesson of a hold that differs from its five nearest
     neighbours of other presses."""
@@ -95,7 +93,6 @@ class PlainSettings(LearningSettings):
     insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     asks_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     holds_yield: Literal[False] = False
-    holds_add_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
     passes_over_guesses: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: None = None

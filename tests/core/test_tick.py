@@ -89,7 +89,6 @@ class Corridor:
         asks_when_held: bool = True,
         asks_beyond_share: float = 1.0,
         holds_yield: bool = False,
-        holds_add_beyond_share: float = 1.0,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
@@ -112,7 +111,7 @@ class Corridor:
             handled_command_ids=(),
             teacher_available=asked,
             asks_beyond_share=asks_beyond_share,
-            parts=HandlerParts(holds_yield=holds_yield, holds_add_beyond_share=holds_add_beyond_share),
+            parts=HandlerParts(holds_yield=holds_yield),
         )
         parts = TickParts(
             robot=self.robot,

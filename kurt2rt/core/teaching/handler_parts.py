@@ -36,8 +36,6 @@ class HandlerParts:
     """Delay of the teachers; None: it begins with the default."""
     holds_yield: bool = False
     """Keep what an answer or a press taught where a hold would replace it."""
-    holds_add_beyond_share: float = 1.0
-    """Share of R beyond which a lesson of a hold is kept that the RLAs say already."""
     learner: LearnerLevel | None = None
     """Level of a learner that decides in place of the RLAs and gets each lesson; None: RLAs decide."""
     lesson_speed: float = 1.0
@@ -74,6 +72,5 @@ def lesson_builder_for(
         appraisal_lessons=appraisal_lessons,
         mid=parts.mid,
         holds_yield=parts.holds_yield,
-        holds_add_beyond_share=parts.holds_add_beyond_share,
         learner=parts.learner,
     )

@@ -44,7 +44,6 @@ class LessonBuilder:
         appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
         holds_yield: bool = False,
-        holds_add_beyond_share: float = 1.0,
         learner: LearnerLevel | None = None,
     ) -> None:
         """Connect the level and its optional parts.
@@ -58,7 +57,6 @@ class LessonBuilder:
             appraisal_lessons: lessons of the critic; None without a critic.
             mid: lessons of the mid level; None without one.
             holds_yield: keep what an answer or a press taught where a hold would replace it.
-            holds_add_beyond_share: share of R beyond which a lesson of a hold is kept that the RLAs say already.
             learner: gets each lesson of the basic level, also those that change no RLA; None: RLAs decide.
         """
         self._level = level
@@ -70,7 +68,6 @@ class LessonBuilder:
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
         self._holds_yield = holds_yield
-        self._holds_add_beyond_share = holds_add_beyond_share
         self._learner = learner
         self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons, learner)
         self._undos = UndoLessons(level, appraisal_lessons, mid, learner)
@@ -118,9 +115,7 @@ class LessonBuilder:
         """
         context = self._basic_context(meant, None)
         self._label(action, context, Why.HOLD, origin)
-        event = self._in_context(
-            action, context, origin, yields=self._holds_yield, adds_beyond_share=self._holds_add_beyond_share
-        )
+        event = self._in_context(action, context, origin, yields=self._holds_yield)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
@@ -135,23 +130,12 @@ class LessonBuilder:
         return self._in_context(action, context, origin)
 
     def _in_context(
-        self,
-        action: str,
-        context: LessonContext,
-        origin: Origin,
-        *,
-        yields: bool = False,
-        adds_beyond_share: float = 1.0,
+        self, action: str, context: LessonContext, origin: Origin, *, yields: bool = False
     ) -> TeachingEvent | None:
-        """Return the lesson of an action in a context; None if it yields to an answer, or would be done already.
-
-        Where it would be done already, beyond a share of R from the nearest condition, the lesson is kept.
-        """
+        """Return the lesson of an action in a context; None if it would be done already, or yields to an answer."""
         nearest = self._system.match(context.vector, context.behaviour, BASIC)
-        if nearest is not None and self._agreeing(nearest, context, action) is not None:
-            if self._is_within(adds_beyond_share, nearest):
-                return None
-            return self._create(action, context, origin).event
+        if self._agreeing(nearest, context, action) is not None:
+            return None
         share = context.insert_beyond_share
         if yields and nearest is not None and self._is_within(share, nearest) and _is_exact(nearest.rla):
             return None
