@@ -121,7 +121,7 @@ def make_plan(
             except UserError as error:
                 if rival.name not in optional:
                     raise
-                left_out.append(f"{task.name}: {rival.title} takes no part, because {error.what}")
+                left_out.append(f"{task.name}: {rival.title} takes no part, because {error.what}; {error.do}")
                 continue
             made = fingerprints.of(own, worlds, repr(tuple(after)), learner=rival.source)
             jobs = tuple(
