@@ -30,6 +30,8 @@ REFUSED = {
 }
 """Commands that need an extra, by the extra."""
 NEEDED_BY_NO_COMMAND = {"gymnasium", "llvmlite", "numba", "pytest"}
+NEEDED_BY_AGENTS = {"sb3_contrib", "stable_baselines3", "torch"}
+"""Packages of the extra `rl`, which the tests run without; a league leaves agents out that lack them."""
 
 
 @cache
@@ -114,9 +116,11 @@ def test_extras_of_main_bring_each_package_that_is_imported() -> None:
         name for text in texts for name in re.findall(r"^ *(?:import|from) (\w+)[\w.]*(?: import |$)", text, re.M)
     }
     foreign = imported - sys.stdlib_module_names - set(PACKAGES) - modules_of() - {"_typeshed"}
-    assert foreign - NEEDED_BY_NO_COMMAND <= EXTRAS.keys()
+    assert foreign - NEEDED_BY_NO_COMMAND - NEEDED_BY_AGENTS <= EXTRAS.keys()
     for module, extra in EXTRAS.items():
         assert module in modules_of(extra), module
+    rl = {canonicalize_name(Requirement(each).name) for each in PROJECT["optional-dependencies"]["rl"]}
+    assert {canonicalize_name(each) for each in NEEDED_BY_AGENTS - {"torch"}} <= rl  # stable-baselines3 brings torch
 
 
 def test_extra_for_tests_holds_all_that_users_may_install() -> None:
