@@ -22,8 +22,8 @@ def tuning_text(league: League) -> str:
     others = [row.entry.rival for row in league.rows if row.entry.rival.name != SHIPPED]
     tuned = list(dict.fromkeys(each.title for each in others if each.tuned))
     own = list(dict.fromkeys(each.title for each in others if not (each.tuned or each.is_agent)))
-    said = f"Tuned equally by `kurt2rt tune`: {', '.join(tuned)}. " if tuned else ""
-    defaults = f"Not tuned, with the defaults of their classes: {', '.join(own)}. " if own else ""
+    said = f"Tuned equally by `kurt2rt tune`: {'; '.join(tuned)}. " if tuned else ""
+    defaults = f"Not tuned, with the defaults of their classes: {'; '.join(own)}. " if own else ""
     agents = _AGENTS if any(each.is_agent for each in others) else ""
     gates = _GATES if any(each.name == "forest" and not each.tuned for each in others) else ""
     return f"{said}{defaults}{gates}{agents}The settings of the RLA system as shipped were searched for longer."
