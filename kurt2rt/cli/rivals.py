@@ -131,14 +131,17 @@ def rivals(options: _Options) -> None:
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
     for name, task in zip(names, tasks, strict=True):
         require_robot_of(task, name, robot)
-    chosen = [Rival.parse(name) for name in _names_of_rivals(options)]
+    named = [Rival.parse(name) for name in options.learner or ()]
+    rows = rows_of_league(options.league or LeagueName.PRESSES) if options.league or not named else ()
+    of_league = [Rival.parse(name) for name in rows]
+    chosen = list(dict.fromkeys((*of_league, *named)))
     if options.check:
         _check(chosen, tasks[0], robot, options)
         return
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.rivals.plan import make_plan, read_league
-    from kurt2rt.experiments.rivals.report import overview_tables, write_report
-    from kurt2rt.experiments.rivals.sections import make_sections, report_name
+    from kurt2rt.experiments.rivals.report import write_report
+    from kurt2rt.experiments.rivals.sections import make_sections, overview_tables, report_name
     from kurt2rt.experiments.study.eligibility import reasons_against_judging
     from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.results import Results
@@ -154,7 +157,7 @@ def rivals(options: _Options) -> None:
         parse_seeds(options.seeds),
         after,
         parts,
-        optional=set(_names_of_rivals(options)) - set(options.learner or ()),
+        optional=set(of_league).difference(named),
         tuned=tuned,
         loops=requested_loops(options.lessons, options.exams),
     )
@@ -167,9 +170,9 @@ def rivals(options: _Options) -> None:
         bar.say("figures and report")
         league = read_league(plan, results)
         sections = make_sections(league, options.out)
+        overview = overview_tables(league, sections)
         report = options.out / report_name(sections)
-        write_report(league, sections, not_judged, command, report)
-    overview = overview_tables(league, sections)
+        write_report(plan, sections, overview, not_judged, command, report)
     if options.as_json:
         own = (table | {"league": each.name} for each in sections for table in tables_of(each.tables))
         tables = [*tables_of(overview), *own]
@@ -179,13 +182,6 @@ def rivals(options: _Options) -> None:
     for each in sections:
         shown += ([each.title] if overview else []) + [*map(as_rich, each.tables)]
     print_whole(console_of(), *shown, *not_judged, f"report  {report}")
-
-
-def _names_of_rivals(options: _Options) -> tuple[str, ...]:
-    """Return the names of the rows, each once: those of the league, then those of --learner."""
-    own = options.learner or ()
-    league = options.league or (None if own else LeagueName.PRESSES)
-    return tuple(dict.fromkeys((*(rows_of_league(league) if league else ()), *own)))
 
 
 def _check(chosen: list[Rival], task: TaskSettings, robot: RobotSettings, options: _Options) -> None:

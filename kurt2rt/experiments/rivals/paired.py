@@ -24,6 +24,23 @@ def pairs_of(first: Sequence[RivalOutcome], second: Sequence[RivalOutcome]) -> P
     return Pairs(judged.count((True, False)), judged.count((False, True)))
 
 
+class Comparison(NamedTuple):
+    """Comparison of a rival with the first one, at the end of their lessons."""
+
+    pairs: Pairs
+    p_value: float
+    """p of McNemar's exact test, a probability."""
+    corrected: float
+    """The same, corrected for the number of rivals that were compared (Holm)."""
+
+
+def compare_all(first: Sequence[RivalOutcome], others: Sequence[Sequence[RivalOutcome]]) -> list[Comparison]:
+    """Return the comparison of each of the others with the first rival, in order."""
+    pairs = [pairs_of(first, other) for other in others]
+    p_values = [mcnemar_p(each) for each in pairs]
+    return list(map(Comparison, pairs, p_values, holm(p_values)))
+
+
 class Saving(NamedTuple):
     """Presses that the second of two rivals needs fewer on the same robot: mean, and its 95 % interval."""
 

@@ -78,7 +78,7 @@ def make_plan(
     after: Sequence[int],
     parts: JobParts,
     *,
-    optional: Container[str] = (),
+    optional: Container[Rival] = (),
     tuned: TunedRivals | None = None,
     loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
@@ -91,7 +91,7 @@ def make_plan(
         seeds: one robot each.
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
-        optional: names of rivals that are left out of a task that they cannot do; others are refused.
+        optional: rows that are left out of a task that they cannot do; others are refused.
         tuned: settings that were found for rivals; those that are not among them keep their own.
         loops: that drive lessons and exams.
         source_of: returns the hash of the program's source.
@@ -112,14 +112,15 @@ def make_plan(
         made = fingerprints.of(task, worlds)
         for seed in seeds:
             policies[task.name, seed] = PolicyJob(task=task, seed=seed, made_of=made, **parts)
-        for rival in (row.tuned_by(None if tuned is None else tuned.of(task.name, row.name)) for row in rows):
+        for row in rows:
+            rival = row.tuned_by(None if tuned is None else tuned.of(task.name, row.name))
             if rival.name == TUNED and not rival.tuned:
                 continue
             own, kind = rival.task(task), _job_class(rival)
             try:
                 kind.require(rival, own, parts["robot"])
             except UserError as error:
-                if rival.name not in optional:
+                if row not in optional:
                     raise
                 left_out.append(f"{task.name}: {rival.title} takes no part, because {error.what}; {error.do}")
                 continue

@@ -8,10 +8,10 @@ from statistics import median
 from kurt2rt.experiments.rivals.cells import heading, share_text
 from kurt2rt.experiments.rivals.figures import draw_curves
 from kurt2rt.experiments.rivals.leagues import TITLES, LeagueName, league_of
-from kurt2rt.experiments.rivals.paired import holm, mcnemar_p, pairs_of
+from kurt2rt.experiments.rivals.paired import compare_all
 from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
-from kurt2rt.experiments.rivals.tables import all_tables
+from kurt2rt.experiments.rivals.tables import all_tables, tuning_text
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.table import Table
 
@@ -29,6 +29,11 @@ class Section:
     def title(self) -> str:
         """Heading of the section."""
         return TITLES[self.name]
+
+    @property
+    def tuning(self) -> str:
+        """Sentences about which rivals have settings that were searched."""
+        return tuning_text(self.league)
 
 
 def split_league(league: League) -> Iterator[tuple[LeagueName, League]]:
@@ -56,14 +61,20 @@ def report_name(sections: tuple[Section, ...]) -> str:
     return f"{prefix}report.html"
 
 
+def overview_tables(league: League, sections: tuple[Section, ...]) -> list[Table]:
+    """Return the table of all rows in short where a page has several sections, else none."""
+    return [overview_table(league)] if len(sections) > 1 else []
+
+
 def overview_table(league: League) -> Table:
     """Return the table of all leagues in short: what each learner cost its teacher, and what came of it."""
     rows = []
     for task in league.plan.tasks:
         shipped, others = league.of_task(task.name)
-        corrected = holm([mcnemar_p(pairs_of(shipped.outcomes, row.outcomes)) for row in others])
-        for row, p_value in zip((shipped, *others), ("", *(f"{each:.3f}" for each in corrected)), strict=True):
-            rows.append((*heading(row), *_short(row), p_value))
+        compared = compare_all(shipped.outcomes, [row.outcomes for row in others])
+        rows.append((*heading(shipped), *_short(shipped), ""))
+        for row, each in zip(others, compared, strict=True):
+            rows.append((*heading(row), *_short(row), f"{each.corrected:.3f}"))
     return Table(
         "All learners in short",
         (

@@ -6,7 +6,7 @@ from statistics import median
 from kurt2rt.experiments.rivals.cells import heading, rows_of, share_text
 from kurt2rt.experiments.rivals.claims import claim_table, hands_table
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
-from kurt2rt.experiments.rivals.paired import Saving, holm, mcnemar_p, pairs_of, saving_of
+from kurt2rt.experiments.rivals.paired import Saving, compare_all, saving_of
 from kurt2rt.experiments.rivals.plan import League, Row
 from kurt2rt.experiments.rivals.rival import SHIPPED
 from kurt2rt.experiments.study.table import Table
@@ -35,7 +35,7 @@ def all_tables(league: League) -> Iterator[Table]:
     claim = claim_table(league)
     if claim.rows:
         yield claim
-    if any(entry.rival.is_held for entry in league.plan.entries):
+    if any(row.entry.rival.is_held for row in league.rows):
         yield hands_table(league)
     yield comparison_table(league)
     yield effort_table(league)
@@ -71,11 +71,10 @@ def comparison_table(league: League) -> Table:
     rows = []
     for task in league.plan.tasks:
         shipped, others = league.of_task(task.name)
-        pairs = [pairs_of(shipped.outcomes, row.outcomes) for row in others]
-        p_values = [mcnemar_p(each) for each in pairs]
-        for row, pair, p_value, corrected in zip(others, pairs, p_values, holm(p_values), strict=True):
+        compared = compare_all(shipped.outcomes, [row.outcomes for row in others])
+        for row, (pairs, p_value, corrected) in zip(others, compared, strict=True):
             saved = _saving_text(saving_of(shipped.outcomes, row.outcomes))
-            rows.append((*heading(row), *map(str, pair), f"{p_value:.3f}", f"{corrected:.3f}", saved))
+            rows.append((*heading(row), *map(str, pairs), f"{p_value:.3f}", f"{corrected:.3f}", saved))
     return Table(
         "Compared with the RLA system as shipped, robot by robot",
         (

@@ -9,7 +9,7 @@ from kurt2rt.experiments.rivals.leagues import league_of as league_of_rival
 from kurt2rt.experiments.rivals.outcome import RivalOutcome
 from kurt2rt.experiments.rivals.report import write_report
 from kurt2rt.experiments.rivals.rival import SHIPPED, Rival
-from kurt2rt.experiments.rivals.sections import make_sections, overview_table, report_name
+from kurt2rt.experiments.rivals.sections import make_sections, overview_table, overview_tables, report_name
 from kurt2rt.experiments.rivals.tables import (
     all_tables,
     comparison_table,
@@ -126,7 +126,7 @@ def test_report_says_which_rivals_were_tuned(tmp_path: Path) -> None:
     (section,) = sections = make_sections(league, tmp_path)
     assert imread(section.picture.path).shape[1] > 500
     page = tmp_path / report_name(sections)
-    write_report(league, sections, ["3 robots only"], "kurt2rt rivals", page)
+    write_report(league.plan, sections, overview_tables(league, sections), ["3 robots only"], "kurt2rt rivals", page)
     assert page.name == "report.html"
     text = page.read_text(encoding="utf-8")
     assert "with the defaults of their classes: 1-NN without R" in text
@@ -146,7 +146,7 @@ def test_page_of_all_leagues_has_a_section_for_each(tmp_path: Path) -> None:
         ["rla", "tamer"],
     ]
     page = tmp_path / report_name(sections)
-    write_report(league, sections, [], "kurt2rt rivals", page)
+    write_report(league.plan, sections, overview_tables(league, sections), [], "kurt2rt rivals", page)
     assert page.name == "all-report.html"
     assert {each.name for each in tmp_path.glob("*.png")} == {"rivals.png", "holds-rivals.png", "signals-rivals.png"}
     text = page.read_text(encoding="utf-8")
@@ -154,6 +154,16 @@ def test_page_of_all_leagues_has_a_section_for_each(tmp_path: Path) -> None:
     assert (
         text.index("All learners in short") < text.index("<h2>Taught by presses") < text.index("<h2>Taught by rewards")
     )
+
+
+def test_claim_about_seconds_stands_in_its_section_alone(tmp_path: Path) -> None:
+    league = league_of(Results(tmp_path), OURS, THEIRS)
+    ours, theirs = league.rows
+    rows = (ours, theirs, replace(theirs, entry=replace(theirs.entry, rival=Rival("hg-dagger"))))
+    plan = replace(league.plan, entries=tuple(row.entry for row in rows))
+    sections = make_sections(replace(league, plan=plan, rows=rows), tmp_path)
+    claims = [[table.title for table in each.tables if "driven by hand" in table.title] for each in sections]
+    assert list(map(len, claims)) == [0, 1]
 
 
 def test_overview_has_one_row_for_each_learner(tmp_path: Path) -> None:

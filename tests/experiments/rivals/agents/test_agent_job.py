@@ -116,13 +116,16 @@ def test_agent_of_a_league_is_left_out_where_it_cannot_train(tmp_path: Path, mon
     monkeypatch.setattr(agent_job, "find_spec", lambda _: None)
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(tmp_path))
     rivals = [Rival("ppo"), Rival("k-nn")]
-    plan = make_plan([TASK], rivals, (3912,), AFTER, parts, optional={"ppo"}, source_of=lambda _: "tested")
+    plan = make_plan([TASK], rivals, (3912,), AFTER, parts, optional={Rival("ppo")}, source_of=lambda _: "tested")
     assert [entry.rival.name for entry in plan.entries] == ["rla", "k-nn"]
     (said,) = plan.left_out
     assert said.startswith(f"{TASK.name}: PPO")
     assert "not installed" in said
     with pytest.raises(NoLearnerError):
         make_plan([TASK], rivals, (3912,), AFTER, parts, source_of=lambda _: "tested")
+    asked_for = [*rivals, Rival("ppo", 60.0)]
+    with pytest.raises(NoLearnerError):
+        make_plan([TASK], asked_for, (3912,), AFTER, parts, optional={Rival("ppo")}, source_of=lambda _: "tested")
 
 
 def test_robot_life_of_no_time_is_refused() -> None:
