@@ -9,7 +9,13 @@ from pathlib import Path
 from typing import Final
 
 from config import CONFIG_DIR
-from hal.plugins import PluginError, PluginKind, UnknownPluginError, settings_from_elsewhere
+from hal.plugins import (
+    PluginError,
+    PluginKind,
+    UnknownPluginError,
+    are_settings_from_elsewhere,
+    settings_from_elsewhere,
+)
 from hal.robot_plugins import ROBOTS, find_robot_kind, is_robot
 from hal.settings import SettingsError
 
@@ -79,7 +85,8 @@ def find_config(kind: str, name_or_path: str) -> Path:
     """Return the path of a settings file: a path that exists, or the shipped `config/<kind>/<name>.yaml`.
 
     `<robot>/<name>` is a file of a robot's plug-in; its own settings go by `<robot>` alone. A task may also be a
-    plug-in. Raises SettingsError that lists the names when there is no such file.
+    plug-in. Within `settings_from_elsewhere` a path is refused, because its file may name code. Raises SettingsError
+    that lists the names when there is no such file.
     """
     kept = _KEPT.get()
     if kept is not None:
@@ -88,15 +95,15 @@ def find_config(kind: str, name_or_path: str) -> Path:
             return path
         raise SettingsError(f"is not among the settings in {kind} that were kept with the run", where=name_or_path)
     given = Path(name_or_path)
-    if given.suffix == ".yaml" and given.is_file():
+    if given.suffix == ".yaml" and given.is_file() and not are_settings_from_elsewhere():
         return given
-    shipped = CONFIG_DIR / kind / f"{name_or_path}.yaml"
-    if shipped.is_file():
-        return shipped
+    names = shipped_names(kind)
+    if name_or_path in names:  # the join of a folder and a foreign name could lead anywhere
+        return CONFIG_DIR / kind / f"{name_or_path}.yaml"
     of_robot = _file_of_robot(kind, name_or_path)
     if of_robot is not None:
         return of_robot
-    names, plugins = shipped_names(kind), ""
+    plugins = ""
     if kind == ROBOTS.group:
         names += (each.name for each in ROBOTS.installed() if each.name not in names)
     if kind == TASKS.group:

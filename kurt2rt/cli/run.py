@@ -355,9 +355,9 @@ def _require_behaviour(task: "TaskSettings", behaviour: str | None) -> None:
 def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
     """Return --task: as given, or the task of the knowledge file where it is another than the `usual` one."""
     from kurt2rt.core.task_settings import load_task
-    from kurt2rt.knowledge.files.task_of_file import task_of_file
+    from kurt2rt.knowledge.files.task_of_file import system_of_file, task_of_file
 
-    if given is None and task_of_file(knowledge) == load_task(usual).system_name:
+    if given is None and system_of_file(knowledge) == load_task(usual).system_name:
         return None
     return task_of_file(knowledge, given)
 

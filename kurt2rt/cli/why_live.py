@@ -5,13 +5,12 @@ from typing import NamedTuple
 
 import anyio
 
-from hal.robot_plugins import robots_task
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import installed_task, load_task
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import NoAnswerError
@@ -72,8 +71,8 @@ def _counterfactuals_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[Sen
     Unless all RLAs were reported, an unreported one may answer instead of a question.
     """
     try:
-        definition = load_situation(load_task(robots_task(facts.task) or facts.task).situation, robot.infrared.names)
-    except SettingsError:  # the task is unknown on this machine
+        definition = load_situation(load_task(installed_task(facts.task)).situation, robot.infrared.names)
+    except SettingsError:  # the task is not installed on this machine
         return ()
     if definition.names != facts.basic.names or len(facts.infrared_counts) != len(robot.infrared.sensors):
         return ()

@@ -7,6 +7,8 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, 
 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
+from hal.plugins import settings_from_elsewhere
+from hal.robot_plugins import robots_task
 from hal.settings import Settings, SettingsError, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.basic.doubt import DoubtSettings
@@ -295,6 +297,25 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
             )
     task = load_settings(path, TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task
+
+
+def installed_task(named: str) -> str:
+    """Return the name for `load_task` of a task that a file or another computer names.
+
+    Only shipped and installed tasks are found: a path or `module:Name` would run the code of a stranger.
+
+    Raises:
+        hal.settings.SettingsError: there is no such task, or it is invalid.
+    """
+    try:
+        with settings_from_elsewhere():
+            load_task(named)
+    except SettingsError:
+        of_robot = robots_task(named)
+        if of_robot is None:
+            raise
+        return of_robot
+    return named
 
 
 def taught_by_named(task: TaskSettings, name_or_path: str | None) -> TaskSettings:

@@ -112,8 +112,8 @@ class KnowledgeCode(ErrorCode):
     )
     TASK_NOT_FOUND = (
         "task not found",
-        "was taught for the task {taught!r}, whose settings are not found ({error})",
-        "give them: --task PATH.yaml",
+        "was taught for the task {taught!r}, which is neither shipped nor installed ({error})",
+        "give its settings yourself: --task PATH.yaml (in Python: task=PATH)",
     )
     # The writer, and copies
     WRITER_CLOSED = ("writer closed", "its writer is closed", "open the journal again to teach")
@@ -149,7 +149,7 @@ class KnowledgeCode(ErrorCode):
     )
     PACKAGE_PART_MISSING = ("package part missing", "has no {name}", _NEW_COPY)
     PACKAGE_PART_CHANGED = ("package part changed", "{name} was changed after it was exported (SHA-256)", _NEW_COPY)
-    PACKAGE_DUPLICATE_NAME = ("package duplicate name", "holds a file twice", _NEW_COPY)
+    PACKAGE_DUPLICATE_NAME = ("package duplicate name", "holds {name} twice", "pack each package for itself")
     PACKAGE_UNSAFE = (
         "package unsafe",
         "{reason}",

@@ -1,18 +1,27 @@
 """Policies, judges, courses and actions of plug-ins, named by settings."""
 
 import pickle
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 import pytest
 
 from behaviors.contained_behaviour import failures_of
 from behaviors.repertoire import load_repertoire
-from hal.plugins import loaded_plugins, settings_from_elsewhere
+from hal.plugins import loaded_plugins
 from hal.robot import STANDSTILL
 from hal.settings import SettingsError
+from hal.settings_files import settings_override
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from tests.behaviors.helpers import ROBOT, counts, sensed
 from tests.plugin_packages import install, write_parts, write_repertoire, write_task
+
+
+def kept(folder: Path, kind: str, settings: Path) -> AbstractContextManager[None]:
+    """Return the context of a replay, which finds the settings by the name of their file."""
+    (folder / kind).mkdir()
+    settings.rename(folder / kind / settings.name)
+    return settings_override(folder)
 
 
 def refused_task(path: Path) -> str:
@@ -75,8 +84,8 @@ def test_package_that_takes_a_shipped_name_changes_no_task(plugin_folder: Path) 
 def test_task_of_a_recording_does_without_its_plugins(plugin_folder: Path) -> None:
     policy = {"kind": "parts_c:Turning", "front_m": 0.2}
     write_parts(plugin_folder, "parts_c")
-    with settings_from_elsewhere():
-        task = load_task(str(write_task(plugin_folder, policy=policy)))
+    with kept(plugin_folder, "tasks", write_task(plugin_folder, policy=policy)):
+        task = load_task("mine")
         assert task.policy.model_dump() == policy
     assert loaded_plugins() == ()
     with pytest.raises(SettingsError, match="parts_c:Turning: belongs to a recording or package"):
@@ -121,8 +130,8 @@ def test_unusable_action_of_a_plugin_names_its_entry(action: dict[str, object], 
 def test_recording_imports_no_action_of_a_plugin(plugin_folder: Path) -> None:
     write_parts(plugin_folder, "parts_f")
     path = write_repertoire(plugin_folder, {"kind": "parts_f:Wiggling", "name": "wiggle"})
-    with settings_from_elsewhere(), pytest.raises(SettingsError, match="may not import it; install it as a package"):
-        load_repertoire(str(path), ROBOT)
-    install(plugin_folder, "parts", {"behaviours": {"wiggling": "parts_f:Wiggling"}})
-    with settings_from_elsewhere():
-        assert "wiggle" in load_repertoire(str(path), ROBOT)
+    with kept(plugin_folder, "repertoires", path):
+        with pytest.raises(SettingsError, match="may not import it; install it as a package"):
+            load_repertoire("actions", ROBOT)
+        install(plugin_folder, "parts", {"behaviours": {"wiggling": "parts_f:Wiggling"}})
+        assert "wiggle" in load_repertoire("actions", ROBOT)

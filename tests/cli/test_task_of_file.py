@@ -5,7 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt import Knowledge
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.exchange.archive import pack, unpack
+from kurt2rt.knowledge.exchange.signing import make_key
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -15,12 +18,14 @@ from tests.cli.test_bad_input import changed
 from tests.experiments.helpers import ROBOT
 from tests.plugin_packages import install
 
+FLEEING = binding_for(ROBOT, load_task("fleeing"))
+
 
 @pytest.fixture
 def fleeing(tmp_path: Path) -> Path:
     """Make a knowledge file of the task fleeing without lessons."""
     path = tmp_path / "mine.knowledge"
-    Journal.open(path, binding_for(ROBOT, load_task("fleeing"))).close()
+    Journal.open(path, FLEEING).close()
     return path
 
 
@@ -61,22 +66,69 @@ def test_task_that_contradicts_the_file_is_refused(kurt2rt: CommandLine, words: 
     assert kurt2rt.refused(*words, "--task", "circle") == f"kurt2rt: {error}"
 
 
-def test_exam_of_an_unknown_tasks_file_asks_for_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
+TO_READ_IT = (
+    ("exam", "mine.knowledge"),
+    ("run", "--knowledge", "mine.knowledge"),
+    ("lesson", "--knowledge", "mine.knowledge"),
+    ("certify", "mine.knowledge"),
+    ("knowledge", "export", "mine.knowledge", "out.zip"),
+    ("knowledge", "contradictions", "mine.knowledge"),
+    ("knowledge", "merge", "mine.knowledge", "mine.knowledge"),
+)
+"""Commands that look up the task that a knowledge file names."""
+
+
+def test_own_tasks_file_is_used_with_the_settings_given(kurt2rt: CommandLine, tmp_path: Path) -> None:
     task = changed("tasks", "fleeing", tmp_path, lambda content: content.update(name="sneaking"))
     Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task(str(task)))).close()
-    refusal = kurt2rt.refused("exam", "mine.knowledge")
-    assert "mine.knowledge: " in refusal
-    assert "'sneaking'" in refusal
-    assert refusal.endswith("--task PATH.yaml")
+    for words in TO_READ_IT:
+        refusal = kurt2rt.refused(*words)
+        assert "mine.knowledge: was taught for the task 'sneaking', which is neither shipped nor installed" in refusal
+        assert refusal.endswith("; give its settings yourself: --task PATH.yaml (in Python: task=PATH)")
     short = ("--set", "exam.duration_s=1", "--world", "a")
     assert kurt2rt("exam", "mine.knowledge", "--task", task, *short).exit_code == 0
+    assert kurt2rt("knowledge", "export", "mine.knowledge", "out.zip", "--task", task).exit_code == 0
+    assert "--task PATH.yaml" in kurt2rt.refused("knowledge", "import", "out.zip", "--into", "theirs.knowledge")
+    assert kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge", "--task", task).exit_code == 0
+    assert Knowledge.load("theirs.knowledge", task=str(task)).lessons == 0
+    runtime = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
+    said = kurt2rt(
+        "run",
+        "--settings",
+        runtime,
+        "--seconds",
+        "0.1",
+        "--port",
+        "0",
+        "--no-record",
+        "--knowledge",
+        "theirs.knowledge",
+    )
+    assert said.out.startswith("task sneaking")
 
 
-def test_exam_of_a_file_that_names_a_module_imports_nothing(kurt2rt: CommandLine, plugin_folder: Path) -> None:
-    (plugin_folder / "evil.py").write_text("raise SystemExit('imported')\n")
-    binding = replace(binding_for(ROBOT, load_task("fleeing")), system="evil:TASK")
-    Journal.open(plugin_folder / "mine.knowledge", binding).close()
-    assert "settings from a recording or package may not import it" in kurt2rt.refused("exam", "mine.knowledge")
+@pytest.mark.parametrize("named", ["evil:TASK", "./evil.yaml", "evil"])
+def test_strangers_file_runs_no_code_by_a_name_in_it(kurt2rt: CommandLine, plugin_folder: Path, named: str) -> None:
+    (plugin_folder / "evil.py").write_text("open('owned', 'x')\n")
+    policy = {"kind": "evil:PolicySettings"}
+    task = changed("tasks", "fleeing", plugin_folder, lambda content: content.update(policy=policy))
+    task.rename(plugin_folder / "evil.yaml")
+    named = str(plugin_folder / named) if named == "evil" else named
+    Journal.open(plugin_folder / "mine.knowledge", replace(FLEEING, system=named)).close()
+    Journal.open(plugin_folder / "good.knowledge", FLEEING).close()
+    make_key(plugin_folder / "ann")
+    said = [kurt2rt.refused(*words) for words in TO_READ_IT]
+    assert kurt2rt("knowledge", "export", "good.knowledge", "good.zip").exit_code == 0
+    good = unpack(plugin_folder / "good.zip")
+    about = {name: value for name, value in good.manifest.items() if name not in ("format", "files")}
+    (plugin_folder / "evil.zip").write_bytes(pack({**about, "task": named}, good.files, None))
+    taken = ("knowledge", "import", "evil.zip", "--into", "k")
+    said.append(kurt2rt.refused(*taken))
+    assert "not signed by" in kurt2rt.refused(*taken, "--trusted", "ann.pub")
+    with pytest.raises(KnowledgeError) as refused:
+        Knowledge.load("mine.knowledge")
+    assert [each for each in (*said, str(refused.value)) if "which is neither shipped nor installed" not in each] == []
+    assert not (plugin_folder / "owned").exists()
 
 
 def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, tmp_path: Path) -> None:

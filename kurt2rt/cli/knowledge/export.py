@@ -13,7 +13,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package
 from kurt2rt.knowledge.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.files.table import export_table
-from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.knowledge.files.task_of_file import task_of_elsewhere, task_of_file
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.writer import utc_now
 
@@ -59,7 +59,8 @@ def import_(
         kurt2rt knowledge import walls.zip --into walls.knowledge --trusted ann.pub
     """
     public = None if trusted is None else read_public_key(trusted)
-    name = task_name or read_package(file).task
+    named = read_package(file, public).task
+    name = task_name or task_of_elsewhere(named, file)
     robot, task = load_robot_of(robot_name, name), load_task(name)
     imported = import_knowledge(file, into, robot, task, public, stamp=utc_now())
     package = imported.package

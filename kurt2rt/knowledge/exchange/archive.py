@@ -7,7 +7,7 @@ import json
 import stat
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -82,29 +82,46 @@ def unpack(path: Path) -> Archive:
         raise KnowledgeError(KnowledgeCode.PACKAGE_UNREADABLE, where=path, error=error) from error
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError, ValueError) as error:
         raise KnowledgeError(KnowledgeCode.PACKAGE_DAMAGED, where=path, error=error) from error
-    if MANIFEST not in content:
+    manifest_data = _own(content, MANIFEST, path)
+    if manifest_data is None:
         raise KnowledgeError(KnowledgeCode.PACKAGE_PART_MISSING, where=path, name=MANIFEST)
-    manifest = _manifest(content[MANIFEST], path)
-    files = {name: data for name, data in content.items() if name not in (MANIFEST, SIGNATURE)}
-    for name in sorted(manifest[_FILES].keys() | files.keys()):
-        if name not in files:
-            raise KnowledgeError(KnowledgeCode.PACKAGE_PART_MISSING, where=path, name=name)
-        if manifest[_FILES].get(name) != hashlib.sha256(files[name]).hexdigest():
-            raise KnowledgeError(KnowledgeCode.PACKAGE_PART_CHANGED, where=path, name=name)
-    return Archive(manifest, files, _signer(content, path))
+    manifest = _manifest(manifest_data, path)
+    by_hash = {hashlib.sha256(data).hexdigest(): data for _, data in content}
+    files = {name: by_hash.get(str(print_), b"") for name, print_ in sorted(manifest[_FILES].items())}
+    _require_safe({name: len(data) for name, data in files.items()}, path)
+    for name, data in files.items():
+        if manifest[_FILES][name] != hashlib.sha256(data).hexdigest():
+            changed = any(each.endswith(name) for each, _ in content)
+            code = KnowledgeCode.PACKAGE_PART_CHANGED if changed else KnowledgeCode.PACKAGE_PART_MISSING
+            raise KnowledgeError(code, where=path, name=name)
+    return Archive(manifest, files, _signer(manifest_data, _own(content, SIGNATURE, path), path))
 
 
-def _content(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
+def _content(archive: zipfile.ZipFile, path: Path) -> list[tuple[str, bytes]]:
+    """Return the entries, with slashes in their names.
+
+    The names lead nowhere, and the manifest's hashes tell which entry is which file: macOS and Windows put a folder
+    around files that they pack again, and files of their own next to them.
+    """
     entries = archive.infolist()
-    sizes = {entry.orig_filename: entry.file_size for entry in entries}  # names before zipfile cuts them at a null byte
-    if len(sizes) < len(entries) or len({name.casefold() for name in sizes}) < len(entries):
-        raise KnowledgeError(KnowledgeCode.PACKAGE_DUPLICATE_NAME, where=path)
+    _require_safe({str(number): entry.file_size for number, entry in enumerate(entries)}, path)
+    if not all(entry.compress_type in _SMALL_ENOUGH_TO_UNPACK for entry in entries):
+        raise KnowledgeError(KnowledgeCode.PACKAGE_COMPRESSION, where=path)
+    return [(entry.orig_filename.replace("\\", "/"), archive.read(entry)) for entry in entries]
+
+
+def _own(content: Iterable[tuple[str, bytes]], name: str, path: Path) -> bytes | None:
+    """Return the file of a name in whatever folder; None if there is none. Raises KnowledgeError if there are two."""
+    found = [data for each, data in content if each.rpartition("/")[2] == name]
+    if len(found) > 1:
+        raise KnowledgeError(KnowledgeCode.PACKAGE_DUPLICATE_NAME, where=path, name=name)
+    return found[0] if found else None
+
+
+def _require_safe(sizes: Mapping[str, int], path: Path) -> None:
     reason = unsafe_reason(sizes)
     if reason:
         raise KnowledgeError(KnowledgeCode.PACKAGE_UNSAFE, where=path, reason=reason)
-    if not all(entry.compress_type in _SMALL_ENOUGH_TO_UNPACK for entry in entries):
-        raise KnowledgeError(KnowledgeCode.PACKAGE_COMPRESSION, where=path)
-    return {entry.orig_filename: archive.read(entry) for entry in entries}
 
 
 def _manifest(data: bytes, path: Path) -> dict[str, Any]:
@@ -121,15 +138,15 @@ def _manifest(data: bytes, path: Path) -> dict[str, Any]:
     return manifest
 
 
-def _signer(content: Mapping[str, bytes], path: Path) -> bytes | None:
-    if SIGNATURE not in content:
+def _signer(manifest: bytes, signature_file: bytes | None, path: Path) -> bytes | None:
+    if signature_file is None:
         return None
     try:
-        signed = json.loads(content[SIGNATURE])
+        signed = json.loads(signature_file)
         public, signature = (base64.b64decode(signed[each], validate=True) for each in ("public_key", "signature"))
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise KnowledgeError(KnowledgeCode.SIGNATURE_DAMAGED, where=path, name=SIGNATURE, error=repr(error)) from error
-    if not is_signed(content[MANIFEST], public, signature):
+    if not is_signed(manifest, public, signature):
         raise KnowledgeError(KnowledgeCode.SIGNATURE_WRONG, where=path)
     return public
 

@@ -137,9 +137,17 @@ def _package(
     return pack(about, files, key)
 
 
-def read_package(path: Path) -> KnowledgePackage:
-    """Read and check an exported file. Raises KnowledgeError if it is damaged, changed or of another kind."""
+def read_package(path: Path, trusted: bytes | None = None) -> KnowledgePackage:
+    """Read and check an exported file.
+
+    `trusted`: raw public key of the only accepted signer; None: any package, signed or not.
+
+    Raises KnowledgeError if it is damaged, changed, of another kind, or not signed by `trusted`.
+    """
     archive = unpack(path)
+    if trusted is not None and archive.signed_by != trusted:
+        signed = "not signed" if archive.signed_by is None else f"signed by {fingerprint(archive.signed_by)}"
+        raise KnowledgeError(KnowledgeCode.OTHER_SIGNER, where=path, signed=signed, trusted=fingerprint(trusted))
     try:
         return _content(path, archive)
     except KeyError as error:
@@ -166,10 +174,7 @@ def import_knowledge(
         KnowledgeError: the package is damaged, not signed by `trusted`, or of other features or another task.
         SettingsError: a file that `task` uses cannot be read.
     """
-    package = read_package(path)
-    if trusted is not None and package.signed_by != trusted:
-        signed = "not signed" if package.signed_by is None else f"signed by {fingerprint(package.signed_by)}"
-        raise KnowledgeError(KnowledgeCode.OTHER_SIGNER, where=path, signed=signed, trusted=fingerprint(trusted))
+    package = read_package(path, trusted)
     here = binding_for(robot, task)
     if package.binding.feature_hash != here.feature_hash:
         difference = differing_features(package.settings, robot, task) or "not visible in its settings"

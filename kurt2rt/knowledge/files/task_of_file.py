@@ -2,10 +2,8 @@
 
 from pathlib import Path
 
-from hal.plugins import settings_from_elsewhere
-from hal.robot_plugins import robots_task
 from hal.settings import SettingsError
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import installed_task, load_task
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -18,23 +16,31 @@ def task_of_file(path: Path, given: str | None = None) -> str:
         given: a task by name or path, of --task; None: the task that the file names.
 
     Raises:
-        KnowledgeError: the file cannot be read, was taught for another task than `given`, or names a task that is not
-            among the shipped ones.
+        KnowledgeError: the file cannot be read, was taught for another task than `given`, or names a task that is
+            neither shipped nor installed.
         SettingsError: there is no task `given`.
     """
+    taught = system_of_file(path)
+    if given is None:
+        return task_of_elsewhere(taught, path)
+    wanted = load_task(given).system_name
+    if wanted != taught:
+        raise KnowledgeError(KnowledgeCode.OTHER_TASK_GIVEN, where=path, taught=taught, wanted=wanted)
+    return given
+
+
+def system_of_file(path: Path) -> str:
+    """Return the name of the RLA system that a knowledge file holds. Raises KnowledgeError."""
     with Journal.read_only(path) as journal:
-        taught = journal.binding.system
-    if given is not None:
-        wanted = load_task(given).system_name
-        if wanted != taught:
-            raise KnowledgeError(KnowledgeCode.OTHER_TASK_GIVEN, where=path, taught=taught, wanted=wanted)
-        return given
+        return journal.binding.system
+
+
+def task_of_elsewhere(named: str, path: Path) -> str:
+    """Return the name for `load_task` of the task that the file `path`, maybe a stranger's, names.
+
+    Raises KnowledgeError if the task is neither shipped nor installed; the error asks for --task.
+    """
     try:
-        with settings_from_elsewhere():  # the file may be of anyone, and the name in it a module's
-            load_task(taught)
+        return installed_task(named)
     except SettingsError as error:
-        of_robot = robots_task(taught)
-        if of_robot is None:
-            raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=taught, error=error) from error
-        return of_robot
-    return taught
+        raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=named, error=error.what) from error
