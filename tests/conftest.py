@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 import sys
 import tempfile
 from collections.abc import Generator
@@ -31,6 +32,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
     Tests on the kernel's own CAN start programs as a robot does, and write to a disk.
     """
+    # A runner in the background, or under nohup, ignores signals that programs of tests have to heed.
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
+        if signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
     if not hasattr(config, "workerinput") and not config.option.markexpr.startswith(("hil", "boots")):
         if _MEMORY.is_dir():
             os.environ.setdefault("TMPDIR", str(_MEMORY))

@@ -10,6 +10,7 @@ import anyio.to_thread
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import Device, read_device
+from kurt2rt.platform.signal_handlers import heeded_signals
 
 _POLL_PAIRING_S = 1.0
 
@@ -44,7 +45,8 @@ async def until_ended(*, while_stdin: bool) -> None:
 
         if while_stdin:
             tasks.start_soon(input_ends)
-        with anyio.open_signal_receiver(signal.SIGTERM, signal.SIGINT, signal.SIGHUP) as signals:
+        ends = heeded_signals(signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+        with anyio.open_signal_receiver(*ends) as signals:
             async for _ in signals:
                 tasks.cancel_scope.cancel()
 

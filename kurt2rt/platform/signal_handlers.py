@@ -9,8 +9,16 @@ Handler = Callable[[int, FrameType | None], object] | signal.Handlers
 """Handler that Python calls in the main thread, between two bytecodes, even while an earlier handler runs."""
 
 
+def heeded_signals(*numbers: signal.Signals) -> tuple[signal.Signals, ...]:
+    """Return the signals of `numbers` that this process does not ignore.
+
+    nohup starts a program with SIGHUP ignored, a shell one in the background with SIGINT and SIGQUIT. They stay so.
+    """
+    return tuple(each for each in numbers if signal.getsignal(each) is not signal.SIG_IGN)
+
+
 class SignalHandlers:
-    """Context manager that installs signal handlers and restores the previous ones at its end."""
+    """Context manager that installs handlers of heeded signals and restores the previous ones at its end."""
 
     def __init__(self, handlers: Mapping[signal.Signals, Handler]) -> None:
         self._handlers = handlers
@@ -27,9 +35,9 @@ class SignalHandlers:
 
     def install(self) -> None:
         """Install the handlers. Raises ValueError outside the main thread."""
-        for number, handler in self._handlers.items():
+        for number in heeded_signals(*self._handlers):
             # None stands for a handler that Python did not install: it cannot be restored.
-            self._before[number] = signal.signal(number, handler) or signal.SIG_DFL
+            self._before[number] = signal.signal(number, self._handlers[number]) or signal.SIG_DFL
 
     def restore(self) -> None:
         """Restore the previous handlers; may be called from a handler."""

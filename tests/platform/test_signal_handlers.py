@@ -6,7 +6,7 @@ from types import FrameType
 
 import pytest
 
-from kurt2rt.platform.signal_handlers import SignalHandlers
+from kurt2rt.platform.signal_handlers import SignalHandlers, heeded_signals
 
 
 class Ear:
@@ -41,6 +41,20 @@ def test_signal_handlers_restored_in_a_handler_run_once() -> None:
             signal.raise_signal(signal.SIGUSR1)
     assert once.heard == [signal.SIGUSR1]
     assert always.heard == [signal.SIGUSR1] * 2
+
+
+def test_signal_ignored_at_the_start_stays_ignored() -> None:
+    ear, ending = Ear(), {signal.SIGUSR1: None, signal.SIGUSR2: None}
+    before = signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # as nohup and shells start a program
+    try:
+        assert heeded_signals(*ending) == (signal.SIGUSR2,)
+        with SignalHandlers(dict.fromkeys(ending, ear.hear)):
+            for number in ending:
+                signal.raise_signal(number)
+        assert signal.getsignal(signal.SIGUSR1) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGUSR1, before)
+    assert ear.heard == [signal.SIGUSR2]
 
 
 def test_it_is_given_back_by_who_fails() -> None:
