@@ -5,6 +5,7 @@ import ipaddress
 import socket
 
 from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.protocol.udp_socket import open_udp_socket
 
 
 def require_port(host: str, port: int) -> None:
@@ -13,37 +14,25 @@ def require_port(host: str, port: int) -> None:
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
-    """Return a UDP socket bound to an address of this machine, "::" for all; port 0 binds a free port.
+    """Return a UDP socket bound to an address of this machine, "::" for all, of IPv4 where IPv6 is missing.
 
-    Raises ChannelError.
+    Port 0 binds a free port. Raises ChannelError.
     """
     try:
         address = ipaddress.ip_address(host)
     except ValueError as error:
         raise ChannelError(f"{host!r} is no address", do="give one of this machine, such as 127.0.0.1 or ::") from error
-    text = f"::ffff:{address}" if address.version == 4 else str(address)
     try:
-        opened = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
-    except OSError as error:
-        raise ChannelError(
-            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4",
-            do="switch IPv6 on in its kernel",
-        ) from error
-    try:
-        opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
-        # No SO_REUSEPORT: two robot programs would each get part of the teacher's messages.
-        opened.bind((text, port))
+        return open_udp_socket(f"::ffff:{address}" if address.version == 4 else str(address), port)
     except (OSError, OverflowError) as error:
-        opened.close()
         raise ChannelError(_why(error, host, port)) from error
-    return opened
 
 
 def _why(error: OSError | OverflowError, host: str, port: int) -> str:
     match error:
         case OSError(errno=errno.EADDRINUSE):
             return f"UDP port {port} is in use, by another kurt2rt run perhaps; end that one, or give another port"
-        case OSError(errno=errno.EADDRNOTAVAIL):
+        case OSError(errno=errno.EADDRNOTAVAIL | errno.EAFNOSUPPORT):
             return f"{host} is no address of this machine; give one that is, or :: for all"
         case OSError(errno=errno.EACCES):
             return f"UDP port {port} is not allowed to this user; give one above 1023"

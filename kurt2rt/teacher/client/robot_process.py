@@ -2,7 +2,6 @@
 
 import shutil
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -13,6 +12,7 @@ from types import TracebackType
 from typing import Self
 
 from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.protocol.udp_socket import open_udp_socket
 from kurt2rt.teacher.client.teacher import LOCAL_DEVICE
 
 PROGRAM = "kurt2rt.cli.with_parent"
@@ -143,8 +143,7 @@ class RobotProcess:
 
 
 def _free_udp_port() -> int:
-    with socket.socket(socket.AF_INET6, socket.SOCK_DGRAM) as probe:
-        probe.bind(("::", 0))
+    with open_udp_socket() as probe:
         port: int = probe.getsockname()[1]
         return port
 

@@ -4,7 +4,9 @@ Plain requests with `protect` and `unprotect` around them: aiocoap's own OSCORE 
 that is lost, and its number limits end observations.
 """
 
+import asyncio
 import logging
+import socket
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +17,12 @@ import anyio.to_thread
 from aiocoap import oscore
 from aiocoap.numbers.constants import TransportTuning
 from aiocoap.pipe import Pipe
+from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
 from aiocoap.util import hostportjoin
 
 from kurt2rt.channel.protocol.codec import CONTENT_FORMAT
 from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.protocol.udp_socket import Ipv4Socket, mapped, open_udp_socket
 from kurt2rt.channel.security.context_folder import SECRET, CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 
@@ -116,12 +120,11 @@ class OscoreRequests:
     async def find_robot(self) -> None:
         """Resolve the robot's address again, because it may have changed; a failure goes to `trouble`."""
         try:
-            probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
-            await self._coap.find_remote_and_interface(probe)
+            robot = await self._resolve()
         except (aiocoap.error.Error, OSError, ValueError) as error:
             self.trouble = f"{self._host} is not found: {error}"
         else:
-            self._robot = probe.remote
+            self._robot = robot
 
     def post(self, path: str, payload: bytes, on_response: OnResponse) -> Exchange:
         """Send a request once; `on_response` is called at most once, from the event loop."""
@@ -142,6 +145,17 @@ class OscoreRequests:
         """Close the socket and store the state of the pairing."""
         await self._coap.shutdown()
         await anyio.to_thread.run_sync(self._keys.close)
+
+    async def _resolve(self) -> Any:
+        interface = self._coap.request_interfaces[0].token_interface.message_interface
+        if isinstance(interface.transport.get_extra_info("socket"), Ipv4Socket):
+            # aiocoap would look for a route with an IPv6 socket.
+            kind, family = socket.SOCK_DGRAM, socket.AF_INET
+            found = await self._coap.loop.getaddrinfo(self._host, self._port, family=family, type=kind)
+            return UDP6EndpointAddress(mapped(found[0][4]), interface)
+        probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
+        await self._coap.find_remote_and_interface(probe)
+        return probe.remote
 
     def _begin(self, path: str, request: Any, on_response: OnResponse) -> Exchange:
         exchange = Exchange()
@@ -211,13 +225,16 @@ async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     try:
         # No warnings either: on a bad link aiocoap logs hundreds; `trouble` holds the reason.
         logging.getLogger(_LOGGER).setLevel(logging.CRITICAL)
-        coap = await aiocoap.Context.create_client_context(loggername=_LOGGER, transports=["udp6"])
-        coap.request_interfaces[0].token_interface.message_interface.transport.max_size = _LARGEST_DATAGRAM
+        opened = open_udp_socket()
     except OSError as error:
         keys.close()
-        raise ChannelError(
-            f"no UDP socket can be opened ({error.strerror})", do="switch on IPv6 sockets, which also carry IPv4"
-        ) from error
+        raise ChannelError(f"no UDP socket can be opened ({error.strerror})", do="switch on IPv4 or IPv6") from error
+    loop = asyncio.get_running_loop()
+    coap = aiocoap.Context(loop=loop, loggername=_LOGGER)
+    await coap._append_tokenmanaged_messagemanaged_transport(
+        lambda messages: MessageInterfaceUDP6._create_transport_endpoint(opened, messages, coap.log, loop)
+    )
+    coap.request_interfaces[0].token_interface.message_interface.transport.max_size = _LARGEST_DATAGRAM
     requests = OscoreRequests(coap, keys, host, port, paired_ms)
     await requests.find_robot()
     return requests

@@ -11,6 +11,7 @@ import anyio.abc
 import uvicorn
 from starlette.types import ASGIApp
 
+from kurt2rt.channel.protocol.udp_socket import MISSING_FAMILY
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
@@ -32,14 +33,26 @@ def listen(port: int, *, everywhere: bool, spare_ports: int = 0) -> socket.socke
     """
     for tried in range(port, min(port + spare_ports, 65535) + 1):
         try:
-            if everywhere and socket.has_dualstack_ipv6():
-                return socket.create_server(("::", tried), family=socket.AF_INET6, dualstack_ipv6=True)
-            return socket.create_server(("" if everywhere else "127.0.0.1", tried))
+            return _listener(tried, everywhere=everywhere)
         except OSError as error:
             reason = os.strerror(error.errno or 0)  # without the address, which create_server adds
             if error.errno != errno.EADDRINUSE:
                 break
     raise PageError(f"port {port}: cannot listen ({reason})", do="give another one with --page-port")
+
+
+def _listener(port: int, *, everywhere: bool) -> socket.socket:
+    """Return a socket of the usual family, or of the other one if this machine lacks the usual one. Raises OSError."""
+    ipv6 = [(socket.AF_INET6, "::" if everywhere else "::ffff:127.0.0.1")] if socket.has_dualstack_ipv6() else []
+    ipv4 = [(socket.AF_INET, "" if everywhere else "127.0.0.1")]
+    for family, host in ipv6 + ipv4 if everywhere else ipv4 + ipv6:
+        try:
+            return socket.create_server((host, port), family=family, dualstack_ipv6=family == socket.AF_INET6)
+        except OSError as error:
+            failure = error
+            if error.errno not in MISSING_FAMILY:
+                break
+    raise failure
 
 
 async def run_page(

@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import socket
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import STATIC
 from kurt2rt.teacher.page.public_address import PageError, PublicAddress
 from kurt2rt.teacher.page.server import listen, run_page
+from tests.channel.missing_family import remove_family
 from tests.teacher.page.fake_robot import FakeRobot
 
 TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
@@ -291,3 +293,13 @@ async def test_a_port_in_use_is_said() -> None:
         port = listener.getsockname()[1]
         with pytest.raises(PageError, match=f"{port}.*--page-port"):
             listen(port, everywhere=False)
+
+
+@pytest.mark.parametrize("missing", [socket.AF_INET, socket.AF_INET6])
+@pytest.mark.parametrize(("sockets_open", "everywhere"), [(False, False), (False, True), (True, True)])
+def test_page_listens_by_the_family_that_is_there(
+    monkeypatch: pytest.MonkeyPatch, missing: socket.AddressFamily, sockets_open: bool, everywhere: bool
+) -> None:
+    remove_family(monkeypatch, missing, sockets_open=sockets_open)
+    with listen(0, everywhere=everywhere) as listener:
+        assert listener.family is not missing
