@@ -1,6 +1,7 @@
 """Loader of settings: a YAML file becomes a validated, frozen model, or an error of one line."""
 
 import json
+import re
 import stat
 from collections.abc import Mapping
 from functools import lru_cache
@@ -50,6 +51,8 @@ def _construct_mapping(loader: _Strict, node: yaml.MappingNode) -> dict[Any, Any
     return yaml.SafeLoader.construct_mapping(loader, node, deep=True)
 
 
+# YAML 1.2, by which ROS and most others write: 5e-2 and 7e2 are numbers. PyYAML, of YAML 1.1, reads texts.
+_FLOAT_WITH_EXPONENT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)[eE][-+]?[0-9]+$")
 _Strict.add_constructor(yaml.resolver.BaseResolver.DEFAULT_MAPPING_TAG, _construct_mapping)  # type: ignore[type-var]
 
 
@@ -60,6 +63,9 @@ class _Loader(_Strict, yaml.SafeLoader):
 class _QuickLoader(_Strict, getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]
     """Loader of libyaml if PyYAML has it: takes a sixth of the time."""
 
+
+for _each in (_Loader, _QuickLoader):
+    _each.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT_WITH_EXPONENT, [*"-+.0123456789"])
 
 _MARKS, _MARKS_AT_MOST = "[{-?:", 5000
 

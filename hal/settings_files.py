@@ -23,6 +23,9 @@ SHIPPED_DIR: Final = CONFIG_DIR
 """Folder of the files that ship with the project."""
 
 
+YAML_SUFFIXES: Final = (".yaml", ".yml")
+"""Endings of a settings file that is given by its path."""
+
 FILES = "files"
 """Folder of the stored files that are no settings."""
 
@@ -95,7 +98,7 @@ def find_config(kind: str, name_or_path: str) -> Path:
             return path
         raise SettingsError(f"is not among the settings in {kind} that were kept with the run", where=name_or_path)
     given = Path(name_or_path)
-    if given.suffix == ".yaml" and given.is_file() and not are_settings_from_elsewhere():
+    if given.suffix in YAML_SUFFIXES and given.is_file() and not are_settings_from_elsewhere():
         return given
     names = shipped_names(kind)
     if name_or_path in names:  # the join of a folder and a foreign name could lead anywhere

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
+from hal.settings_files import YAML_SUFFIXES
 from hal.simulation import Pose, Position, WallSide, WorldPlan
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_link import SimulatedLink
@@ -153,5 +154,5 @@ def chance_of(world: str, seed: int, purpose: str) -> random.Random:
 
     Of a world's file only the name counts, so that a seed gives the same robot wherever the file lies.
     """
-    name = Path(world).stem if world.endswith(".yaml") else world
+    name = Path(world).stem if world.endswith(YAML_SUFFIXES) else world
     return random.Random(f"{purpose} in world {name}, seed {seed}")

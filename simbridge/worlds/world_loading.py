@@ -69,12 +69,12 @@ def _made(make: Callable[[], object], name: str) -> WorldSettings:
 def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
     """Return the world of a file: a world, a map or a world on a map, by its keys."""
     keys = _keys(path)
-    if not keys & {"image", "map"} or "outline" in keys:
+    if not keys & {"image", "Image", "map"} or "outline" in keys:
         return load_settings(path, WorldSettings)
     # Imported here: only maps need the image libraries.
     from simbridge.worlds.map_server.world import world_from_map, world_on_map
 
-    return world_from_map(path, geometry) if "image" in keys else world_on_map(path)
+    return world_on_map(path) if "map" in keys else world_from_map(path, geometry)
 
 
 def _keys(path: Path) -> set[str]:

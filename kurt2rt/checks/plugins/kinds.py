@@ -14,7 +14,7 @@ from hal.plugins import Plugin, PluginKind, import_target, is_target
 from hal.robot_plugins import ROBOTS, robot_of_task, robots_tasks
 from hal.robot_settings import robot_that_task_names
 from hal.settings import SettingsError, content_of
-from hal.settings_files import TASKS, WORLDS
+from hal.settings_files import TASKS, WORLDS, YAML_SUFFIXES
 from kurt2rt.checks.plugins.folder_robots import robots_by_part
 from kurt2rt.experiments.rivals.registry import LEARNERS
 
@@ -92,7 +92,7 @@ def find_subjects(name_or_path: str, group: str | None = None) -> list[Subject]:
 
 
 def _subject_of(name_or_path: str, path: Path, group: str | None) -> Subject:
-    if path.suffix == ".yaml":
+    if path.suffix in YAML_SUFFIXES:
         return Subject(group or _group_of_file(path), name_or_path)
     if group is not None:
         return Subject(group, name_or_path)

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import AliasChoices, ConfigDict, Field, model_validator
 
 from hal.settings import Settings, SettingsError
 from simbridge.worlds.world_settings import StartPoseSettings
@@ -12,9 +12,11 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MapSettings(Settings):
-    """YAML file of a map with map_server's keys."""
+    """YAML file of a map with map_server's keys; keys of other programs are allowed."""
 
-    image: str
+    model_config = ConfigDict(extra="ignore")
+
+    image: Annotated[str, Field(validation_alias=AliasChoices("image", "Image"))]
     """PGM or PNG file, relative to the YAML file."""
     resolution: Annotated[float, Field(gt=0, le=1)]
     """Metres per cell."""

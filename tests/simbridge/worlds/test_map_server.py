@@ -237,6 +237,35 @@ def test_drivable_cells_follow_the_modes(
     assert cells(tmp_path, mode=mode, negate=negate) == [drivable]
 
 
+@pytest.mark.parametrize("around", ["saved as unknown", "transparent white", "transparent, negated"])
+def test_map_of_nav2_is_the_room_alone(around: str, tmp_path: Path) -> None:
+    room = drawn(shapely.box(20, 10, 80, 70)) == FREE
+    colour, opacity = {"saved as unknown": (UNKNOWN, 255), "transparent white": (255, 0)}.get(around, (0, 0))
+    negate = int(around.endswith("negated"))
+    cells_of = np.where(room, 255 - FREE if negate else FREE, colour).astype(np.uint8)
+    alpha = np.where(room, 255, opacity).astype(np.uint8)
+    if opacity == 255:
+        write_p5(tmp_path / "flat.pgm", cells_of)
+    else:
+        Image.merge("LA", [Image.fromarray(each) for each in (cells_of, alpha)]).save(tmp_path / "flat.png")
+    image = "flat.pgm" if opacity == 255 else "flat.png"
+    # Opacity counts as brightness also in a negated map, so that its free cells are a quarter occupied.
+    map_saver = {**PLAIN, "image": image, "mode": "trinary", "free_thresh": 0.3 if negate else 0.25, "negate": negate}
+    world = load_world(write_yaml(tmp_path / "flat.yaml", map_saver), ROBOT)
+    assert floor_of(world).area == pytest.approx(9.0)
+    assert all(floor_of(world).contains(shapely.Point(start.x_m, start.y_m)) for start in world.start_poses)
+
+
+def test_map_file_of_other_programs_is_read(tmp_path: Path) -> None:
+    write_p5(tmp_path / "flat.pgm", drawn(FLAT))
+    (tmp_path / "flat.yml").write_text(
+        "Image: flat.pgm\nresolution: 5e-2\norigin: [-1e1, -7.5e0, 0.0]\nnegate: 0\noccupied_thresh: 65e-2\n"
+        "free_thresh: 0.196\nfloor: 2\nnodes: {door: [7e2, 1]}\n",
+        encoding="utf-8",
+    )
+    assert load_world(str(tmp_path / "flat.yml"), ROBOT) == load_world(write_map(tmp_path), ROBOT)
+
+
 def test_drivable_cells_of_colours_and_transparency(tmp_path: Path) -> None:
     colours = np.array([[[254, 254, 254, 255], [255, 255, 150, 255], [160, 160, 160, 255], [160, 160, 160, 128]]])
     Image.fromarray(colours.astype(np.uint8)).save(tmp_path / "flat.png")
@@ -268,7 +297,6 @@ def test_trace_separates_cells_that_touch_at_a_corner() -> None:
         ({"origin": [0.0, 0.0]}, "origin", ""),
         ({"free_thresh": 0.7}, "", "0.65"),
         ({"mode": "cubic"}, "mode", "'trinary', 'scale' or 'raw'"),
-        ({"resolutoin": 0.1}, "resolutoin", ""),
         ({"negate": 1}, "image", "0.67 m"),
         ({"resolution": 0.001}, "image", "0.67 m"),
         ({"image": "."}, "image", ""),
@@ -314,7 +342,7 @@ def test_map_of_specks_is_refused(side: int, occupied: float, limit: int, tmp_pa
         ({"map": "none.yaml"}, "map"),
         ({"start_poses": []}, "start_poses"),
         ({"start_poses": [START, START]}, ""),
-        ({"map": "mine.yaml"}, "map"),
+        ({"map": "mine.yaml"}, "image"),
         ({"start_poses": [{"x_m": -7.8, "y_m": -5.9, "heading_deg": 0.0}]}, "start_poses.0"),
         ({"size_m": [1, 1]}, "size_m"),
     ],
