@@ -8,7 +8,7 @@ from rich.text import Text
 
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.teacher.page.served_pages import NO_PAGES, ServedPages
+from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages
 
 PAIR_A_PHONE = "for a phone: kurt2rt pair phone, in another terminal"
 _WRONG = "yellow"
@@ -56,25 +56,29 @@ class LiveScreen:
 
     def _lines(self) -> Group:
         phones = [each for each in self._pages.addresses if each.device not in OF_THIS_MACHINE]
-        addresses = [*self._addresses()]
-        if self._for_phones and self._pages.addresses and not phones:
-            addresses.append(Text(PAIR_A_PHONE, style="dim"))
-        if self._pages.trouble:
-            addresses.append(Text(f"! {self._pages.trouble}", style=_WRONG))
+        every = [*self._addresses(self._pages.addresses)]
+        if self._for_phones and self._pages.addresses and not phones and not self._pages.network:
+            every.append(Text(PAIR_A_PHONE, style="dim"))
         if not phones:
-            return Group(*addresses, *self._status())
+            return Group(*every, *self._status())
         code = qr_code(phones[0].link)
         width, height = self._console.size
-        rows = [*code.plain.split("\n"), *self._console.render_lines(Group(*addresses)), *self._short_status()]
-        if len(rows) < height and len(code) <= width * len(code.plain.split("\n")):
-            return Group(code, *addresses, *self._short_status())
+        # In a low window the code is worth more than the further addresses of a device.
+        likeliest = {each.device: each for each in reversed(self._pages.addresses)}
+        shown = [each for each in self._pages.addresses if likeliest[each.device] is each]
+        for addresses in (every, [*self._addresses(shown)]):
+            rows = [*code.plain.split("\n"), *self._console.render_lines(Group(*addresses)), *self._short_status()]
+            if len(rows) < height and len(code) <= width * len(code.plain.split("\n")):
+                return Group(code, *addresses, *self._short_status())
         hint = f"the code to scan needs a window of {len(rows) + 1} lines"
-        return Group(*addresses, Text(hint, style="dim"), *self._status())
+        return Group(*every, Text(hint, style="dim"), *self._status())
 
-    def _addresses(self) -> Iterator[Text]:
-        names = ["page" if each.device in OF_THIS_MACHINE else each.device for each in self._pages.addresses]
-        for name, each in zip(names, self._pages.addresses, strict=True):
+    def _addresses(self, addresses: Sequence[PageAddress]) -> Iterator[Text]:
+        names = ["page" if each.device in OF_THIS_MACHINE else each.device for each in addresses]
+        for name, each in zip(names, addresses, strict=True):
             yield Text.assemble((name.ljust(max(map(len, names)) + 2), "bold"), (each.link, "cyan"), overflow="fold")
+        if self._pages.trouble:
+            yield Text(f"! {self._pages.trouble}", style=_WRONG)
 
     def _status(self) -> Iterator[Text]:
         if self._doing:

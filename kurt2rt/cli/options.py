@@ -122,6 +122,29 @@ Changes = Annotated[
 ]
 
 
+def _require_page_address(value: str | None) -> str | None:
+    # Imported here: the help needs no settings.
+    from kurt2rt.service.settings import page_address_of
+
+    try:
+        return None if value is None else page_address_of(value)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+PageAddressName = Annotated[
+    str | None,
+    typer.Option(
+        "--page-address",
+        metavar="ADDRESS",
+        callback=_require_page_address,
+        help="Address or name of the machine that serves the page, as a phone is told it and a browser may write it, "
+        "such as 192.168.0.7 or robot.example; auto: this machine's addresses in its networks. Default: as the "
+        "settings say.",
+    ),
+]
+
+
 def seeds_option(whole: str, quick: str) -> Any:
     """Return --seeds of a study; `whole` and `quick` are the seeds without it, as texts for the help."""
     return typer.Option(

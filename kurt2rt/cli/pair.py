@@ -1,7 +1,10 @@
 """`kurt2rt pair`."""
 
+from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, NamedTuple
+from urllib.parse import urlsplit
 
 import typer
 from rich.console import Console
@@ -10,14 +13,19 @@ from rich.text import Text
 from kurt2rt.channel.security import pairing
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
+from kurt2rt.cli.options import PageAddressName
 from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.service.health.status_error import StatusError
+from kurt2rt.service.health.status_socket import read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
-from kurt2rt.teacher.page.host_names import own_address
-from kurt2rt.teacher.page.served_pages import page_link
+from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
+from kurt2rt.teacher.page.served_pages import PageAddress, page_addresses
 
 _TIME = "%Y-%m-%d %H:%M"
+_PATIENCE_S = 2.0
+"""A robot program reports once a second."""
 
 
 _Name = Annotated[
@@ -34,10 +42,6 @@ _Renew = Annotated[
 _Revoke = Annotated[
     bool, typer.Option("--revoke", help="Delete NAME's keys; a running robot refuses it within a second.")
 ]
-_Host = Annotated[
-    str | None,
-    typer.Option(help="Address of the machine that will run kurt2rt teach. Default: this one's.", show_default=False),
-]
 _Settings = Annotated[str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")]
 
 
@@ -47,7 +51,7 @@ def pair(
     as_json: _AsJson = False,
     renew: _Renew = False,
     revoke: _Revoke = False,
-    host: _Host = None,
+    page_address: PageAddressName = None,
     settings: _Settings = "default",
 ) -> None:
     """Pair a teacher's device with this robot, and show the code that opens its page.
@@ -85,7 +89,8 @@ def pair(
     else:
         change = pairing.renew if renew else pairing.pair
         changed = change(*pairings, name, port=service.port)
-        _show(name, changed, page_link(changed.device, host or own_address(), service.page_port))
+        port = _port_of_running_page(Path(service.knowledge).parent) or service.page_port
+        _show(name, changed, page_addresses(changed.device, page_address or service.page_address, port))
 
 
 class _Folders(NamedTuple):
@@ -103,7 +108,16 @@ def _list(pairings: _Folders, *, as_json: bool) -> None:
         print_whole(console_of(), _table(*pairings))
 
 
-def _show(name: str, changed: Pairing, link: str) -> None:
+def _port_of_running_page(folder: Path) -> int | None:
+    """Return the TCP port at which a robot program with knowledge in `folder` serves its page; None without one."""
+    for path in sorted(folder.glob(status_socket_path(Path("*")).name)):
+        with suppress(StatusError):  # it ended, still waits for its robot, or does not answer
+            for link in next(read_reports(path, _PATIENCE_S)).pages:
+                return urlsplit(link).port
+    return None
+
+
+def _show(name: str, changed: Pairing, addresses: Sequence[PageAddress]) -> None:
     console = Console()
     _print(
         console,
@@ -111,9 +125,12 @@ def _show(name: str, changed: Pairing, link: str) -> None:
         f"robot's side   {changed.teacher}",
         f"device's side  {changed.device.folder}",
         "next           kurt2rt run --phone, unless it runs already; then scan the code that it shows",
-        f"its page       {link}",
+        *(f"its page       {each.link}" for each in addresses),
     )
-    console.print(qr_code(link), soft_wrap=True)
+    if addresses:
+        console.print(qr_code(addresses[0].link), soft_wrap=True)
+    else:
+        _print(console, f"! {NO_ADDRESS}")
 
 
 def _table(teachers: Path, devices: Path) -> TextTable | Text:

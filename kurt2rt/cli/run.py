@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import EarlierBus, RobotName, WireName, bus_of, task_option, world_option
+from kurt2rt.cli.options import EarlierBus, PageAddressName, RobotName, WireName, bus_of, task_option, world_option
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
@@ -105,6 +105,7 @@ class _Options:
             metavar="PORT", min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."
         ),
     ] = None
+    page_address: PageAddressName = None
     can_log: Annotated[
         Path | None,
         typer.Option(
@@ -307,6 +308,7 @@ def _run_options(
         phones=options.phone,
         scripted_teacher=_scripted_teacher(options, task),
         page_port=options.page_port,
+        page_address=options.page_address,
         can_log=options.can_log,
         record=recorded,
         unrecorded="" if recorded or options.no_record else _NOT_RECORDED,

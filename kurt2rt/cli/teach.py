@@ -15,7 +15,7 @@ from rich.console import Console
 from hal.robot_settings import load_robot, robot_that_task_names
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
-from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, RobotName, task_option, teacher_option
+from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, PageAddressName, RobotName, task_option, teacher_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.programs import AUTO, PROGRAMS
@@ -58,9 +58,6 @@ _PagePort = Annotated[
         "that.",
     ),
 ]
-_HostNames = Annotated[
-    list[str] | None, typer.Option(help="Another name of this machine that browsers may use; can be repeated.")
-]
 _PublicAddress = Annotated[
     str | None, typer.Option(help="Address of a TLS proxy in front of the page, such as https://robot.example.")
 ]
@@ -82,7 +79,7 @@ def teach(
     robot: _Robot = None,
     port: _Port = None,
     page_port: _PagePort = None,
-    host_name: _HostNames = None,
+    page_address: PageAddressName = None,
     public_address: _PublicAddress = None,
     task: _Task = None,
     teacher: _Teacher = None,
@@ -129,7 +126,7 @@ class _Arguments:
     robot: str | None
     port: int | None
     page_port: int | None
-    host_name: list[str] | None
+    page_address: str | None
     public_address: str | None
     task: str | None
     teacher: str | None
@@ -186,7 +183,7 @@ def _serve(arguments: _Arguments, service: ServiceSettings, route: _Route | None
     options = PageOptions(
         port=service.page_port if page_port is None else page_port,
         spare_ports=SPARE_PORTS if page_port is None else 0,
-        host_names=tuple(arguments.host_name or ()),
+        address=arguments.page_address or service.page_address,
         while_stdin=arguments.while_stdin,
         as_json=arguments.pages_as_json,
     )

@@ -16,10 +16,11 @@ from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.device_pages import PageSite
 from kurt2rt.teacher.page.device_server import Pairings, run_device_pages
-from kurt2rt.teacher.page.host_names import own_address, own_names
+from kurt2rt.teacher.page.host_names import own_names
+from kurt2rt.teacher.page.own_addresses import AUTO, NO_ADDRESS
 from kurt2rt.teacher.page.public_address import PageError
 from kurt2rt.teacher.page.public_address import public_address as parse_public_address
-from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, page_link, to_line
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, page_addresses, to_line
 from kurt2rt.teacher.page.server import listen, run_page
 
 SPARE_PORTS = 9
@@ -35,15 +36,16 @@ class PageOptions:
     """TCP port; 0: any."""
     spare_ports: int
     """Number of ports above to try, as for `kurt2rt.teacher.page.server.listen`."""
-    host_names: tuple[str, ...]
+    address: str
+    """Address or name of this machine that a phone is told; auto: its addresses in its networks."""
     while_stdin: bool
     as_json: bool
     """Report the served pages in lines of JSON, for `kurt2rt run`."""
 
     @property
     def names(self) -> frozenset[str]:
-        """Names of this machine and of --host-name, in lower case, as browsers may write them in an address."""
-        return own_names() | {each.lower() for each in self.host_names}
+        """Names of this machine and of --page-address, in lower case, as browsers may write them in an address."""
+        return own_names() | ({self.address.lower()} - {AUTO})
 
 
 def serve_page(device: Device, host: str, port: int, options: PageOptions, public_address: str | None = None) -> None:
@@ -65,15 +67,16 @@ def serve_page(device: Device, host: str, port: int, options: PageOptions, publi
     listener = listen(options.port, everywhere=everywhere, spare_ports=options.spare_ports)
     served_port: int = listener.getsockname()[1]
     if public is None:
-        link = page_link(device, own_address() if everywhere else ROBOT_HERE, served_port)
+        addresses = page_addresses(device, options.address, served_port)
     else:
-        link = f"{public.origin}/pair?token={device.token}"
+        addresses = (PageAddress(device.name, f"{public.origin}/pair?token={device.token}"),)
     access = Access(device.name, device.token, options.names, public)
+    served = ServedPages(addresses, network=everywhere, trouble="" if addresses else NO_ADDRESS)
     if options.as_json:
-        _print_json(ServedPages((PageAddress(device.name, link),), network=everywhere, trouble=""))
+        _print_json(served)
     else:
         ports = (options.port, served_port)
-        _print_link(link, device.name, f"{host}:{port}", ports, code=everywhere or public is not None)
+        _print_links(served, device.name, f"{host}:{port}", ports, code=everywhere or public is not None)
     reason = ""
 
     async def end() -> None:
@@ -102,7 +105,10 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
     pairings = Pairings(Path(service.teachers), Path(service.devices))
     local_pairing(pairings.teachers, pairings.devices, port=service.port)
     site = PageSite(
-        lambda device: TeacherClient(device.folder, ROBOT_HERE, port), f"{ROBOT_HERE}:{port}", options.names
+        lambda device: TeacherClient(device.folder, ROBOT_HERE, port),
+        f"{ROBOT_HERE}:{port}",
+        options.names,
+        options.address,
     )
 
     async def serve() -> None:
@@ -118,12 +124,13 @@ def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> No
     anyio.run(serve)
 
 
-def _print_link(link: str, device: str, robot_place: str, ports: tuple[int, int], *, code: bool) -> None:
-    console, (wanted, served) = Console(), ports
-    taken = f"; port {wanted} is in use, so it is at {served}" if wanted not in (0, served) else ""
-    _print(console, f"page for {device}, robot at {robot_place}{taken}; Ctrl-C ends", link)
-    if code and console.is_terminal:
-        console.print(qr_code(link), soft_wrap=True)
+def _print_links(served: ServedPages, device: str, robot_place: str, ports: tuple[int, int], *, code: bool) -> None:
+    console, (wanted, port) = Console(), ports
+    taken = f"; port {wanted} is in use, so it is at {port}" if wanted not in (0, port) else ""
+    links = [each.link for each in served.addresses]
+    _print(console, f"page for {device}, robot at {robot_place}{taken}; Ctrl-C ends", *(links or [served.trouble]))
+    if code and links and console.is_terminal:
+        console.print(qr_code(links[0]), soft_wrap=True)
 
 
 def _print_json(served: ServedPages) -> None:
@@ -137,7 +144,7 @@ def _printer(console: Console) -> Callable[[ServedPages], None]:
         phones = [each for each in served.addresses if each.device not in OF_THIS_MACHINE]
         if phones and console.is_terminal:
             console.print(qr_code(phones[0].link), soft_wrap=True)
-        _print(console, *([] if phones else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
+        _print(console, *([] if served.network else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
 
     return print_pages
 

@@ -222,7 +222,8 @@ class RobotProgram:
         self._service = self._service.model_copy(update={"port": channel.endpoint.port})
         if self._simulated is not None and self._simulated.present.teacher is not None:
             return
-        at = () if options.page_port is None else ("--page-port", str(options.page_port))
+        given = {"--page-port": options.page_port, "--page-address": options.page_address}
+        at = (str(word) for pair in given.items() if pair[1] is not None for word in pair)
         self._log(f"teachers are listened to on UDP port {port}", "cyan")
         if options.page:
             phones = ("--phone",) if options.phones else ()

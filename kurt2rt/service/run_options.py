@@ -32,6 +32,8 @@ class RunOptions:
     """Name or path of the scripted teacher to start; None: none."""
     page_port: int | None = None
     """TCP port of the page; None: as the settings say."""
+    page_address: str | None = None
+    """Address of the page that a phone is told; None: as the settings say."""
     can_log: Path | None = None
     """New file for all frames; None: frames are not logged."""
     record: bool = True

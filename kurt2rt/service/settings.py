@@ -1,5 +1,7 @@
 """Schema of `config/runtime/*.yaml`: how the service runs."""
 
+import ipaddress
+import re
 from typing import Annotated, Final, Literal, NamedTuple
 
 from pydantic import Field, PlainValidator
@@ -22,6 +24,20 @@ def _priority_of(value: object) -> int | Literal["auto"]:
     raise ValueError(f"has to be {AUTO}, or a whole number from 0 to {_HIGHEST_PRIORITY}")
 
 
+def page_address_of(value: object) -> str:
+    """Return an address that a phone is told, as it was given. Raises ValueError unless it is an address or a name."""
+    if isinstance(value, str) and (re.fullmatch(r"[A-Za-z0-9.-]+", value) or _is_ipv6(value)):
+        return value
+    raise ValueError(f"has to be {AUTO}, an address or a name, without http:// and port")
+
+
+def _is_ipv6(text: str) -> bool:
+    try:
+        return ipaddress.IPv6Address(text).scope_id is None  # a browser cannot open fe80::1%wlan0
+    except ValueError:
+        return False
+
+
 class ServiceSettings(Settings):
     """Settings of `kurt2rt run`."""
 
@@ -37,6 +53,7 @@ class ServiceSettings(Settings):
     devices: str
     port: Annotated[int, Field(ge=0, le=65535)]
     page_port: Annotated[int, Field(ge=0, le=65535)]
+    page_address: Annotated[str, PlainValidator(page_address_of)]
     recordings: str
     recordings_mb: Annotated[int, Field(ge=10, le=1_000_000), WHILE_RUNNING]
 

@@ -81,6 +81,21 @@ def test_show_long_status_keeps_the_code_in_24_lines() -> None:
         assert len(lines) <= 24
 
 
+def test_show_further_addresses_only_beside_the_code() -> None:
+    further = PageAddress("phone", "http://10.42.0.1:8642/pair?token=" + 32 * "b")
+    for height in (24, 30):
+        shown = Shown(height=height)
+        shown.screen.pin(ServedPages((LOCAL, PHONE, further), network=True, trouble=""))
+        assert any(FULL_BLOCK in line for line in shown.lines())
+        assert any(further.link in line for line in shown.lines()) == (height == 30)
+
+
+def test_show_unreachable_phone_has_no_code_and_a_reason() -> None:
+    shown = Shown()
+    shown.screen.pin(ServedPages((LOCAL,), network=True, trouble="no phone can reach this machine"))
+    assert shown.lines()[-2:] == [f"page  {LOCAL.link}", "! no phone can reach this machine"]
+
+
 def test_a_low_window_says_how_high_it_has_to_be() -> None:
     shown = Shown(height=20)
     shown.screen.pin(ServedPages((LOCAL, PHONE), network=True, trouble=""))
@@ -100,7 +115,7 @@ def opener(folder: Path) -> dict[str, str]:
 
 def test_run_at_a_terminal_pins_page_and_code(tmp_path: Path) -> None:
     pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
-    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
+    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--page-address", "127.0.0.1", "--no-record")
     desktop = opener(tmp_path)
     program = ProgramInTerminal(words, tmp_path, desktop, rows=40)
     opened = tmp_path / "opened"
@@ -123,7 +138,7 @@ def test_run_at_a_terminal_pins_page_and_code(tmp_path: Path) -> None:
 
 
 def test_run_in_a_pipe_prints_lines_and_accepts_a_phone(tmp_path: Path) -> None:
-    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
+    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--page-address", "127.0.0.1", "--no-record")
     with running(*words, folder=tmp_path, environment=opener(tmp_path)) as robot:
         local = urlsplit(robot.wait_for("/pair?token=").strip())
         pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")

@@ -1,5 +1,8 @@
 import json
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from urllib.parse import urlsplit
 
 import pytest
 import yaml
@@ -8,7 +11,9 @@ from config import CONFIG_DIR
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import Device, local_pairing, read_device
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.teacher.page.host_names import own_address
+from kurt2rt.service.health.status_error import StatusCode, StatusError
+from kurt2rt.teacher.page import own_addresses
+from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.served_pages import page_link
 from tests.cli.helpers import CommandLine
 
@@ -20,7 +25,7 @@ def device_of(name: str) -> Device:
 
 
 def test_pair_prints_link_and_code(kurt2rt: CommandLine) -> None:
-    said = kurt2rt("pair", "anna-phone", "--host", "10.0.0.7")
+    said = kurt2rt("pair", "anna-phone", "--page-address", "10.0.0.7")
     assert said.exit_code == 0, said.err
     address = f"http://10.0.0.7:8642/pair?token={device_of('anna-phone').token}"
     assert address in said.out
@@ -38,9 +43,45 @@ def test_pair_makes_the_robot_accept_the_device(kurt2rt: CommandLine) -> None:
     teachers.close()
 
 
-def test_pair_without_host_links_to_this_machine(kurt2rt: CommandLine) -> None:
+def test_pair_lists_the_addresses_and_shows_the_first(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_addresses, "_ranked", lambda: iter([((True,), "fd00::1"), ((False,), "10.42.0.1")]))
     said = kurt2rt("pair", "phone")
-    assert f"http://{own_address()}:8642/pair?token=" in said.out
+    links = [line.split()[-1] for line in said.out.splitlines() if "?token=" in line]
+    assert [urlsplit(each).netloc for each in links] == ["10.42.0.1:8642", "[fd00::1]:8642"]
+    assert qr_code(links[0]).plain in said.out
+
+
+def test_pair_without_a_network_shows_no_code(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_addresses, "_ranked", lambda: iter(()))
+    said = kurt2rt("pair", "phone")
+    assert said.exit_code == 0
+    assert NO_ADDRESS in said.out
+    assert "?token=" not in said.out
+    assert "█" not in said.out
+
+
+def test_pair_asks_the_running_program_for_its_port(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def read_reports(path: Path, _: float) -> Iterator[SimpleNamespace]:
+        asked.append(path.name)
+        if path.stem == "a.knowledge":
+            raise StatusError(StatusCode.NO_PROGRAM, knowledge=path)
+        yield SimpleNamespace(pages=("http://127.0.0.1:9100/pair?token=a",) if path.stem == "c.knowledge" else ())
+
+    Path("var").mkdir()
+    for name in "abcd":
+        Path(f"var/{name}.knowledge.status").touch()
+    monkeypatch.setattr("kurt2rt.cli.pair.read_reports", read_reports)
+    said = kurt2rt("pair", "phone", "--page-address", "robot.lan")
+    assert "http://robot.lan:9100/pair?token=" in said.out
+    assert asked == ["a.knowledge.status", "b.knowledge.status", "c.knowledge.status"]
+
+
+@pytest.mark.parametrize("address", ["http://robot.lan", "10.0.0.7:8642", "fe80::1%wlan0", ""])
+def test_pair_address_of_another_form_is_refused(kurt2rt: CommandLine, address: str) -> None:
+    assert "without http:// and port" in kurt2rt.misused("pair", "phone", "--page-address", address)
+    assert not DEVICES.exists()
 
 
 def test_page_link_ipv6_address_is_in_brackets(tmp_path: Path) -> None:
@@ -51,11 +92,12 @@ def test_page_link_ipv6_address_is_in_brackets(tmp_path: Path) -> None:
 def test_pair_uses_folders_and_ports_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
     content = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
     content |= {"teachers": "keys/robot", "devices": "keys/out", "port": 6000, "page_port": 9000}
+    content["page_address"] = "robot.lan"
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
     said = kurt2rt("pair", "phone", "--settings", tmp_path / "mine.yaml")
     assert read_device(Path("keys/out/phone")).port == 6000
     assert Path("keys/robot/phone/secret.json").exists()
-    assert ":9000/pair?token=" in said.out
+    assert "http://robot.lan:9000/pair?token=" in said.out
 
 
 def test_pair_twice_is_refused_with_renew_as_the_cure(kurt2rt: CommandLine) -> None:

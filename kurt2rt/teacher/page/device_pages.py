@@ -40,6 +40,8 @@ class PageSite:
     """Address of the robot, for texts."""
     names: Collection[str]
     """Names of this machine, as a browser may write them in an address."""
+    address: str
+    """Address or name of this machine that a phone is told; auto: its addresses in its networks."""
     idle_s: float = IDLE_S
 
 

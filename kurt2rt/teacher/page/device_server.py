@@ -2,6 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Collection
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import anyio
@@ -10,9 +11,9 @@ import anyio.to_thread
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, pairing_names, read_device
 from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
-from kurt2rt.teacher.page.host_names import own_address
+from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, page_link
+from kurt2rt.teacher.page.served_pages import ServedPages, page_addresses
 from kurt2rt.teacher.page.server import PagePort
 
 _POLL_PAIRINGS_S = 1.0
@@ -75,7 +76,7 @@ async def run_device_pages(
             found = (await anyio.to_thread.run_sync(local_devices, pairings))[0]
             await page_port.open(everywhere=_needs_network(found))
             async with anyio.create_task_group() as polling:
-                polling.start_soon(_follow_pairings, pairings, pages, page_port, publish, poll_s)
+                polling.start_soon(_follow_pairings, pairings, pages, page_port, site.address, publish, poll_s)
                 await until_ended()
                 polling.cancel_scope.cancel()
             await pages.end()
@@ -84,7 +85,12 @@ async def run_device_pages(
 
 
 async def _follow_pairings(
-    pairings: Pairings, pages: DevicePages, page_port: PagePort, publish: Callable[[ServedPages], None], poll_s: float
+    pairings: Pairings,
+    pages: DevicePages,
+    page_port: PagePort,
+    address: str,
+    publish: Callable[[ServedPages], None],
+    poll_s: float,
 ) -> None:
     found: tuple[Device, ...] = ()
     published = None
@@ -98,11 +104,10 @@ async def _follow_pairings(
             await page_port.open(everywhere=_needs_network(found))
         except PageError as error:
             fault = f"{fault}; {error}".strip("; ")
-        served = ServedPages(
-            tuple(PageAddress(each.name, _link(each, page_port.port)) for each in found),
-            page_port.everywhere is True,
-            fault,
-        )
+        of_devices = [page_addresses(each, address, page_port.port) for each in found]
+        if not all(of_devices):
+            fault = f"{fault}; {NO_ADDRESS}".strip("; ")
+        served = ServedPages(tuple(chain.from_iterable(of_devices)), page_port.everywhere is True, fault)
         if served != published:
             publish(served)
             published = served
@@ -111,7 +116,3 @@ async def _follow_pairings(
 
 def _needs_network(devices: Collection[Device]) -> bool:
     return any(each.name not in OF_THIS_MACHINE for each in devices)
-
-
-def _link(device: Device, port: int) -> str:
-    return page_link(device, "127.0.0.1" if device.name in OF_THIS_MACHINE else own_address(), port)

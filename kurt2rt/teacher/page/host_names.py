@@ -4,6 +4,9 @@ import ipaddress
 import socket
 from collections.abc import Collection
 
+_LOCAL_DOMAINS = ("local", "lan", "home.arpa", "fritz.box", "home", "internal")
+"""Domains that mDNS and routers put behind a machine's name; no stranger can have a name there."""
+
 
 def host_name(host: str) -> str:
     """Return name or address of a Host header, in lower case, without port and brackets; empty if there is none."""
@@ -17,7 +20,7 @@ def own_names() -> frozenset[str]:
     """Return this machine's names, addresses left out."""
     name = socket.gethostname().lower()
     short = name.partition(".")[0]
-    return frozenset({name, short, f"{short}.local"})
+    return frozenset({name, short, *(f"{short}.{domain}" for domain in _LOCAL_DOMAINS)})
 
 
 def is_own_host(host: str, local_address: str, names: Collection[str]) -> bool:
@@ -33,7 +36,7 @@ def is_own_host(host: str, local_address: str, names: Collection[str]) -> bool:
         return here.is_loopback
     address = _parse_address(name)
     if address is not None:
-        return address == here
+        return address == here or name in names
     return name in names
 
 
@@ -52,15 +55,3 @@ def _parse_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address |
     if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is not None:
         return address.ipv4_mapped
     return address
-
-
-def own_address() -> str:
-    """Return this machine's address in its network; 127.0.0.1 without a network."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            # Selects the interface of the default route; a UDP connect sends nothing.
-            probe.connect(("192.0.2.1", 9))
-        except OSError:
-            return "127.0.0.1"
-        address: str = probe.getsockname()[0]
-    return "127.0.0.1" if ipaddress.ip_address(address).is_unspecified else address

@@ -3,7 +3,8 @@
 import json
 from dataclasses import asdict, dataclass
 
-from kurt2rt.channel.security.pairing import Device
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Device
+from kurt2rt.teacher.page.own_addresses import addresses_for_phones
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,7 +21,7 @@ class ServedPages:
     """Pages served at present."""
 
     addresses: tuple[PageAddress, ...]
-    """This machine's own first, then the others, the newest pairing first."""
+    """This machine's own first, then the others, the newest pairing first; of one device the likeliest first."""
     network: bool
     """The port is open to the network."""
     trouble: str
@@ -34,6 +35,18 @@ def page_link(device: Device, host: str, port: int) -> str:
     """Return the link that opens a device's page and pairs the browser."""
     shown = f"[{host}]" if ":" in host else host
     return f"http://{shown}:{port}/pair?token={device.token}"
+
+
+def page_addresses(device: Device, named: str, port: int) -> tuple[PageAddress, ...]:
+    """Return the addresses of a device's page, the likeliest first; empty if no phone can reach this machine.
+
+    Args:
+        device: paired device; a device of this machine has its page on loopback.
+        named: address or name that a phone is told; auto: this machine's addresses in its networks.
+        port: TCP port of the page.
+    """
+    hosts = ("127.0.0.1",) if device.name in OF_THIS_MACHINE else addresses_for_phones(named)
+    return tuple(PageAddress(device.name, page_link(device, host, port)) for host in hosts)
 
 
 def to_line(served: ServedPages) -> str:

@@ -37,7 +37,7 @@ _TEXTS: Mapping[PageNotice, str] = {
     PageNotice.UNSEEN_STOP: "page hidden, closed or too busy for 0.3 s: the robot was stopped; GO lets it drive on",
     PageNotice.ROBOT_ABSENT: "no robot at {place}; is kurt2rt run running?",
     PageNotice.ROBOT_SILENT: "no answer from the robot at {place}",
-    PageNotice.FOREIGN_HOST: "this address does not belong to this machine (see --host-name)",
+    PageNotice.FOREIGN_HOST: "not known as an address of this machine; start with --page-address and this name",
     PageNotice.FOREIGN_PAGE: "opened by a page of another site",
     PageNotice.TOO_MANY_TOKENS: "too many wrong tokens from this address; the right one still works",
     PageNotice.UPLOAD_BUSY: "another file is being uploaded; wait for it",

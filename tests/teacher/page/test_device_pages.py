@@ -91,7 +91,7 @@ async def server(folder: Path) -> AsyncIterator[Server]:
     local_pairing(pairings.teachers, pairings.devices)
     local_pairing(pairings.teachers, pairings.devices, TERMINAL)
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(serve, pairings, PageSite(links, "a robot", ["desk"]), 0, told.append, end.wait)
+        tasks.start_soon(serve, pairings, PageSite(links, "a robot", ["desk"], "desk"), 0, told.append, end.wait)
         opened = Server(pairings, links, told)
         await opened.tells(lambda _: True)
         yield opened
@@ -242,7 +242,7 @@ async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: 
         "client": ("127.0.0.1", 9),
     }
     async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, PageSite(links, "a robot", [], idle_s=0.01))
+        pages = DevicePages(tasks, PageSite(links, "a robot", [], "desk", idle_s=0.01))
         pages.serve([device])
         for times in (1, 2):
             await pages(scope, ask, answer)
@@ -292,7 +292,7 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
         "client": ("192.168.0.9", 50000),
     }
     async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, PageSite(links, "a robot", []))
+        pages = DevicePages(tasks, PageSite(links, "a robot", [], "desk"))
         pages.serve([device])
         await pages(scope, ask, answer)
         await pages.end()

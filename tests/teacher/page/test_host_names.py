@@ -1,6 +1,6 @@
 import pytest
 
-from kurt2rt.teacher.page.host_names import host_name, is_own_host, own_address, own_names
+from kurt2rt.teacher.page.host_names import host_name, is_own_host, own_names
 
 NAMES = {"robot-desk", "robot-desk.local"}
 
@@ -55,6 +55,12 @@ def test_is_own_host_foreign_name_is_not_own(host: str, local_address: str) -> N
     assert not is_own_host(host, local_address, NAMES)
 
 
-def test_own_names_and_own_address_are_own() -> None:
-    assert all(name == name.lower() for name in own_names())
-    assert is_own_host(own_address(), own_address(), own_names())
+@pytest.mark.parametrize("domain", ["", ".local", ".lan", ".fritz.box", ".home.arpa"])
+def test_own_names_have_the_domains_of_routers(domain: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("socket.gethostname", lambda: "Robot-Desk.office.example")
+    assert is_own_host(f"robot-desk{domain}:8642", "192.168.1.7", own_names())
+    assert not is_own_host(f"evil{domain}", "192.168.1.7", own_names())
+
+
+def test_is_own_host_address_that_was_named_is_own() -> None:
+    assert is_own_host("10.0.0.7:8642", "172.17.0.2", {"10.0.0.7"})

@@ -16,6 +16,9 @@ from kurt2rt.channel.security.pairing import pair, read_device, revoke
 from kurt2rt.teacher.page.server import listen
 from tests.cli.helpers import running
 
+HERE = ("--page-address", "127.0.0.1")
+"""A phone is told this address also where this machine is in no network."""
+
 
 def free_udp_port() -> int:
     """Return a free UDP port."""
@@ -59,7 +62,7 @@ def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path)
 def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
     teachers, devices = tmp_path / "var" / "teachers", tmp_path / "var" / "devices"
     pair(teachers, devices, "phone")
-    with running("teach", "--as", "phone", "--page-port", "0", folder=tmp_path) as page:
+    with running("teach", "--as", "phone", "--page-port", "0", *HERE, folder=tmp_path) as page:
         address = urlsplit(page.wait_for("http://").strip())
         cookie_of(address._replace(netloc=f"127.0.0.1:{address.port}").geturl())  # it is served, also on loopback
         revoke(teachers, devices, "phone")
@@ -77,7 +80,7 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
     with listen(0, everywhere=False) as before:
         port = before.getsockname()[1]
         settings.write_text(default.replace("page_port: 8642", f"page_port: {port}"), encoding="utf-8")
-        with running("teach", "--as", "phone", "--settings", "own.yaml", folder=tmp_path) as page:
+        with running("teach", "--as", "phone", "--settings", "own.yaml", *HERE, folder=tmp_path) as page:
             told = page.wait_for("page for phone, ")
             served = urlsplit(page.wait_for("http://").strip()).port
             assert served is not None
@@ -93,7 +96,7 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
 
 
 def test_all_devices_are_served_by_one_command(tmp_path: Path) -> None:
-    with running("teach", "--phone", "--page-port", "0", "--port", "9", folder=tmp_path) as page:
+    with running("teach", "--phone", "--page-port", "0", "--port", "9", *HERE, folder=tmp_path) as page:
         local = page.wait_for("http://127.0.0.1:").strip()
         page.wait_for("for a phone: kurt2rt pair phone")
         pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
