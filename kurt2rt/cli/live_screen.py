@@ -7,7 +7,7 @@ from rich.live import Live
 from rich.text import Text
 
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE
-from kurt2rt.cli.qr_code import qr_code
+from kurt2rt.cli.qr_code import NO_CODE, qr_code, shows_codes
 from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages
 
 PAIR_A_PHONE = "for a phone: kurt2rt pair phone, in another terminal"
@@ -59,7 +59,9 @@ class LiveScreen:
         every = [*self._addresses(self._pages.addresses)]
         if self._for_phones and self._pages.addresses and not phones and not self._pages.network:
             every.append(Text(PAIR_A_PHONE, style="dim"))
-        if not phones:
+        if phones and not shows_codes(self._console):
+            every.append(Text(NO_CODE, style="dim"))
+        if not phones or not shows_codes(self._console):
             return Group(*every, *self._status())
         code = qr_code(phones[0].link)
         width, height = self._console.size

@@ -1,7 +1,7 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library, hal.errors and what is small only (interrupt, extras, foreign packages): Ctrl-C
-before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
+Imports of the standard library, hal.errors and what is small only (interrupt, extras, terminal, foreign packages):
+Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
 import errno
@@ -18,6 +18,7 @@ if _hidden := hidden_packages():  # before the first import of one of them, whic
 from hal.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.platform.extras import extra_for
+from kurt2rt.platform.plain_terminal import adapt_to_terminal
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -43,6 +44,7 @@ def main() -> None:
     """
     # One thread: a product with some hundred rows is over before a second one wakes, and the loop needs its core.
     os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
+    adapt_to_terminal()
     with end_at_interrupt():
         import typer
 

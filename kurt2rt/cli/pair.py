@@ -14,7 +14,7 @@ from kurt2rt.channel.security import pairing
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
 from kurt2rt.cli.options import PageAddressName
-from kurt2rt.cli.qr_code import qr_code
+from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.service.health.status_error import StatusError
@@ -128,7 +128,7 @@ def _show(name: str, changed: Pairing, addresses: Sequence[PageAddress]) -> None
         *(f"its page       {each.link}" for each in addresses),
     )
     if addresses:
-        console.print(qr_code(addresses[0].link), soft_wrap=True)
+        print_code(console, addresses[0].link)
     else:
         _print(console, f"! {NO_ADDRESS}")
 

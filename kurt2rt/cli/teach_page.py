@@ -9,7 +9,7 @@ from rich.console import Console
 
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Device, local_pairing
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
-from kurt2rt.cli.qr_code import qr_code
+from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.teach_shutdown import until_ended, until_teaching_ends
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.client import TeacherClient
@@ -130,7 +130,7 @@ def _print_links(served: ServedPages, device: str, robot_place: str, ports: tupl
     links = [each.link for each in served.addresses]
     _print(console, f"page for {device}, robot at {robot_place}{taken}; Ctrl-C ends", *(links or [served.trouble]))
     if code and links and console.is_terminal:
-        console.print(qr_code(links[0]), soft_wrap=True)
+        print_code(console, links[0])
 
 
 def _print_json(served: ServedPages) -> None:
@@ -143,7 +143,7 @@ def _printer(console: Console) -> Callable[[ServedPages], None]:
             _print(console, f"page for {each.device}:", each.link)
         phones = [each for each in served.addresses if each.device not in OF_THIS_MACHINE]
         if phones and console.is_terminal:
-            console.print(qr_code(phones[0].link), soft_wrap=True)
+            print_code(console, phones[0].link)
         _print(console, *([] if served.network else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
 
     return print_pages
