@@ -11,9 +11,8 @@ from rich.progress import Progress
 
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.checks.bench.report import as_json, measure_machine, print_report
-from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress
-from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
+from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, SuiteOutcome, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.options import task_option
 from kurt2rt.cli.tables import console_of
@@ -55,7 +54,7 @@ def bench(
 
     The ratio says how many times longer the reference took in the same run.
     The goals are meant for an idle machine; a benchmark informs, and ends with
-    code 0 whether they are met or not.
+    code 0 whether they are met or not. If one fails, the others are told.
 
     For example:
 
@@ -66,18 +65,18 @@ def bench(
     benches = _chosen(only)
     require_json_file(file, as_json=json)
     machine = measure_machine()
-    results = _measure(benches, folder, QUICK if quick else FULL, load_task(task))
+    results, errors = _measure(benches, folder, QUICK if quick else FULL, load_task(task))
     if json and file is None:
         typer.echo(as_json(results, machine))
     else:
         print_report(results, machine, console_of())
     if file is not None:
         file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
+    if errors:
+        raise ExceptionGroup("benchmarks failed", errors)
 
 
-def _measure(
-    benches: frozenset[BenchName], folder: Path, lengths: Lengths, task: TaskSettings
-) -> tuple[BenchResult, ...]:
+def _measure(benches: frozenset[BenchName], folder: Path, lengths: Lengths, task: TaskSettings) -> SuiteOutcome:
     # Late imports: the simulator and the recorder are extras that a robot does not need.
     if benches & {BenchName.PROGRAM, BenchName.RECORDING}:
         import kurt2rt.runs.recording.recorder  # noqa: F401 # told before the measurements, not after minutes

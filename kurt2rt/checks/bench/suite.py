@@ -1,9 +1,10 @@
 """Benchmarks in order, in one run."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Awaitable, Callable, Collection, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
+from typing import NamedTuple
 
 from kurt2rt.checks.bench.batch import BatchLengths, measure_batch
 from kurt2rt.checks.bench.batch_lesson import BatchLessonLengths, measure_batch_lessons
@@ -81,57 +82,78 @@ QUICK = Lengths(
 )
 
 
+class SuiteOutcome(NamedTuple):
+    """Results of the benchmarks, and the errors of those that failed."""
+
+    results: tuple[BenchResult, ...]
+    errors: tuple[Exception, ...]
+    """Each with the name of its benchmark as a note."""
+
+
 async def run_suite(
     benches: Collection[BenchName],
     fixture: BenchFixture,
     folder: Path,
     lengths: Lengths,
     start_job: Callable[[str], OnProgress],
-) -> tuple[BenchResult, ...]:
-    """Run the named benchmarks; files go to the empty `folder`.
+) -> SuiteOutcome:
+    """Run the named benchmarks; files go to the empty `folder`. A benchmark that fails ends no other one.
 
     `start_job`: called with the name of a job, returns its progress callback.
-
-    Raises:
-        KnowledgeError, ChannelError, CredentialsError: the robot of a benchmark cannot be opened.
-        LessonLostError: a lesson did not become durable.
-        WrongWinnerError: the match differs from a brute force.
-        HelperLostError: a helper process ended or did not answer.
-        BatchRefusedError: the batch does not know the task.
-        OSError: this machine has no timerfd, or the disk fails.
+    Raises the errors of `learn`: without a taught robot nothing is measured.
     """
-    results: list[BenchResult] = []
     if any(bench is not BenchName.MATCH for bench in benches):
         fixture = await learn(fixture, lengths.learning_s, start_job("teaching, to have something to drive with"))
-    if BenchName.LATENESS in benches or BenchName.TICK in benches:
+
+    async def real_time() -> list[BenchResult]:
         run = await run_in_real_time(fixture, folder, lengths.turns, start_job("driving in real time"))
-        if BenchName.LATENESS in benches:
-            results.append(lateness_result(run))
-        if BenchName.TICK in benches:
-            results.extend(tick_results(run, fixture.settings.cycle_s))
-    if BenchName.PROGRAM in benches:
-        results.extend(
-            await measure_program(fixture, folder / "program", lengths.program, start_job("running the program"))
-        )
-    if BenchName.MATCH in benches:
-        results.extend(measure_match(lengths.sizes, start_job("matching")))
-    if BenchName.LOOP in benches:
-        results.extend(
-            await measure_closed_loop(
-                fixture, folder, lengths.loop_blocks, lengths.loop_block_s, start_job("driving in lockstep")
-            )
-        )
-    if BenchName.LESSON in benches:
-        results.append(await measure_lessons(fixture, folder, lengths.lessons, start_job("making lessons durable")))
-    if BenchName.CHANNEL in benches:
-        results.extend(await measure_channel(fixture, folder, lengths.channel, start_job))
-    if BenchName.RECORDING in benches:
-        results.extend(
-            await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
-        )
-    if BenchName.BATCH in benches:
-        results.extend(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
-        results.extend(
-            await measure_batch_lessons(fixture, lengths.batch_lessons, start_job("giving lessons in a batch"))
-        )
-    return tuple(results)
+        results = [*tick_results(run, fixture.settings.cycle_s)] if BenchName.TICK in benches else []
+        return [lateness_result(run), *results] if BenchName.LATENESS in benches else results
+
+    async def program() -> Sequence[BenchResult]:
+        started = start_job("running the program")
+        return await measure_program(fixture, folder / "program", lengths.program, started)
+
+    async def match() -> Sequence[BenchResult]:
+        return measure_match(lengths.sizes, start_job("matching"))
+
+    async def loop() -> Sequence[BenchResult]:
+        started = start_job("driving in lockstep")
+        return await measure_closed_loop(fixture, folder, lengths.loop_blocks, lengths.loop_block_s, started)
+
+    async def lesson() -> Sequence[BenchResult]:
+        return [await measure_lessons(fixture, folder, lengths.lessons, start_job("making lessons durable"))]
+
+    async def channel() -> Sequence[BenchResult]:
+        return await measure_channel(fixture, folder, lengths.channel, start_job)
+
+    async def recording() -> Sequence[BenchResult]:
+        return await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
+
+    async def batch() -> Sequence[BenchResult]:
+        return await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch"))
+
+    async def batch_lessons() -> Sequence[BenchResult]:
+        return await measure_batch_lessons(fixture, lengths.batch_lessons, start_job("giving lessons in a batch"))
+
+    stages: tuple[tuple[set[BenchName], Callable[[], Awaitable[Sequence[BenchResult]]]], ...] = (
+        ({BenchName.LATENESS, BenchName.TICK}, real_time),
+        ({BenchName.PROGRAM}, program),
+        ({BenchName.MATCH}, match),
+        ({BenchName.LOOP}, loop),
+        ({BenchName.LESSON}, lesson),
+        ({BenchName.CHANNEL}, channel),
+        ({BenchName.RECORDING}, recording),
+        ({BenchName.BATCH}, batch),
+        ({BenchName.BATCH}, batch_lessons),
+    )
+    results: list[BenchResult] = []
+    errors: list[Exception] = []
+    for names, measure in stages:
+        if names & set(benches):
+            try:
+                results.extend(await measure())
+            except Exception as error:  # noqa: BLE001 - it is raised when the other results are told
+                error.add_note(f"bench {measure.__name__}")
+                errors.append(error)
+    return SuiteOutcome(tuple(results), tuple(errors))

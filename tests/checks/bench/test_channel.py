@@ -26,7 +26,8 @@ async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: BenchFixt
     def start_job(what: str) -> OnProgress:
         return told.setdefault(what, []).append
 
-    results = await run_suite({BenchName.CHANNEL}, untaught, tmp_path, SHORT, start_job)
+    results, errors = await run_suite({BenchName.CHANNEL}, untaught, tmp_path, SHORT, start_job)
+    assert errors == ()
     pressed, on_page, late, work, picture, message, lesson = results
     assert {result.bench for result in results} == {"channel"}
     assert all(shares[-1] == 1.0 for shares in told.values())

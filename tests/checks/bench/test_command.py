@@ -2,10 +2,13 @@
 
 import json
 from pathlib import Path
+from unittest.mock import AsyncMock
 
 import pytest
 
 from kurt2rt.checks.bench.suite import BenchName
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from tests.checks.bench.test_report import RESULTS
 from tests.cli.helpers import CommandLine
 
 
@@ -19,6 +22,17 @@ def test_one_benchmark_prints_its_table_and_writes_json(kurt2rt: CommandLine, tm
     assert [row["what"].split()[-2] for row in report["results"]] == ["135", "1000", "100000"]
     assert all(row["reference"]["ratio"] > 0 for row in report["results"])
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_bench_that_fails_prints_the_others_and_why(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    lost = LessonLostError("the disk did not answer")
+    monkeypatch.setattr("kurt2rt.checks.bench.suite.learn", AsyncMock())
+    monkeypatch.setattr("kurt2rt.checks.bench.suite.measure_match", lambda *_: RESULTS[:1])
+    monkeypatch.setattr("kurt2rt.checks.bench.suite.measure_lessons", AsyncMock(side_effect=lost))
+    said = kurt2rt("bench", "--only", "match,lesson")
+    assert RESULTS[0].what in said.out
+    assert "kurt2rt: bench lesson: the disk did not answer" in said.err
+    assert said.exit_code == lost.exit_code
 
 
 def test_bench_unknown_name_is_refused_with_the_known_ones(kurt2rt: CommandLine) -> None:

@@ -1,9 +1,11 @@
 """All benchmarks in one run, tiny."""
 
 from pathlib import Path
+from unittest.mock import AsyncMock
 
 import pytest
 
+from kurt2rt.checks.bench import suite
 from kurt2rt.checks.bench.batch import BatchLengths
 from kurt2rt.checks.bench.batch_lesson import BatchLessonLengths
 from kurt2rt.checks.bench.channel import ChannelLengths
@@ -13,6 +15,8 @@ from kurt2rt.checks.bench.program import ProgramTurns
 from kurt2rt.checks.bench.real_time import RealTimeTurns
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from tests.checks.bench.test_report import RESULTS
 
 TINY = Lengths(
     learning_s=3.0,
@@ -46,8 +50,9 @@ async def test_run_suite_measures_all_in_order_with_one_drive(untaught: BenchFix
     benches = [
         bench for bench in BenchName if bench is not BenchName.CHANNEL
     ]  # its processes take seconds: test_channel.py
-    results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
+    results, errors = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
+    assert errors == ()
     assert len(jobs.names) == 9
     assert all(result.goals for result in results if not result.what.startswith("  "))
 
@@ -63,9 +68,25 @@ async def test_only_what_is_asked_for_is_measured(
     chosen: BenchName, jobs_begun: list[str], untaught: BenchFixture, tmp_path: Path
 ) -> None:
     jobs = Jobs()
-    results = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)
+    results, errors = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)
     assert {result.bench for result in results} == {chosen}
+    assert errors == ()
     assert jobs.names == jobs_begun
+
+
+async def test_run_suite_failed_benchmark_leaves_the_others(
+    untaught: BenchFixture, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    lost = LessonLostError("the disk did not answer")
+    monkeypatch.setattr(suite, "measure_lessons", AsyncMock(side_effect=lost))
+    monkeypatch.setattr(suite, "measure_batch", AsyncMock(return_value=RESULTS[:1]))
+    monkeypatch.setattr(suite, "measure_batch_lessons", AsyncMock(return_value=RESULTS[1:2]))
+    chosen = {BenchName.MATCH, BenchName.LESSON, BenchName.BATCH}
+    results, errors = await run_suite(chosen, untaught, tmp_path, TINY, Jobs())
+    assert results[0].bench == "match"
+    assert results[1:] == RESULTS[:2]
+    assert errors == (lost,)
+    assert lost.__notes__ == ["bench lesson"]
 
 
 def test_a_full_run_drives_a_minute_and_a_quick_one_five_seconds() -> None:
