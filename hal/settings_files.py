@@ -100,9 +100,11 @@ def find_config(kind: str, name_or_path: str) -> Path:
     given = Path(name_or_path)
     if given.suffix in YAML_SUFFIXES and given.is_file() and not are_settings_from_elsewhere():
         return given
-    names = shipped_names(kind)
-    if name_or_path in names:  # the join of a folder and a foreign name could lead anywhere
-        return CONFIG_DIR / kind / f"{name_or_path}.yaml"
+    names, folder = shipped_names(kind), CONFIG_DIR / kind
+    # Compared and not joined: a folder and a foreign name together could lead anywhere. There are folders within.
+    for path in folder.rglob("*.yaml"):
+        if path.relative_to(folder).with_suffix("").as_posix() == name_or_path:
+            return path
     of_robot = _file_of_robot(kind, name_or_path)
     if of_robot is not None:
         return of_robot
