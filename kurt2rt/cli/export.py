@@ -47,7 +47,7 @@ def lerobot(
     as_json: AsJson = False,
     settings: RuntimeSettingsName = "default",
 ) -> None:
-    """Write recorded runs as a data set for LeRobot (LeRobotDataset v3.0), an episode for each run.
+    """Write recorded runs as a data set for LeRobot (LeRobotDataset v3.0), an episode for each run or 1 000 s of it.
 
     A frame holds wheel speeds (observation.state), sensor readings
     (observation.environment_state), the speeds that were decided (action), the

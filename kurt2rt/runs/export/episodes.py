@@ -17,6 +17,10 @@ from kurt2rt.runs.replay.run import Run
 
 LONGEST_REPEAT_S = 0.25
 """Longest gap of missing ticks that repeats the frame before it; a longer one ends the episode."""
+LONGEST_EPISODE_S = 1000.0
+"""Length at which the next episode begins. LeRobot's float32 time stamps have steps of 0.06 ms up to 1 024 s and larger
+ones after them; it refuses frames that are more than 0.1 ms from evenly spaced.
+"""
 _BLOCK_ROWS = 1000
 
 Column = NDArray[Any]
@@ -93,7 +97,7 @@ def ticks_per_frame(robot: RobotSettings, fps: int) -> int:
 
 
 def read_episodes(run: Run, every: int, on_entry: Callable[[TickEntry], None] = lambda _: None) -> Iterator[Episode]:
-    """Yield the episodes of a run: one, or more if ticks are missing for longer than LONGEST_REPEAT_S.
+    """Yield the episodes of a run, the next one after LONGEST_EPISODE_S, and after a gap longer than LONGEST_REPEAT_S.
 
     A frame has the newest readings and decision at its tick, and counts lessons and rewards up to the next frame.
 
@@ -106,9 +110,12 @@ def read_episodes(run: Run, every: int, on_entry: Callable[[TickEntry], None] = 
         RecordingError: the run cannot be read.
     """
     longest = round(LONGEST_REPEAT_S / run.robot.cycle_s)
+    whole_frames = round(LONGEST_EPISODE_S / run.robot.cycle_s) // every * every
     stretch = _Stretch(run.robot)
     for entry in run.partial_entries():
-        if stretch.newest is not None and not 0 < entry.tick - stretch.newest <= longest:
+        if stretch.newest is not None and not (
+            0 < entry.tick - stretch.newest <= longest and entry.tick - stretch.first < whole_frames
+        ):
             yield stretch.episode(every)
             stretch = _Stretch(run.robot)
         stretch.add(entry, _task_text(run.task.name, entry.behaviour), run.elapsed_s(entry))
@@ -127,6 +134,8 @@ class _Stretch:
     """Ticks without a long gap: one row each, packed in blocks."""
 
     robot: RobotSettings
+    first: int = 0
+    """First tick."""
     newest: int | None = None
     """Newest tick; None before the first."""
     began_s: float = 0.0
@@ -138,7 +147,7 @@ class _Stretch:
 
     def add(self, entry: TickEntry, task: str, since_s: float) -> None:
         if self.newest is None:
-            self.began_s = since_s
+            self.first, self.began_s = entry.tick, since_s
         self.newest = entry.tick
         readings, decision = entry.readings, entry.decision
         speed = 1.0 if entry.lesson_speed is None else entry.lesson_speed
@@ -165,7 +174,7 @@ class _Stretch:
         """Return the stretch as frames, one for each `every` ticks."""
         self._pack()
         rows = np.concatenate(self._blocks)
-        first = int(rows["tick"][0])
+        first = self.first
         frames = (int(rows["tick"][-1]) - first) // every + 1
         # The newest row at or before each frame's tick; the frame of each row.
         newest = np.searchsorted(rows["tick"], first + every * np.arange(frames), side="right") - 1

@@ -9,7 +9,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.events import RlaRewarded
 from kurt2rt.core.rla.rla import CRITIC
-from kurt2rt.runs.export.episodes import Episode, features_of, read_episodes, ticks_per_frame
+from kurt2rt.runs.export import episodes
+from kurt2rt.runs.export.episodes import LONGEST_EPISODE_S, Episode, features_of, read_episodes, ticks_per_frame
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.run import Run, RunSource
@@ -142,3 +143,21 @@ def test_columns_have_the_types_of_their_features() -> None:
 def test_frames_between_ticks_are_refused(fps: int) -> None:
     with pytest.raises(RecordingError, match="give one of 1, 2, 4, 5, 10, 20, 25, 50, 100"):
         ticks_per_frame(load_robot(), fps)
+
+
+@pytest.mark.parametrize("every", [1, 20])
+def test_a_long_run_continues_in_the_next_episode(every: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(episodes, "LONGEST_EPISODE_S", 20.0)
+    parts = list(read_episodes(run_of(ENTRIES[:1500] + ENTRIES[1510:]), every))
+    assert [each.frames * every for each in parts] == [2000, 2000, 400]
+    assert [each.first_tick for each in parts] == [1, 2001, 4001]
+    assert [each.began_s for each in parts] == pytest.approx([0.0, 20.0, 40.0])
+    monkeypatch.undo()
+    together = np.concatenate([each.columns[SENSORS] for each in parts])
+    assert (together == only_episode(ENTRIES[:1500] + ENTRIES[1510:], every).columns[SENSORS]).all()
+
+
+@pytest.mark.parametrize("fps", [each for each in range(1, 101) if 100 % each == 0])
+def test_time_stamps_of_the_longest_episode_are_even(fps: int) -> None:
+    stamps_s = (np.arange(LONGEST_EPISODE_S * fps) / fps).astype(np.float32)
+    assert abs(np.diff(stamps_s) - 1 / fps).max() < 1e-4
