@@ -2,6 +2,7 @@
 
 import ast
 import json
+import os
 import re
 import shlex
 import shutil
@@ -52,25 +53,30 @@ SCHEMAS: dict[str, type[Settings]] = {
 
 Shorten = Callable[[Sequence[str]], list[str]]
 
-# Seconds to minutes, or without end, as they stand in the text: run with less of the same, in the deep suite.
+# Seconds to minutes, or without end, as they stand in the text: run whole, but small, in the deep suite.
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
     "doubt": lambda words: [*words[:2], "--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
-    "broken": lambda _: ["broken", "--help"],  # a short run is tests/experiments/broken
-    "certify": lambda words: ["certify", *words[1:2], "--help"],  # a short run is tests/cli/test_certify.py
-    "transfer": lambda _: ["transfer", "--help"],  # a short run is tests/cli/test_transfer.py
+    "certify": lambda words: [*words[:2], "--runs", "3", "--seconds", "1", "--pictures", "1"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: shortened_lesson(words),
-    "paper": lambda _: ["paper", "--quick", "--task", "circle", "--no-plain"],
-    "phases": lambda _: ["phases", "--help"],  # a quick run of all phases is tests/cli/test_phases.py
+    "paper": lambda words: [*words, "--seeds", "100"],
+    "phases": lambda words: [*words, "--seeds", "0"],
     "run": lambda words: shortened_run(words),
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
-    "faults": lambda words: [*words, "--target", "tick", "--kind", "stuck"],
+    "faults": lambda _: ["faults"],
     "soak": lambda words: [*words, "--hours", "0.01"],
     "doctor": lambda words: [*words, "--ticks", "5"],
-    "bench": lambda words: [*words, "--quick", "--only", "match"],
+    "bench": lambda words: [*words, "--quick"],
 }
+
+
+SHORT_LESSON = (
+    *("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1"),
+    *("--set", "exam.duration_s=1"),
+)
+POOR_TERMINAL = {"PYTHONIOENCODING": "ascii", "COLUMNS": "0"}
 
 
 def shortened_run(words: Sequence[str]) -> list[str]:
@@ -80,8 +86,9 @@ def shortened_run(words: Sequence[str]) -> list[str]:
 
 
 def shortened_lesson(words: Sequence[str]) -> list[str]:
-    if {"route", "errands"} & set(words):  # short ones are in tests/cli and tests/experiments
-        return ["lesson", "--help"]
+    if {"route", "errands"} & set(words):
+        starts = ("--set", "course.starts=1") if "route" in words else ()
+        return [*words, *SHORT_LESSON, *starts]
     return [*({"100-119": "100,101", "915-919": "915"}.get(word, word) for word in words), "--task", "short.yaml"]
 
 
@@ -210,7 +217,9 @@ def run(words: Sequence[str], folder: Path) -> None:
         capture_output=True,
         text=True,
         check=False,
+        env={**os.environ, **POOR_TERMINAL},
     )
+    assert done.stdout.strip(), f"kurt2rt {shlex.join(words)}: prints nothing"
     assert done.returncode == 0, f"kurt2rt {shlex.join(words)}: exit code {done.returncode}\n{done.stderr}"
 
 
@@ -230,6 +239,11 @@ def test_the_commands_of_the_documentation_run(
             continue
         said = kurt2rt(*sooner(words))
         assert said.exit_code == 0, f"kurt2rt {shlex.join(words)}: {said.err}"
+
+
+def test_long_documented_commands_are_run_and_not_only_explained() -> None:
+    shortened = [LONG[words[0]](words) for story in stories() for words in story.commands if is_long(words)]
+    assert [words for words in shortened if "--help" in words or words[0] not in LONG] == []
 
 
 @pytest.mark.deep
