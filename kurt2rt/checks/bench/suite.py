@@ -1,6 +1,7 @@
 """Benchmarks in order, in one run."""
 
-from collections.abc import Awaitable, Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -102,58 +103,51 @@ async def run_suite(
     `start_job`: called with the name of a job, returns its progress callback.
     Raises the errors of `learn`: without a taught robot nothing is measured.
     """
-    if any(bench is not BenchName.MATCH for bench in benches):
-        fixture = await learn(fixture, lengths.learning_s, start_job("teaching, to have something to drive with"))
-
-    async def real_time() -> list[BenchResult]:
-        run = await run_in_real_time(fixture, folder, lengths.turns, start_job("driving in real time"))
-        results = [*tick_results(run, fixture.settings.cycle_s)] if BenchName.TICK in benches else []
-        return [lateness_result(run), *results] if BenchName.LATENESS in benches else results
-
-    async def program() -> Sequence[BenchResult]:
-        started = start_job("running the program")
-        return await measure_program(fixture, folder / "program", lengths.program, started)
-
-    async def match() -> Sequence[BenchResult]:
-        return measure_match(lengths.sizes, start_job("matching"))
-
-    async def loop() -> Sequence[BenchResult]:
-        started = start_job("driving in lockstep")
-        return await measure_closed_loop(fixture, folder, lengths.loop_blocks, lengths.loop_block_s, started)
-
-    async def lesson() -> Sequence[BenchResult]:
-        return [await measure_lessons(fixture, folder, lengths.lessons, start_job("making lessons durable"))]
-
-    async def channel() -> Sequence[BenchResult]:
-        return await measure_channel(fixture, folder, lengths.channel, start_job)
-
-    async def recording() -> Sequence[BenchResult]:
-        return await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
-
-    async def batch() -> Sequence[BenchResult]:
-        return await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch"))
-
-    async def batch_lessons() -> Sequence[BenchResult]:
-        return await measure_batch_lessons(fixture, lengths.batch_lessons, start_job("giving lessons in a batch"))
-
-    stages: tuple[tuple[set[BenchName], Callable[[], Awaitable[Sequence[BenchResult]]]], ...] = (
-        ({BenchName.LATENESS, BenchName.TICK}, real_time),
-        ({BenchName.PROGRAM}, program),
-        ({BenchName.MATCH}, match),
-        ({BenchName.LOOP}, loop),
-        ({BenchName.LESSON}, lesson),
-        ({BenchName.CHANNEL}, channel),
-        ({BenchName.RECORDING}, recording),
-        ({BenchName.BATCH}, batch),
-        ({BenchName.BATCH}, batch_lessons),
-    )
     results: list[BenchResult] = []
     errors: list[Exception] = []
-    for names, measure in stages:
-        if names & set(benches):
-            try:
-                results.extend(await measure())
-            except Exception as error:  # noqa: BLE001 - it is raised when the other results are told
-                error.add_note(f"bench {measure.__name__}")
-                errors.append(error)
+
+    @contextmanager
+    def measuring(*names: BenchName) -> Iterator[None]:
+        try:
+            yield
+        except Exception as error:  # noqa: BLE001 - it is raised when the other results are told
+            error.add_note(f"bench {', '.join(names)}")
+            errors.append(error)
+
+    if any(bench is not BenchName.MATCH for bench in benches):
+        fixture = await learn(fixture, lengths.learning_s, start_job("teaching, to have something to drive with"))
+    if BenchName.LATENESS in benches or BenchName.TICK in benches:
+        with measuring(BenchName.LATENESS, BenchName.TICK):
+            run = await run_in_real_time(fixture, folder, lengths.turns, start_job("driving in real time"))
+            if BenchName.LATENESS in benches:
+                results.append(lateness_result(run))
+            if BenchName.TICK in benches:
+                results.extend(tick_results(run, fixture.settings.cycle_s))
+    if BenchName.PROGRAM in benches:
+        with measuring(BenchName.PROGRAM):
+            started = start_job("running the program")
+            results.extend(await measure_program(fixture, folder / "program", lengths.program, started))
+    if BenchName.MATCH in benches:
+        with measuring(BenchName.MATCH):
+            results.extend(measure_match(lengths.sizes, start_job("matching")))
+    if BenchName.LOOP in benches:
+        with measuring(BenchName.LOOP):
+            blocks, started = (lengths.loop_blocks, lengths.loop_block_s), start_job("driving in lockstep")
+            results.extend(await measure_closed_loop(fixture, folder, *blocks, started))
+    if BenchName.LESSON in benches:
+        with measuring(BenchName.LESSON):
+            started = start_job("making lessons durable")
+            results.append(await measure_lessons(fixture, folder, lengths.lessons, started))
+    if BenchName.CHANNEL in benches:
+        with measuring(BenchName.CHANNEL):
+            results.extend(await measure_channel(fixture, folder, lengths.channel, start_job))
+    if BenchName.RECORDING in benches:
+        with measuring(BenchName.RECORDING):
+            started = start_job("driving, recorded and not")
+            results.extend(await measure_recording(fixture, folder, lengths.recording, started))
+    if BenchName.BATCH in benches:
+        with measuring(BenchName.BATCH):
+            results.extend(await measure_batch(fixture, lengths.batch, start_job("driving exams in a batch")))
+            started = start_job("giving lessons in a batch")
+            results.extend(await measure_batch_lessons(fixture, lengths.batch_lessons, started))
     return SuiteOutcome(tuple(results), tuple(errors))
