@@ -24,6 +24,8 @@ class GuardReason(StrEnum):
     """The bus takes frames and does not carry them: no node acknowledges, or it is full."""
     BUS_OFF = "bus off"
     FOREIGN_CONTROL = "another CONTROL sender"
+    FOREIGN_TELEMETRY = "another telemetry sender"
+    """Another node sends frames with an identifier of the robot's readings."""
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
     ROBOT_FAULT = "robot fault"

@@ -25,7 +25,9 @@ class Arrivals:
     """Counters of the messages that one call of `sense` reads."""
 
     __slots__ = (
+        "bumpers",
         "bus_off",
+        "fault",
         "foreign_control",
         "infrared_changed",
         "left_ticks",
@@ -36,6 +38,10 @@ class Arrivals:
 
     def __init__(self) -> None:
         self.left_ticks = self.right_ticks = self.foreign_control = 0
+        self.bumpers = 0
+        """Bumpers that any message says are pressed: a touch may begin and end between two calls."""
+        self.fault = ""
+        """First fault that the robot tells, also if a later message says that it is over."""
         self.turned_s = 0.0
         """Time in s in which the wheels turned by these ticks; 0 if no message tells it."""
         self.responded_s = 0.0
@@ -99,7 +105,7 @@ class GuardedRobot(ABC):
         self._link_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._foreign_control = self._receive_failures = 0
-        self._receive_trouble = self._alarm = self._fault = ""
+        self._receive_trouble = self._alarm = self._fault = self._second_sender = ""
 
     @abstractmethod
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
@@ -151,13 +157,13 @@ class GuardedRobot(ABC):
     def release(self) -> None:
         """End a latched stop; the robot still stands until it is driven.
 
-        While the link is lost, or the robot tells a fault, it stays stopped.
+        While the link is lost, the robot tells a fault, or a second node sends its readings, it stays stopped.
         """
         if self._link_lost:
             return  # readings from just before would do for some ticks
         self._alarm = ""
         self._guard.release()
-        self._stop_for_fault()
+        self._stop_for_lasting(self._fault)
 
     def close(self) -> None:
         """Brake, end the watchdog and close the link; may be called twice."""
@@ -194,7 +200,7 @@ class GuardedRobot(ABC):
             self._stop(GuardReason.BUS_OFF)
         if arrivals.foreign_control:
             self._stop(GuardReason.FOREIGN_CONTROL, f"{self._link_name}: {self.foreign_alarm}")
-        self._stop_for_fault()
+        self._stop_for_lasting(arrivals.fault or self._fault)
         disobedience = self._wheel_watch.check(
             readings.encoder_left_ticks,
             readings.encoder_right_ticks,
@@ -211,9 +217,13 @@ class GuardedRobot(ABC):
         if freeze:
             self._stop(GuardReason.INFRARED_FROZEN, freeze)
 
-    def _stop_for_fault(self) -> None:
-        if self._fault and self._guard.latched is None:
-            self._stop(GuardReason.ROBOT_FAULT, f"{self._link_name}: the robot tells a fault: {self._fault}; mend it")
+    def _stop_for_lasting(self, fault: str) -> None:
+        """Stop for causes that a release does not end; `fault`: of the robot itself."""
+        if self._second_sender:
+            sends = f"another node sends {self._second_sender}, too; find and end it"
+            self._stop(GuardReason.FOREIGN_TELEMETRY, f"{self._link_name}: {sends}")
+        if fault:
+            self._stop(GuardReason.ROBOT_FAULT, f"{self._link_name}: the robot tells a fault: {fault}; mend it")
 
     def _stop(self, reason: GuardReason, alarm: str = "") -> None:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it
@@ -229,7 +239,7 @@ class GuardedRobot(ABC):
             encoder_left_ticks=arrivals.left_ticks,
             encoder_right_ticks=arrivals.right_ticks,
             encoder_age_s=now_s - self._encoder_at_s,
-            bumpers=self._bumpers,
+            bumpers=self._bumpers | arrivals.bumpers,
             bumper_age_s=now_s - self._bumpers_at_s if self._bumper_mask else 0.0,  # without bumpers none are missed
         )
 

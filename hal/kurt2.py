@@ -14,6 +14,7 @@ from hal.guarded_robot import Arrivals, GuardedRobot
 from hal.infrared_frames import FrameReader, InfraredCounts, board_of, infrared_frames
 from hal.infrared_watch import InfraredWatch
 from hal.kurt2_settings import Kurt2Settings
+from hal.sender_watch import SenderWatch
 
 _CLOCKS_DIFFER_S = 0.01
 """A frame that is stamped later than this after the present has no age: the wall clock was set back, or worse."""
@@ -38,6 +39,8 @@ class Kurt2(GuardedRobot):
         self._bumperc = codec.message("BUMPERC")
         self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
         self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
+        names = {frame_id: f"0x{frame_id:02X} ({codec.by_id[frame_id].name})" for frame_id in self._readers}
+        self._sender_watch: Final = SenderWatch(names, settings.cycle_s)
         self._bumper_payload: bytes | bytearray = b""
         self._cycle_s: Final = settings.cycle_s
         self._encoder_frames = 0
@@ -61,7 +64,8 @@ class Kurt2(GuardedRobot):
 
     def _read(self, messages: list[can.Message], bus_now_s: float | None, now_s: float, arrivals: Arrivals) -> None:
         """Read waiting frames in order; `bus_now_s`: the present on the clock of their time stamps, None without."""
-        error_frames, readers = 0, self._readers
+        error_frames, readers, senders = 0, self._readers, self._sender_watch
+        since_s = senders.begin(now_s, bus_now_s)
         for message in messages:
             if message.is_error_frame:
                 error_frames += 1
@@ -82,11 +86,13 @@ class Kurt2(GuardedRobot):
             reader = readers.get(frame_id)
             try:
                 if reader is not None:
+                    senders.count(frame_id, message.timestamp if since_s is None else since_s)
                     reader(message.data, at_s, arrivals)
                 elif frame_id == CONTROL_ID:
                     arrivals.foreign_control += 1
             except InvalidFrameError:
                 self._junk += 1
+        self._second_sender = senders.surplus
         if len(messages) > error_frames and not arrivals.bus_off:
             self._bus_state.note_traffic()
 
@@ -97,10 +103,11 @@ class Kurt2(GuardedRobot):
         self._encoder_frames += 1
         self._encoder_at_s = at_s
 
-    def _read_bumpers(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:  # noqa: ARG002 - FrameReader
+    def _read_bumpers(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
         if data != self._bumper_payload:
             self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
             self._bumper_payload = data
+        arrivals.bumpers |= self._bumpers
         self._bumpers_at_s = at_s
 
     def _drain(self, now_s: float) -> tuple[list[can.Message], float | None]:

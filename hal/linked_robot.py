@@ -101,9 +101,11 @@ class LinkedRobot(GuardedRobot):
                 self._encoder_at_s = at_s
             case BumperReport(pressed=pressed):
                 self._bumpers = pressed & self._bumper_mask
+                arrivals.bumpers |= self._bumpers
                 self._bumpers_at_s = at_s
             case AlarmReport(text=text):
                 self._fault = " ".join(text.split())[:_LONGEST_FAULT] or ("no text" if text else "")
+                arrivals.fault = arrivals.fault or self._fault
             case _:
                 arrivals.foreign_control += 1
         return True

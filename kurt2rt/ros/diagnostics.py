@@ -13,13 +13,14 @@ class DiagnosticErrors:
         self._names = tuple(names)
         self._errors: dict[str, str] = {}
 
-    def update(self, array: DiagnosticArray) -> None:
-        """Apply a message."""
+    def update(self, array: DiagnosticArray) -> str:
+        """Apply a message and return `text`."""
         for status in array.status:
             if status.name.startswith(self._names):
                 self._errors.pop(status.name, None)
                 if status.level == DiagnosticStatus.ERROR:
                     self._errors[status.name] = status.message
+        return self.text
 
     @property
     def text(self) -> str:

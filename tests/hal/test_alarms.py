@@ -242,6 +242,18 @@ def test_resume_while_bus_is_lost_stays_stopped(ride: Ride, monkeypatch: pytest.
     assert not ride.tick().latched
 
 
+# Between two ticks
+
+
+def test_touch_within_one_tick_is_a_front_bumper_once(ride: Ride) -> None:
+    bumperc = CODEC.message("BUMPERC")
+    free = ride.frames()[:-1]
+    ride.desk.arrive(*free, *(bumperc.pack(pressed, 0) for pressed in (0, 0b1, 0)))
+    ride.sleep(TICK_S)
+    assert ride.decide() == GuardResult(STANDSTILL, (GuardReason.FRONT_BUMPER,), latched=False)
+    assert ride.tick().reasons == (GuardReason.SLEW_LIMIT,)
+
+
 # Wheels
 
 

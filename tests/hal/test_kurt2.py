@@ -68,7 +68,7 @@ def test_the_newest_value_counts_and_ticks_add_up(robot: Kurt2, ends: Ends) -> N
     readings = robot.sense(1.0)
     assert readings.infrared_counts == (101,) * 18
     assert (readings.encoder_left_ticks, readings.encoder_right_ticks) == (521, -7)
-    assert readings.bumpers == 0b100
+    assert readings.bumpers == 0b101  # a touch that ended within the tick counts in it
     later = robot.sense(1.01)
     assert (later.encoder_left_ticks, later.encoder_right_ticks) == (0, 0)
     assert later.bumpers == 0b100

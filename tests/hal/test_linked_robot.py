@@ -172,6 +172,22 @@ def test_fault_after_another_stop_keeps_the_robot_stopped(scene: Scene) -> None:
     assert "tells a fault: no text; mend it" in scene.robot.health.alarm
 
 
+def test_touch_within_one_tick_is_a_front_bumper_once(scene: Scene) -> None:
+    scene.drive()
+    scene.link.reports = [BumperReport(scene.now_s, pressed) for pressed in (0, 0b1, 0)]
+    assert scene.tick().reasons == (GuardReason.FRONT_BUMPER,)
+    assert scene.tick().reasons == (GuardReason.SLEW_LIMIT,)
+
+
+def test_fault_within_one_tick_stops_the_robot(scene: Scene) -> None:
+    scene.drive()
+    scene.link.reports = [AlarmReport(scene.now_s, text) for text in ("motor hot", "fan slow", "")]
+    assert scene.tick().reasons == (GuardReason.ROBOT_FAULT,)
+    assert scene.robot.health.alarm == "link of a test: the robot tells a fault: motor hot; mend it"
+    scene.robot.release()
+    assert not scene.tick().latched
+
+
 def test_wheels_that_do_not_obey_stop_the_robot(scene: Scene) -> None:
     scene.drive()
     results = []

@@ -18,6 +18,7 @@ def troubles() -> Iterator[tuple[str, str]]:
         GuardReason.BUS_BLOCKED: _carry_nothing,
         GuardReason.BUS_OFF: lambda ride: ride.desk.arrive(error_frame(0x040)),
         GuardReason.FOREIGN_CONTROL: lambda ride: ride.desk.arrive(Frame(0x01, bytes(8))),
+        GuardReason.FOREIGN_TELEMETRY: lambda ride: ride.desk.arrive(*50 * [cycle()[-1]]),
         GuardReason.WHEELS_DISOBEY: lambda ride: _repeat(ride, cycle(200, ticks(0.3), 0)),
         GuardReason.INFRARED_FROZEN: lambda ride: _repeat(ride, cycle(200, ticks(0.3), ticks(0.3))),
     }

@@ -41,6 +41,7 @@ class StandReason(StrEnum):
     BUS_BLOCKED = "bus blocked"
     BUS_OFF = "bus off"
     FOREIGN_CONTROL = "foreign control"
+    FOREIGN_TELEMETRY = "foreign telemetry"
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
     ROBOT_FAULT = "robot fault"
@@ -83,6 +84,7 @@ LATCHED: dict[str, StandReason] = {
     GuardReason.BUS_BLOCKED: StandReason.BUS_BLOCKED,
     GuardReason.BUS_OFF: StandReason.BUS_OFF,
     GuardReason.FOREIGN_CONTROL: StandReason.FOREIGN_CONTROL,
+    GuardReason.FOREIGN_TELEMETRY: StandReason.FOREIGN_TELEMETRY,
     GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
     GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
     GuardReason.ROBOT_FAULT: StandReason.ROBOT_FAULT,

@@ -36,6 +36,7 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.BUS_BLOCKED: _Text("its bus carries nothing", "Check its power, cable and bit rate"),
     StandReason.BUS_OFF: _Text("its bus failed too often", "Check cable, termination and bit rate"),
     StandReason.FOREIGN_CONTROL: _Text("another program drives it, too", "Find and end that one"),
+    StandReason.FOREIGN_TELEMETRY: _Text("another program sends its readings, too", "Find and end that one"),
     StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
     StandReason.INFRARED_FROZEN: _Text("its range sensors are frozen", "Switch it off and on"),
     StandReason.ROBOT_FAULT: _Text("it tells a fault of its own", "Mend what the fault names"),

@@ -56,13 +56,13 @@ class TurtlebotLink:
             reports += each
         reports += self._odometry.take(lambda odom, age_s: WheelReport(now_s - age_s, *self._wheels.update(odom)))
         reports += self._foreign.take(lambda _, age_s: ForeignCommandReport(now_s - age_s))
-        for array in self._diagnostics.take(lambda array, _: array):
-            self._errors.update(array)
+        errors = [self._errors.update(array) for array in self._diagnostics.take(lambda array, _: array)]
         self._require_link()
         # After the check: a report that is lost with the link would not be told again.
-        if self._errors.text != self._told_error:
-            self._told_error = self._errors.text
-            reports.append(AlarmReport(now_s, self._told_error))
+        for error in (*errors, self._errors.text):
+            if error != self._told_error:
+                self._told_error = error
+                reports.append(AlarmReport(now_s, error))
         return reports
 
     def applied(self, speeds: WheelSpeeds) -> WheelSpeeds:

@@ -123,6 +123,7 @@ def test_each_latch_of_the_guard_has_a_text_with_go(word: GuardReason) -> None:
 def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
     alarms = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.BUS_OFF, GuardReason.FOREIGN_CONTROL}
     assert alarms | {
+        GuardReason.FOREIGN_TELEMETRY,
         GuardReason.WHEELS_DISOBEY,
         GuardReason.INFRARED_FROZEN,
         GuardReason.ROBOT_FAULT,

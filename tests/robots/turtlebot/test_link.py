@@ -230,6 +230,17 @@ def test_drive_error_of_the_base_stops_and_names_it() -> None:
     assert rig.run(1.0).wheel_speeds == FORWARD
 
 
+def test_drive_error_that_ends_within_the_tick_stops() -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    for level in (2, 0):
+        status = DiagnosticStatus(level, "turtlebot3: motors", "too hot", "", [])
+        rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [status]))
+    assert rig.tick().reasons == (GuardReason.ROBOT_FAULT,)
+    rig.robot.release()
+    assert rig.run(1.0).wheel_speeds == FORWARD
+
+
 def test_drive_error_at_a_loss_of_connection_is_not_forgotten() -> None:
     rig = MemoryRig()
     rig.run(1.0)
