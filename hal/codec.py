@@ -1,7 +1,7 @@
 """Codec between integers and frames, compiled from a DBC file that cantools reads once."""
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -12,12 +12,17 @@ from cantools.database import Message, Signal
 from cantools.database.can import Database
 
 from config import CONFIG_DIR
+from hal.errors import UserError
 from hal.frame import Frame
 
 _STRUCT_LETTERS = {8: "b", 16: "h", 32: "i", 64: "q"}
 
 
-class CodecError(ValueError):
+_LONGEST = 8
+"""Bytes of the longest frame of classic CAN."""
+
+
+class CodecError(UserError, ValueError):
     """Unusable CAN database. The text is one line: file, message, what is wrong."""
 
 
@@ -28,18 +33,22 @@ class InvalidFrameError(ValueError):
 class MessageCodec:
     """Codec of one message without multiplexing: raw integers in the order of `signals` to a frame and back."""
 
-    def __init__(self, message: Message) -> None:
-        """Compile a message of the database. Raises CodecError for little-endian and floating point signals."""
+    def __init__(self, source: str, message: Message) -> None:
+        """Compile a message of the database `source`. Raises CodecError for little-endian and floating signals."""
         signals = sorted(message.signals, key=_first_bit)
         for signal in signals:
             if signal.byte_order != "big_endian" or signal.conversion.is_float:
-                raise CodecError(f"{message.name}.{signal.name}: must be a big-endian integer, mend the database")
+                raise CodecError(
+                    "must be a big-endian integer",
+                    where=f"{source}: {message.name}.{signal.name}",
+                    do="mend the database, or use that of this robot",
+                )
         self.name = message.name
         self.frame_id = message.frame_id
         self.length = message.length
         self.signals = tuple(signal.name for signal in signals)
         self._ranges = tuple(_raw_range(signal) for signal in signals)
-        self._covers_bytes = max((_first_bit(signal) + signal.length + 7) // 8 for signal in signals)
+        self._covers_bytes = max(((_first_bit(signal) + signal.length + 7) // 8 for signal in signals), default=0)
         # Shift and width of each signal in the payload read as one big-endian integer.
         self._places = tuple(
             (8 * message.length - _first_bit(signal) - signal.length, signal.length, signal.is_signed)
@@ -98,15 +107,35 @@ class Codec:
     """All plain messages of a CAN database; CONTROL with its modes is in hal.control."""
 
     def __init__(self, source: str, messages: tuple[MessageCodec, ...]) -> None:
-        self._source = source
+        """Hold messages of the database `source`. Raises CodecError if two of them share a name or an identifier."""
+        self.source = source
         self._by_name = {message.name: message for message in messages}
         self.by_id: Mapping[int, MessageCodec] = MappingProxyType({message.frame_id: message for message in messages})
+        for message in messages:
+            if self._by_name[message.name] is not message or self.by_id[message.frame_id] is not message:
+                raise CodecError(
+                    f"another message has its name or its identifier 0x{message.frame_id:02X}",
+                    where=f"{source}: {message.name}",
+                    do="leave one of them out",
+                )
 
-    def message(self, name: str) -> MessageCodec:
-        """Return a message by name. Raises CodecError that lists the names."""
+    def message(self, name: str, signals: Sequence[str] | None = None) -> MessageCodec:
+        """Return a message by name, with exactly these signals in this order; None: with any.
+
+        Raises CodecError that lists the names, of messages or of signals.
+        """
         if name not in self._by_name:
-            raise CodecError(f"{self._source}: no plain message {name}; there are: {', '.join(self._by_name)}")
-        return self._by_name[name]
+            raise CodecError(
+                f"no plain message {name}", where=self.source, do=f"name one of: {', '.join(self._by_name) or 'none'}"
+            )
+        message = self._by_name[name]
+        if signals is not None and message.signals != tuple(signals):
+            raise CodecError(
+                f"its signals are {', '.join(message.signals) or 'none'}",
+                where=f"{self.source}: {name}",
+                do=f"give it {', '.join(signals)}",
+            )
+        return message
 
 
 def load_database(database: str = "kurt2.dbc") -> Database:
@@ -126,22 +155,33 @@ def _read(database: str) -> tuple[Path, str]:
         path = CONFIG_DIR / "can" / database
     try:
         return path, path.read_text(encoding="cp1252")
-    except (OSError, UnicodeDecodeError) as error:
-        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+    except (OSError, ValueError) as error:
+        raise _unusable(path, error) from error
 
 
 def _database_of(path: Path, text: str) -> Database:
     try:
         return cast(Database, cantools.database.load_string(text, database_format="dbc"))
     except cantools.Error as error:
-        raise CodecError(f"{path}: cannot be used as a CAN database: {' '.join(str(error).split())}") from error
+        raise _unusable(path, error) from error
+
+
+def _unusable(path: Path, error: Exception) -> CodecError:
+    return CodecError(
+        f"cannot be used as a CAN database: {' '.join(str(error).split())}", where=path, do="mend or replace it"
+    )
 
 
 @lru_cache(maxsize=4)
 def _codec_of(database: str, path: Path, text: str) -> Codec:
     """Compile a database, cached by its content: each simulated robot loads it three times."""
-    messages = _database_of(path, text).messages
-    return Codec(database, tuple(MessageCodec(message) for message in messages if not message.is_multiplexed()))
+    messages = filter(_is_plain, _database_of(path, text).messages)
+    return Codec(database, tuple(MessageCodec(database, message) for message in messages))
+
+
+def _is_plain(message: Message) -> bool:
+    """Return whether a message is a frame as this robot's are: an 11-bit identifier, 8 bytes, no multiplexing."""
+    return not (message.is_multiplexed() or message.is_extended_frame or message.length > _LONGEST)
 
 
 def _first_bit(signal: Signal) -> int:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from hal.codec import Codec, InvalidFrameError, MessageCodec
+from hal.codec import Codec, CodecError, InvalidFrameError, MessageCodec
 from hal.guarded_robot import Arrivals
 from hal.infrared_watch import Board, InfraredWatch
 from hal.robot import HIGHEST_COUNTS
@@ -78,7 +78,14 @@ def infrared_frames(
         codec: of all messages.
         watch: has the board of each channel.
         newest: counts and times of all sensors, which the frames write to.
+
+    Raises:
+        CodecError: no message carries a channel.
     """
+    carried = {name for message in codec.by_id.values() for name in message.signals}
+    missing = [channel for channel in channels if channel not in carried]
+    if missing:
+        raise CodecError(f"no message carries {', '.join(missing)}", where=codec.source, do="add them to a message")
     frames = []
     for message in codec.by_id.values():
         places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)

@@ -35,8 +35,8 @@ class Kurt2(GuardedRobot):
         self._controller = self._bus_state
         codec = load_codec(settings.can.database)
         analog = infrared_frames(channels, codec, watch, InfraredCounts(self._counts, self._times_s))
-        self._encoder = codec.message("ENCODER")
-        self._bumperc = codec.message("BUMPERC")
+        self._encoder = codec.message("ENCODER", ("LEFT", "RIGHT"))
+        self._bumperc = codec.message("BUMPERC", ("BUMPERS", "REMOTE_CONTROL"))
         self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
         self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
         names = {frame_id: f"0x{frame_id:02X} ({codec.by_id[frame_id].name})" for frame_id in self._readers}

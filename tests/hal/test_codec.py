@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.codec import CodecError, InvalidFrameError, load_codec, load_database
+from hal.errors import UserError
 from tests.hal.helpers import CODEC
 
 DATABASE = load_database()
@@ -126,5 +127,75 @@ def test_databases_that_cannot_be_used_are_refused(tmp_path: Path) -> None:
     little.write_text(
         'VERSION ""\nNS_ :\nBS_:\nBU_: A\nBO_ 5 ODD: 8 A\n SG_ S : 0|16@1+ (1,0) [0|1] "" A\n', encoding="utf-8"
     )
-    with pytest.raises(CodecError, match=r"ODD\.S"):
+    with pytest.raises(CodecError, match=r"little\.dbc: ODD\.S: .*; mend"):
         load_codec(str(little))
+
+
+HEAD = 'VERSION ""\nNS_ :\nBS_:\nBU_: A\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ("BO_ 5 NO_SIGNALS: 8 A\n", ["NO_SIGNALS"]),
+        ("BO_ 5 NO_BYTES: 0 A\n", ["NO_BYTES"]),
+        ('BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 A\n SG_ S : 7|8@0+ (1,0) [0|0] "" A\n', []),
+        ('BO_ 2147483653 WIDE: 8 A\n SG_ S : 7|8@0+ (1,0) [0|0] "" A\n', []),
+        ('BO_ 5 OF_FD: 64 A\n SG_ S : 7|8@0+ (1,0) [0|0] "" A\n', []),
+    ],
+    ids=["no signals", "no bytes", "no place", "29 bits", "FD"],
+)
+def test_odd_messages_are_empty_or_left_out(tmp_path: Path, text: str, names: list[str]) -> None:
+    path = tmp_path / "odd.dbc"
+    path.write_text(HEAD + text, encoding="utf-8")
+    codec = load_codec(str(path))
+    assert [message.name for message in codec.by_id.values()] == names
+    for message in codec.by_id.values():
+        assert message.unpack(message.pack().data) == message.unpack(bytes(8)) == ()
+
+
+def test_messages_with_one_identifier_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "twice.dbc"
+    path.write_text(HEAD + "BO_ 5 FIRST: 8 A\n\nBO_ 5 SECOND: 8 A\n", encoding="utf-8")
+    with pytest.raises(CodecError, match=r"twice\.dbc: FIRST: another .* 0x05; leave"):
+        load_codec(str(path))
+
+
+def test_message_with_other_signals_is_refused() -> None:
+    assert CODEC.message("ENCODER", ("LEFT", "RIGHT")) is CODEC.message("ENCODER")
+    with pytest.raises(CodecError, match=r"kurt2\.dbc: ENCODER: its signals are LEFT, RIGHT; give it LEFT, MID"):
+        CODEC.message("ENCODER", ("LEFT", "MID"))
+
+
+@st.composite
+def dbc_messages(draw: st.DrawFn) -> str:
+    """Return a message of a DBC file, which may have odd identifiers, lengths and signals."""
+    length = draw(st.sampled_from([0, 1, 2, 8, 8, 64]))
+    lines = [
+        f"BO_ {draw(st.sampled_from([5, 6, 7, 2048, 1 << 31, 3221225472]))} M{draw(st.integers(0, 9))}: {length} A"
+    ]
+    for number in range(draw(st.integers(0, 3))):
+        start, width = draw(st.integers(0, 8 * length + 7)), draw(st.integers(0, 33))
+        layout = f"{start}|{width}@{draw(st.integers(0, 1))}{draw(st.sampled_from('+-'))}"
+        mux = draw(st.sampled_from(["", "", "", " M", " m0"]))
+        lines.append(f' SG_ S{number}{mux} : {layout} ({draw(st.sampled_from(["1", "0", "0.5"]))},0) [0|0] "" A')
+    return "\n".join(lines)
+
+
+@given(messages=st.lists(dbc_messages(), max_size=3), odd=st.text(max_size=1))
+def test_any_database_is_a_codec_or_one_line(
+    tmp_path_factory: pytest.TempPathFactory, messages: list[str], odd: str
+) -> None:
+    path = tmp_path_factory.getbasetemp() / "any.dbc"
+    path.write_bytes((HEAD + odd + "\n".join(messages) + "\n").encode(errors="surrogatepass"))
+    try:
+        codec = load_codec(str(path))
+    except UserError as error:
+        text = str(error)
+        assert "\n" not in text
+        assert text.startswith(f"{path}: ")
+        assert "; " in text
+        return
+    for message in codec.by_id.values():
+        zeros = (0,) * len(message.signals)
+        assert message.unpack(message.pack(*zeros).data) == zeros

@@ -2,13 +2,16 @@
 
 import math
 from collections.abc import Iterator
+from pathlib import Path
 
 import can
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from config import CONFIG_DIR
 from hal.bus import BusError, CanBus
+from hal.codec import CodecError
 from hal.control import Mode, RawControl, RawSide, SpeedControl
 from hal.guard_reason import GuardReason
 from hal.in_process_bus import InProcessBus
@@ -285,6 +288,24 @@ def test_closing_brakes_and_gives_the_bus_back_for_good() -> None:
         robot.sense(now_s)
     assert robot.health.receive_failures == 3
     far_end.shutdown()
+
+
+@pytest.mark.parametrize(
+    ("message", "fault"),
+    [
+        (' SG_ RIGHT : 23|16@0- (1,0) [-32768|32767] "ticks" NOTEBOOK\n', "ENCODER: its signals are LEFT; give it"),
+        (' SG_ ADC08 : 7|16@0+ (1,0) [0|1023] "counts" NOTEBOOK\n', "no message carries ADC08; add"),
+    ],
+)
+def test_database_without_a_signal_that_is_read_is_refused(
+    ends: Ends, tmp_path: Path, message: str, fault: str
+) -> None:
+    path = tmp_path / "other.dbc"
+    shipped = (CONFIG_DIR / "can/kurt2.dbc").read_text(encoding="cp1252")
+    path.write_text("".join(shipped.split(message)), encoding="cp1252")
+    can_settings = ROBOT.can.model_copy(update={"database": str(path)})
+    with pytest.raises(CodecError, match=fault):
+        Kurt2(ROBOT.model_copy(update={"can": can_settings}), ends[0])
 
 
 def test_one_bus_has_one_robot(robot: Kurt2, ends: Ends) -> None:
