@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -10,30 +11,29 @@ from kurt2rt.experiments.study.local_executor import open_processes
 from kurt2rt.experiments.study.plan import Executor
 
 OnOption = Annotated[
-    str | None,
+    Path | None,
     typer.Option(
         "--on",
-        metavar="ADDRESS",
-        help="Run the jobs on the workers of this scheduler (kurt2rt worker), such as tls://lab:8786; local: start "
-        "one here with --jobs workers.",
+        metavar="FILE",
+        help="Run the jobs on the workers of the cluster of this file (kurt2rt worker --new makes one).",
         show_default=False,
     ),
 ]
 
 
 @contextmanager
-def open_executor(address: str | None, jobs: int) -> Iterator[Executor]:
+def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
     """Yield the executor of --on; without it, one with processes of this machine.
 
-    `jobs`: number of processes, or of workers of `local`. Raises ClusterError if no scheduler answers, or the address
-    is not safe.
+    `jobs`: number of these processes. Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it
+    answers.
     """
-    if address is None:
+    if cluster is None:
         with open_processes(jobs) as local:
             yield local
         return
     # Not at the top: Dask is an extra, and takes a second.
     from kurt2rt.experiments.study.cluster import open_cluster
 
-    with open_cluster(address, jobs) as executor:
+    with open_cluster(cluster) as executor:
         yield executor

@@ -7,6 +7,7 @@ Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as lo
 import errno
 import os
 import sys
+import traceback
 from typing import NoReturn
 
 from kurt2rt.platform.own_packages import hidden_packages
@@ -17,7 +18,7 @@ if _hidden := hidden_packages():  # before the first import of one of them, whic
 
 from hal.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.platform.extras import extra_for
+from kurt2rt.platform.extras import EXTRAS, extra_for
 from kurt2rt.platform.plain_terminal import adapt_to_terminal
 
 _MENDED_BY_ANOTHER_PATH = {
@@ -78,6 +79,10 @@ def main() -> None:
 
 def _in_one_line(error: BaseException) -> str | None:
     """Return what is wrong and what to do; None if the user cannot mend it."""
+    package = _unready_package(error)
+    if package is not None:
+        told = f"{package} does not start with its own settings ({' '.join(str(error).split())})"
+        return f"{told}; mend or remove its settings file"
     whose = "".join(f"{note}: " for note in getattr(error, "__notes__", ()))  # one of many jobs
     if isinstance(error, BaseExceptionGroup):
         # A task group wraps even the one error that ended it. A disk that fails ends several tasks at once.
@@ -90,6 +95,13 @@ def _in_one_line(error: BaseException) -> str | None:
     if isinstance(error, OSError) and error.errno == errno.EIO:
         return f"{whose}{error}; see whether the disk or device is well, or give another file"
     return None
+
+
+def _unready_package(error: BaseException) -> str | None:
+    """Return the package of an extra that raised the error while it was imported, as by a broken file of settings."""
+    frames = (frame for frame, _ in traceback.walk_tb(error.__traceback__) if frame.f_code.co_name == "<module>")
+    packages = [str(frame.f_globals.get("__name__")).partition(".")[0] for frame in frames]
+    return next((each for each in reversed(packages) if each in EXTRAS), None)
 
 
 def _leaves(error: BaseException) -> list[BaseException]:

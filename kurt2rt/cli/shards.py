@@ -1,5 +1,6 @@
 """--shard, with one meaning in every study: this machine does a part of the robots."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -31,7 +32,7 @@ def run_shard(
     command: str,
     shard: str,
     jobs: int,
-    on: str | None,
+    on: Path | None,
     *,
     choice: LoopChoice = NO_CHOICE,
     as_json: bool = False,
@@ -49,7 +50,7 @@ def run_shard(
     Raises:
         ShardError: there is no such shard.
         StudyError: another run writes to the folder, or it has results of other settings.
-        ClusterError: no scheduler answers, or its address is not safe.
+        ClusterError: `on` is no file of a cluster, or no scheduler of it answers.
     """
     own = shard_of(plan, Shard.parse(shard))
     with study_run(plan, results, command, jobs, on, part=own, choice=choice):

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.loop_options import say_choice
@@ -19,7 +20,7 @@ def study_run(
     results: Results,
     command: str,
     jobs: int,
-    on: str | None,
+    on: Path | None,
     *,
     part: StudyPlan | None = None,
     choice: LoopChoice = NO_CHOICE,
@@ -40,7 +41,7 @@ def study_run(
     Raises:
         StudyError: another run writes to the folder, or it has results of other settings.
         BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
-        ClusterError: no scheduler answers, or its address is not safe.
+        ClusterError: `on` is no file of a cluster, or no scheduler of it answers.
     """
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 

@@ -10,6 +10,7 @@ EXTRAS = {
     "matplotlib": "simulation",
     "mcap": "recording",
     "networkx": "simulation",
+    "numba": "fast",
     "optuna": "search",
     "PIL": "simulation",
     "pyarrow": "export",

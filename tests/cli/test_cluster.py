@@ -1,8 +1,11 @@
 """Studies on two workers of a scheduler, on loopback."""
 
+import asyncio
 import os
-import re
+import shlex
 import signal
+import socket
+import ssl
 import subprocess
 import sys
 import time
@@ -10,9 +13,20 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+import psutil
 import pytest
+from distributed import Scheduler, Security
+from distributed.comm import CommClosedError, connect
 
-from kurt2rt.experiments.study.cluster import ClusterError, require_safe, require_witness
+from kurt2rt.cli.executor_option import open_executor
+from kurt2rt.experiments.study.cluster import require_witness
+from kurt2rt.experiments.study.cluster_file import (
+    ClusterError,
+    make_cluster_file,
+    read_cluster_file,
+    scheduler_command,
+)
+from kurt2rt.experiments.study.cluster_worker import serve
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError
 from kurt2rt.experiments.study.results import Results
 from tests.cli.helpers import ROOT, CommandLine
@@ -25,38 +39,88 @@ LESSON = (
 )
 
 
-@pytest.mark.parametrize(
-    "address", ["tls://lab:8786", "tls://10.0.0.7:8786", "tcp://127.0.0.1:8786", "tcp://localhost:1", "tcp://[::1]:2"]
-)
-def test_address_of_tls_or_loopback_is_taken(address: str) -> None:
-    require_safe(address)
+@pytest.fixture
+def cluster(tmp_path: Path) -> Path:
+    """Make the file of a cluster on this machine."""
+    make_cluster_file(tmp_path / "lab.cluster", "tls://127.0.0.1:1")
+    return tmp_path / "lab.cluster"
 
 
-@pytest.mark.parametrize(
-    "address",
-    [
-        "tcp://lab:8786",
-        "tcp://10.0.0.7:8786",
-        "lab:8786",
-        "8786",
-        "",
-        "tcp://127.0.0.1",
-        "ws://127.0.0.1:80",
-        "tls://x:y",
-    ],
-)
-def test_address_that_others_could_write_to_is_refused(address: str) -> None:
+def put_address(cluster: Path, address: str) -> None:
+    """Put another address into the file of a cluster."""
+    cluster.write_text(address + cluster.read_text().removeprefix("tls://127.0.0.1:1"))
+
+
+@pytest.mark.parametrize("address", ["tcp://lab:8786", "tcp://[::1]:2", "lab:8786", "", "tls://lab", "tls://x:y"])
+def test_cluster_file_of_an_address_without_tls_is_refused(cluster: Path, address: str) -> None:
     with pytest.raises(ClusterError, match=r"got .*, allowed tls://HOST:PORT"):
-        require_safe(address)
+        make_cluster_file(cluster.with_name("other"), address)
+    put_address(cluster, address)
+    with pytest.raises(ClusterError, match=r"got .*, allowed tls://HOST:PORT"):
+        read_cluster_file(cluster)
 
 
-def test_unsafe_address_is_refused_before_any_job(kurt2rt: CommandLine) -> None:
-    assert "allowed tls://HOST:PORT" in kurt2rt.refused(*LESSON, "--on", "tcp://lab:8786", "--out", "made")
-    assert not Path("made").exists()
-    assert "allowed tls://HOST:PORT" in kurt2rt.refused("worker", "--to", "tcp://lab:8786")
+def test_study_and_worker_without_a_cluster_file_are_refused(kurt2rt: CommandLine, cluster: Path) -> None:
+    Path("other").write_text("tls://lab:8786\n")
+    Path("other").chmod(0o600)
+    with pytest.raises(ClusterError, match="local: is no file of a cluster"), open_executor(Path("local"), 1):
+        pytest.fail("a study began")
+    assert "other: is no file of a cluster" in kurt2rt.refused("worker", "--to", "other")
+    cluster.chmod(0o640)
+    assert f"others may read it, and run programs by it; chmod 600 {cluster}" in kurt2rt.refused(
+        "worker", "--to", cluster
+    )
 
 
-@pytest.mark.parametrize("words", [("paper", "--on", "local", "--task", "circle"), ("worker", "--to", "tls://x:1")])
+def test_worker_new_makes_a_private_file_and_overwrites_none(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    made = kurt2rt("worker", "--new", "lab.cluster", "--at", "tls://lab:8786")
+    assert made.out.splitlines()[1] == (
+        "scheduler  dask scheduler --no-dashboard --protocol tls --host lab --port 8786 "
+        "--tls-ca-file lab.cluster --tls-cert lab.cluster --tls-key lab.cluster"
+    )
+    assert (tmp_path / "lab.cluster").stat().st_mode & 0o777 == 0o600
+    assert read_cluster_file(tmp_path / "lab.cluster").address == "tls://lab:8786"
+    assert "File exists" in kurt2rt.refused("worker", "--new", "lab.cluster", "--at", "tls://lab:8786")
+
+
+async def test_program_without_the_cluster_file_reaches_no_port(cluster: Path) -> None:
+    _, security = read_cluster_file(cluster)
+    ready: asyncio.Future[str] = asyncio.Future()
+    async with Scheduler(protocol="tls", host="127.0.0.1", port=0, security=security, dashboard=False) as scheduler:
+        put_address(cluster, scheduler.address)
+        before = listening()
+        serving = asyncio.create_task(serve(cluster, ready.set_result))
+        worker = await ready
+        try:
+            assert listening() - before == {int(worker.rpartition(":")[2])}
+            for address in (scheduler.address, worker):
+                await (await connect(address, **security.get_connection_args("client"))).close()
+                for context in (trusts_all(), trusts_all(Security.temporary()), None):
+                    place = address if context is not None else address.replace("tls", "tcp")
+                    with pytest.raises(CommClosedError):
+                        await connect(place, timeout=5, ssl_context=context)
+        finally:
+            serving.cancel()
+            await asyncio.wait([serving])
+
+
+def trusts_all(security: Security | None = None) -> ssl.SSLContext:
+    """Return the context of a program that takes any certificate of the other end, and has one of its own or none."""
+    if security is None:
+        context = ssl.create_default_context()
+    else:
+        context = security.get_connection_args("client")["ssl_context"]
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    return context
+
+
+def listening() -> set[int]:
+    """Return the TCP ports on which this process listens."""
+    ports = psutil.Process().net_connections("tcp")
+    return {each.laddr.port for each in ports if each.status == psutil.CONN_LISTEN}
+
+
+@pytest.mark.parametrize("words", [("paper", "--on", "x", "--task", "circle"), ("worker", "--to", "x")])
 def test_cluster_without_dask_names_its_extra(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
 ) -> None:
@@ -64,6 +128,20 @@ def test_cluster_without_dask_names_its_extra(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "distributed", None)
     assert "pip install 'kurt2rt[cluster]'" in kurt2rt.refused(*words)
+
+
+def test_broken_file_of_dask_is_one_line_that_names_it(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] in ("dask", "distributed")]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in [name for name in sys.modules if name.startswith("kurt2rt.experiments.study.cluster")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setenv("DASK_CONFIG", str(tmp_path))
+    (tmp_path / "mine.yaml").write_text("a: [")
+    refusal = kurt2rt.refused("worker", "--to", "x")
+    assert "dask does not start with its own settings (" in refusal
+    assert str(tmp_path / "mine.yaml") in refusal
 
 
 class OneFuture:
@@ -86,18 +164,18 @@ class TwoWorkers:
         self._result, self._workers = result, workers
 
     def who_has(self, _futures: object) -> dict[str, list[str]]:
-        return {"job": ["tcp://127.0.0.1:1"]}
+        return {"job": ["tls://127.0.0.1:1"]}
 
     def scheduler_info(self) -> dict[str, dict[str, object]]:
         return {"workers": dict.fromkeys(self._workers)}
 
     def submit(self, *_: object, workers: list[str], **__: object) -> OneFuture:
-        assert workers == ["tcp://127.0.0.1:2"]
+        assert workers == ["tls://127.0.0.1:2"]
         return OneFuture({JOB.file: self._result})
 
 
 JOB = Job(results=Results(Path("made")), seed=3, stem="one")
-OWN, OTHER = "tcp://127.0.0.1:1", "tcp://127.0.0.1:2"
+OWN, OTHER = "tls://127.0.0.1:1", "tls://127.0.0.1:2"
 
 
 def witness(result: bytes, *workers: str) -> None:
@@ -134,17 +212,20 @@ class Cluster:
 
     def __init__(self, folder: Path, stack: ExitStack) -> None:
         self._folder, self._stack = folder, stack
-        scheduler = (sys.executable, "-m", "dask", "scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
-        self.scheduler, line = stack.enter_context(started(*scheduler, folder=folder, until="Scheduler at:"))
-        (self.address,) = re.findall(r"tcp://\S+", line)
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            address = f"tls://127.0.0.1:{free.getsockname()[1]}"
+        self.file = folder / "lab.cluster"
+        make_cluster_file(self.file, address)
+        words = (sys.executable, "-m", *shlex.split(scheduler_command(self.file, address)))
+        self.scheduler, _ = stack.enter_context(started(*words, folder=folder, until="Scheduler at:"))
         self.workers = [self.start_worker(), self.start_worker()]
 
     def start_worker(self) -> "subprocess.Popen[str]":
-        words = (sys.executable, "-m", "kurt2rt.cli.main", "worker", "--to", self.address)
-        return self._stack.enter_context(started(*words, folder=self._folder, until="worker  tcp://"))[0]
+        words = (sys.executable, "-m", "kurt2rt.cli.main", "worker", "--to", str(self.file))
+        return self._stack.enter_context(started(*words, folder=self._folder, until="worker  tls://"))[0]
 
     def lesson(self, out: str) -> "subprocess.Popen[str]":
-        words = (sys.executable, "-m", "kurt2rt.cli.main", *LESSON, "--on", self.address, "--out", out)
+        words = (sys.executable, "-m", "kurt2rt.cli.main", *LESSON, "--on", str(self.file), "--out", out)
         return subprocess.Popen(
             words,
             cwd=self._folder,

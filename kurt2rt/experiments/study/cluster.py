@@ -4,68 +4,37 @@ import logging
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from urllib.parse import urlsplit
+from pathlib import Path
 
-from distributed import CancelledError, Client, Future, LocalCluster, as_completed
+from distributed import CancelledError, Client, Future, as_completed
 from distributed.scheduler import KilledWorker
 
-from hal.errors import UserError
 from kurt2rt.experiments.lockstep.drive_loop import choose_witnesses
+from kurt2rt.experiments.study.cluster_file import ClusterError, no_scheduler, read_cluster_file
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
 from kurt2rt.experiments.study.results import Results
 
-LOCAL = "local"
 _AHEAD = 2
 """Parcels on their way for each worker, so that none waits for its next one."""
 _TIMEOUT_S = 10.0
 _LOOK_EVERY_S = 0.2
-_LOOPBACK = {"127.0.0.1", "localhost", "::1"}
-
-
-class ClusterError(UserError):
-    """A cluster cannot be used."""
-
-
-def require_safe(address: str) -> None:
-    """Refuse an address that is neither TLS nor loopback, because parcels are pickles. Raises ClusterError."""
-    try:
-        parts = urlsplit(address)
-        is_safe = parts.port is not None and (parts.scheme == "tls" or parts.hostname in _LOOPBACK)
-    except ValueError:
-        is_safe = False
-    if not is_safe or parts.scheme not in ("tls", "tcp"):
-        raise ClusterError(
-            f"no address of a scheduler (got {address}, allowed tls://HOST:PORT, and tcp://127.0.0.1:PORT)",
-            do="give e.g. tls://lab:8786; Dask's configuration names the certificates",
-        )
 
 
 @contextmanager
-def open_cluster(address: str, processes: int) -> Iterator["ClusterExecutor"]:
-    """Yield an executor on the workers of a scheduler.
+def open_cluster(file: Path) -> Iterator["ClusterExecutor"]:
+    """Yield an executor on the workers of a scheduler; `file`: of the cluster.
 
-    Args:
-        address: of the scheduler; `local` starts one here, with workers.
-        processes: number of workers of `local`.
-
-    Raises ClusterError if the address is not safe, or no scheduler answers there.
+    Raises ClusterError if that is no file of a cluster, or no scheduler with its certificate answers.
     """
     for name in ("distributed", "distributed.client"):  # Dask sets a level of both; errors are raised as well
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    if address == LOCAL:
-        with (
-            LocalCluster(n_workers=processes, threads_per_worker=1, dashboard_address=None) as cluster,
-            Client(cluster) as client,
-        ):
-            yield ClusterExecutor(client)
-        return
-    require_safe(address)
+    address, security = read_cluster_file(file)
     try:
-        client = Client(address, timeout=_TIMEOUT_S)
+        client = Client(address, timeout=_TIMEOUT_S, security=security)
     except (OSError, TimeoutError) as error:
-        raise ClusterError("no scheduler answers", where=address, do="start one there: dask scheduler") from error
+        raise no_scheduler(file, address) from error
     with client:
         yield ClusterExecutor(client)
 
@@ -130,7 +99,7 @@ class ClusterExecutor:
             raise ClusterError(
                 "the cluster has no worker",
                 where=self._client.scheduler.address,
-                do="start one or more: kurt2rt worker --to ADDRESS",
+                do="start one or more: kurt2rt worker --to FILE",
             ) from error
 
 
