@@ -1,11 +1,13 @@
 """Record of a study in its folder: the command, and all jobs with their provenance, done or not."""
 
+import os
+import stat
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Self
 
-from pydantic import AfterValidator, ValidationError
+from pydantic import AfterValidator, ValidationError, field_validator
 
 from hal.settings import Settings
 from kurt2rt.experiments.study.plan import StudyPlan
@@ -18,6 +20,13 @@ WITNESSES = "witnesses"
 """Folder, within that of the results, of comparisons of the batch with the CAN bus."""
 
 
+def _require_printable(text: str) -> str:
+    """Refuse signs that a terminal would obey, because records come from other machines."""
+    if not text.isprintable():
+        raise ValueError("it cannot be printed")
+    return text
+
+
 def _stay_within(path: str) -> str:
     """Refuse a path that leads out of the folder, because records come from other machines."""
     if PurePosixPath(path).is_absolute() or ".." in PurePosixPath(path).parts:
@@ -25,7 +34,8 @@ def _stay_within(path: str) -> str:
     return path
 
 
-_Path = Annotated[str, AfterValidator(_stay_within)]
+_Text = Annotated[str, AfterValidator(_require_printable)]
+_Path = Annotated[_Text, AfterValidator(_stay_within)]
 
 
 class JobRecord(Settings):
@@ -35,9 +45,16 @@ class JobRecord(Settings):
     """Path of the result within the folder of results."""
     knowledge: _Path | None
     """Path of the knowledge within the folder of results; None: the job stores none."""
-    name: str
+    name: _Text
     seed: int
     made_of: Provenance
+
+    @field_validator("made_of")
+    @classmethod
+    def _is_printable(cls, made_of: Provenance) -> Provenance:
+        for name in Provenance.model_fields:
+            _require_printable(getattr(made_of, name))
+        return made_of
 
     @property
     def is_witness(self) -> bool:
@@ -48,7 +65,7 @@ class JobRecord(Settings):
 class StudyRecord(Settings):
     """Command and jobs of a study, of all its shards."""
 
-    command: str
+    command: _Text
     """Typed words that decide the numbers, without paths of a machine."""
     jobs: tuple[JobRecord, ...]
 
@@ -109,11 +126,29 @@ def write_record(folder: Path, record: StudyRecord) -> None:
 
 
 def read_records(folder: Path) -> list[StudyRecord]:
-    """Return the records in a folder of results. Raises StudyError for a damaged record, or a folder without any."""
+    """Return the records in a folder of results, which may be of another machine.
+
+    Raises StudyError for a damaged record, a folder without any, and one with links, pipes or devices in it.
+    """
+    _require_regular(folder)
     records = list(_each_record(sorted((folder / _FOLDER).glob("*.json"))))
     if not records:
         raise StudyError("holds no study", where=folder, do="give the folder that a study was given with --out")
     return records
+
+
+def _require_regular(folder: Path) -> None:
+    """Refuse a folder with anything in it but files and folders, because a pipe is waited for, and a link leads out."""
+    for at, folders, files in os.walk(folder):
+        for name in (*folders, *files):
+            with suppress(FileNotFoundError):  # of a job that just ended
+                mode = Path(at, name).lstat().st_mode
+                if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)) or not name.isprintable():
+                    raise StudyError(
+                        f"holds {name!a}, which is neither file nor folder, or has no printable name",
+                        where=folder,
+                        do="remove it, or get another copy of the folder",
+                    )
 
 
 def _each_record(paths: Iterable[Path]) -> Iterable[StudyRecord]:

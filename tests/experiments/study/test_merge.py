@@ -1,6 +1,7 @@
 """Merge of folders of results: it checks all, then copies what is missing."""
 
 import json
+import os
 import re
 import shutil
 from collections.abc import Callable
@@ -208,3 +209,32 @@ def test_merged_folder_is_read_as_results(tmp_path: Path) -> None:
     assert Results(tmp_path / "out").missing(jobs) == [2]
     assert Results(tmp_path / "out").read(jobs[1], TaughtOutcome) == robot(2, 82)
     assert read_records(tmp_path / "out") == read_records(tmp_path / "x")
+
+
+@pytest.mark.parametrize("place", ["studies/b.json", ".lock", "results/one-2.json", "knowledge/one-1.knowledge"])
+@pytest.mark.parametrize("make", [os.mkfifo, lambda path: path.symlink_to("/dev/zero")], ids=["pipe", "link"])
+def test_part_with_a_pipe_or_link_is_refused_unread(tmp_path: Path, make: Callable[[Path], None], place: str) -> None:
+    strange = part(tmp_path / "x", 1) / place
+    strange.unlink(missing_ok=True)
+    make(strange)
+    with pytest.raises(StudyError, match=f"holds '{strange.name}', which is neither file nor folder"):
+        merge_results(tmp_path / "out", [tmp_path / "x"])
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('"kurt2rt one"', '"kurt2rt \\u001b]0;one"'),
+        ('"one, seed 1"', '"one\\n, seed 1"'),
+        ('"results/one-1.json"', '"results/\\u009b1.json"'),
+        (f'"{MADE_OF.versions}"', '"\\u202e1"'),
+    ],
+)
+def test_record_with_signs_that_a_terminal_obeys_is_refused(tmp_path: Path, old: str, new: str) -> None:
+    folder = part(tmp_path / "x", 1)
+    (record,) = (folder / "studies").iterdir()
+    assert old in record.read_text()
+    record.write_text(record.read_text().replace(old, new))
+    with pytest.raises(StudyError, match="is no record of a study"):
+        read_records(folder)
