@@ -46,9 +46,9 @@ class SectorReduction:
         if not (0 <= least_m < most_m < math.inf):
             raise InvalidMessageError(f"LaserScan: range_min {least_m:g} and range_max {most_m:g} make no sense")
         self._lay_out(len(scan.ranges), scan.angle_min, scan.angle_increment)
-        ranges = scan.ranges.astype(np.float64)
-        ranges[ranges == 0] = math.inf if self._zero_is_far else math.nan
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore"):  # a signalling NaN would have the tick print a warning
+            ranges = scan.ranges.astype(np.float64)
+            ranges[ranges == 0] = math.inf if self._zero_is_far else math.nan
             ranges[ranges > most_m] = math.inf
             ranges[ranges < least_m] = least_m
         nearest = np.full(len(self._order), math.nan)

@@ -64,6 +64,11 @@ def test_sectors_nan_is_passed_over_if_others_measure() -> None:
     assert sum(map(math.isnan, reduce(with_ray(90, 2.0, others_m=math.nan)))) == 23
 
 
+def test_sectors_signalling_nan_warns_of_nothing() -> None:
+    signalling = np.full(RAYS, 0x7FA00000, dtype=np.uint32).view(np.float32)
+    assert all(map(math.isnan, reduce(scan(signalling))))  # a warning is an error here
+
+
 def test_sectors_zero_is_nothing_measured_or_far_as_told() -> None:
     assert all(map(math.isnan, reduce(scan([0.0] * RAYS))))
     assert reduce(scan([0.0] * RAYS), zero_is_far=True) == (math.inf,) * 24
