@@ -32,10 +32,12 @@ class Health:
     """Cause of a stop by wheels, sensors or another sender, with its remedy; empty after a release."""
     latched: GuardReason | None
     """Why the robot stays stopped until `release`; None when it does not."""
+    notice: str = ""
+    """Cause why readings do not arrive or do not count; empty while all is well. It stops nothing by itself."""
 
     @property
     def trouble(self) -> str:
         """Most important fault, with its remedy, in one line; empty without a fault."""
         if self.latched is None:
-            return self.controller_trouble
-        return self.controller_trouble or self.bus_trouble or self.alarm
+            return self.controller_trouble or self.notice
+        return self.controller_trouble or self.bus_trouble or self.alarm or self.notice

@@ -3,13 +3,15 @@
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Final
 
 from hal.bus import BusError
 from hal.guarded_robot import Arrivals, GuardedRobot
+from hal.health import Health
 from hal.infrared_watch import InfraredWatch
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
-from hal.robot_link import AlarmReport, BumperReport, RangeReport, Report, RobotLink, WheelReport
+from hal.robot_link import AlarmReport, BumperReport, NoticeReport, RangeReport, Report, RobotLink, WheelReport
 from hal.robot_settings import RobotSettings
 from hal.wheel_port import WheelCommand
 
@@ -18,7 +20,7 @@ _BRAKE: Final = object()
 _LATE_S = 0.01
 """A report from later than this after the present is junk: the clocks do not agree."""
 _LONGEST_FAULT = 200
-"""Characters of a fault that are told, in one line."""
+"""Characters of a fault or notice that are told, in one line."""
 
 
 class LinkPort:
@@ -71,6 +73,7 @@ class LinkedRobot(GuardedRobot):
         self._times_s.extend([-math.inf] * len(self._counts))
         self._cycle_s = settings.cycle_s
         self._rejected = 0
+        self._notice = ""
 
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
         reports: tuple[Report, ...] = ()
@@ -104,8 +107,10 @@ class LinkedRobot(GuardedRobot):
                 arrivals.bumpers |= self._bumpers
                 self._bumpers_at_s = at_s
             case AlarmReport(text=text):
-                self._fault = " ".join(text.split())[:_LONGEST_FAULT] or ("no text" if text else "")
+                self._fault = _one_line(text) or ("no text" if text else "")
                 arrivals.fault = arrivals.fault or self._fault
+            case NoticeReport(text=text):
+                self._notice = _one_line(text)
             case _:
                 arrivals.foreign_control += 1
         return True
@@ -121,8 +126,18 @@ class LinkedRobot(GuardedRobot):
         self._times_s[first:end] = [at_s] * len(counts)
         return True
 
+    @property
+    def health(self) -> Health:
+        """Counters as they stand now."""
+        notice = f"{self._link_name}: {self._notice}" if self._notice else ""
+        return replace(super().health, notice=notice)
+
     def _reopen_link(self) -> None:
         self._link.reopen()
 
     def _close_link(self) -> None:
         self._link.close()
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())[:_LONGEST_FAULT]

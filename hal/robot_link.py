@@ -52,7 +52,15 @@ class AlarmReport(NamedTuple):
     """Sentence for the user; empty: there is no fault any more."""
 
 
-Report = RangeReport | WheelReport | BumperReport | ForeignCommandReport | AlarmReport
+class NoticeReport(NamedTuple):
+    """Cause, for the user, why readings do not arrive or do not count. It stops nothing: the readings grow old."""
+
+    at_s: float
+    text: str
+    """Sentence that lasts until the next report; empty: all is well."""
+
+
+Report = RangeReport | WheelReport | BumperReport | ForeignCommandReport | AlarmReport | NoticeReport
 
 
 class RobotLink(Protocol):

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from kurt2rt.ros.message_age import StampedAge
-from kurt2rt.ros.messages import InvalidMessageError, MessageT, Time, decode, to_seconds
+from kurt2rt.ros.messages import InvalidMessageError, MessageT, decode
 from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import Topic
 
@@ -37,38 +37,60 @@ class MachineClock:
 
 class _Waiting(NamedTuple):
     payload: bytes
-    now_s: float
-    wall_s: float
+    arrived_s: float
 
 
 class Inbox(Generic[MessageT]):
     """Messages of one topic that arrived. The oldest of too many are dropped; bytes that are no message are junk."""
 
-    def __init__(self, port: RosPort, topic: Topic, kind: type[MessageT], clock: Clock) -> None:
-        """Subscribe to the topic, whose messages are of class `kind`. Raises RosConnectionError."""
-        self._kind, self._clock, self._age = kind, clock, StampedAge()
+    def __init__(
+        self, port: RosPort, topic: Topic, kind: type[MessageT], clock: Clock, *, one_sender: bool = False
+    ) -> None:
+        """Subscribe to the topic, whose messages are of class `kind`. Raises RosConnectionError.
+
+        `one_sender`: all messages are of one sender, so their stamps go on and tell their ages; others are junk.
+        """
+        self._topic, self._kind, self._clock = topic, kind, clock
+        self._one_sender = one_sender
         self._waiting: deque[_Waiting] = deque(maxlen=_MOST_WAITING)
         self.junk = 0
         """Messages so far that could not be read."""
+        self.forget_clock()
         port.subscribe(topic, self._keep)
 
-    def take(self, read: Callable[[MessageT, float], ResultT]) -> Iterator[ResultT]:
+    @property
+    def jumps(self) -> int:
+        """Number of times that the sender's clock was set."""
+        return self._age.clock.jumps if self._age else 0
+
+    @property
+    def notice(self) -> str:
+        """Trouble with the stamps, for the user, such as `scan: its clock was set by +2.0 s`; empty without any."""
+        told = self._age.clock.notice(self._clock.now_s()) if self._age else ""
+        return f"{self._topic.name}: {told}" if told else ""
+
+    def forget_clock(self) -> None:
+        """Count the next message as the first of its sender, which may have been away."""
+        clock = self._clock
+        self._age = StampedAge(clock.now_s(), clock.wall_s()) if self._one_sender else None
+
+    def take(self, read: Callable[[MessageT, float], ResultT | None]) -> Iterator[ResultT]:
         """Return what `read` makes of each message that waits, oldest first, and of its age in s.
 
-        A message for which it raises kurt2rt.ros.messages.InvalidMessageError is junk as well.
+        A message for which it raises kurt2rt.ros.messages.InvalidMessageError, or returns None, is junk as well.
         """
         return self._read(read) if self._waiting else iter(())  # most ticks find none
 
-    def _read(self, read: Callable[[MessageT, float], ResultT]) -> Iterator[ResultT]:
+    def _read(self, read: Callable[[MessageT, float], ResultT | None]) -> Iterator[ResultT]:
         for _ in range(len(self._waiting)):
-            payload, arrived_s, wall_s = self._waiting.popleft()
+            payload, arrived_s = self._waiting.popleft()
             try:
                 message = decode(payload, self._kind)
-                stamp = getattr(getattr(message, "header", None), "stamp", None)
-                stamped_s = to_seconds(stamp) if isinstance(stamp, Time) else 0.0
-                age_s = self._clock.now_s() - arrived_s + self._age.on_arrival(stamped_s, wall_s)
-                result = read(message, age_s)
+                aged_s = self._age.on_arrival(message, arrived_s) if self._age else 0.0
+                result = None if aged_s is None else read(message, self._clock.now_s() - arrived_s + aged_s)
             except InvalidMessageError:
+                result = None
+            if result is None:
                 self.junk += 1
             else:
                 yield result
@@ -78,4 +100,4 @@ class Inbox(Generic[MessageT]):
             self.junk += 1
             return
         # A deque drops the oldest by itself, and is safe between two threads.
-        self._waiting.append(_Waiting(payload, self._clock.now_s(), self._clock.wall_s()))
+        self._waiting.append(_Waiting(payload, self._clock.now_s()))

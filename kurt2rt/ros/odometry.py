@@ -24,8 +24,6 @@ from kurt2rt.ros.messages import (
 
 _JUMP_FACTOR = 3.0
 """Faster than this many times its highest speed, a robot was set to another place."""
-_RESTART_S = 1.0
-"""A stamp that is earlier by more than this is of a clock that was set."""
 _NO_COVARIANCE = np.zeros(36)
 
 
@@ -51,7 +49,7 @@ class TurnedWheels:
         self._left_carry = self._right_carry = 0.0
 
     def forget(self) -> None:
-        """Count the next message as the first one."""
+        """Count the next message as the first one, as after the clock of the stamps was set."""
         self._last = None
 
     def update(self, odometry: Odometry) -> Turned:
@@ -65,10 +63,10 @@ class TurnedWheels:
         if not all(map(math.isfinite, pose)):
             raise InvalidMessageError("Odometry: the pose is not a number")
         last, elapsed_s = self._last, stamp_s - self._last_s
-        if last is not None and -_RESTART_S < elapsed_s <= 0:
+        if last is not None and elapsed_s <= 0:
             raise InvalidMessageError("Odometry: the stamp is not newer than the one before")
         self._last, self._last_s = pose, stamp_s
-        if last is None or elapsed_s <= 0 or math.dist(last[:2], pose[:2]) > self._jump_m_s * elapsed_s:
+        if last is None or math.dist(last[:2], pose[:2]) > self._jump_m_s * elapsed_s:
             return _NOTHING_KNOWN
         turn_rad = math.remainder(pose.heading_rad - last.heading_rad, math.tau)
         middle_rad = last.heading_rad + turn_rad / 2

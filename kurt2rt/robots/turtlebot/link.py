@@ -6,16 +6,19 @@ import numpy as np
 
 from hal.bus import BusError
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import AlarmReport, ForeignCommandReport, RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, ForeignCommandReport, NoticeReport, RangeReport, Report, WheelReport
 from kurt2rt.robots.turtlebot.sectors import Sectors
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
 from kurt2rt.ros.diagnostics import DiagnosticErrors
 from kurt2rt.ros.inbox import Clock, Inbox, MachineClock
-from kurt2rt.ros.messages import DiagnosticArray, InvalidMessageError, LaserScan, Odometry
-from kurt2rt.ros.odometry import TurnedWheels
+from kurt2rt.ros.messages import DiagnosticArray, LaserScan, Odometry
+from kurt2rt.ros.odometry import Turned, TurnedWheels
 from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import topic_of
 from kurt2rt.ros.twist import Twists
+
+_HANGS_AFTER_M = 0.3
+_HANGS = f"the lidar hangs, its scans stayed equal while the wheels drove {_HANGS_AFTER_M:g} m; start its driver again"
 
 
 class TurtlebotLink:
@@ -30,16 +33,21 @@ class TurtlebotLink:
         topics, self._twists = settings.ros, Twists(settings.twist, settings)
         cmd_vel = topic_of(topics.cmd_vel, self._twists.message_class)
         diagnostics = topic_of(topics.diagnostics, DiagnosticArray)
-        self._scans = Inbox(port, topic_of(topics.scan, LaserScan), LaserScan, self._clock)
-        self._odometry = Inbox(port, topic_of(topics.odom, Odometry), Odometry, self._clock)
+        self._scans = Inbox(port, topic_of(topics.scan, LaserScan), LaserScan, self._clock, one_sender=True)
+        self._odometry = Inbox(port, topic_of(topics.odom, Odometry), Odometry, self._clock, one_sender=True)
         self._diagnostics = Inbox(port, diagnostics, DiagnosticArray, self._clock)
         self._foreign = Inbox(port, cmd_vel, self._twists.message_class, self._clock)
         self._publisher = port.publisher(cmd_vel)
         self._sectors = Sectors(settings)
         self._wheels = TurnedWheels(settings.geometry, settings.motors.maximum_speed_m_s)
         self._errors = DiagnosticErrors(topics.stops_on_errors_of)
+        self._metres_per_tick = settings.geometry.metres_per_tick
         self._last_ranges = b""
-        self._told_error = ""
+        self._unchanged_m = 0.0
+        """Way of the wheels since the ranges changed."""
+        self._hangs = False
+        self._odometry_jumps = 0
+        self._told_error = self._told_notice = ""
 
     @property
     def junk(self) -> int:
@@ -54,15 +62,19 @@ class TurtlebotLink:
         reports: list[Report] = []
         for each in self._scans.take(lambda scan, age_s: self._ranges(scan, now_s - age_s)):
             reports += each
-        reports += self._odometry.take(lambda odom, age_s: WheelReport(now_s - age_s, *self._wheels.update(odom)))
+        reports += self._odometry.take(lambda odom, age_s: WheelReport(now_s - age_s, *self._turned(odom)))
         reports += self._foreign.take(lambda _, age_s: ForeignCommandReport(now_s - age_s))
         errors = [self._errors.update(array) for array in self._diagnostics.take(lambda array, _: array)]
         self._require_link()
         # After the check: a report that is lost with the link would not be told again.
-        for error in (*errors, self._errors.text):
+        for error in (*errors, _HANGS if self._hangs else self._errors.text):
             if error != self._told_error:
                 self._told_error = error
                 reports.append(AlarmReport(now_s, error))
+        notice = self._scans.notice or self._odometry.notice
+        if notice != self._told_notice:
+            self._told_notice = notice
+            reports.append(NoticeReport(now_s, notice))
         return reports
 
     def applied(self, speeds: WheelSpeeds) -> WheelSpeeds:
@@ -85,6 +97,9 @@ class TurtlebotLink:
         """Check that the session found the base again. Raises hal.bus.BusError while it did not."""
         self._require_link()
         self._wheels.forget()
+        self._scans.forget_clock()
+        self._odometry.forget_clock()
+        self._odometry_jumps = 0
 
     def close(self) -> None:
         """Close the session; may be called twice."""
@@ -92,11 +107,20 @@ class TurtlebotLink:
 
     def _ranges(self, scan: LaserScan, at_s: float) -> list[Report]:
         counts, seen = self._sectors.counts(scan), scan.ranges.tobytes()
-        if seen == self._last_ranges and np.isfinite(scan.ranges).any():
-            raise InvalidMessageError("LaserScan: no lidar measures the same twice, so its driver hangs")
-        self._last_ranges = seen
+        # A simulated lidar without noise repeats itself while the robot stands, and any lidar in an empty hall.
+        if seen != self._last_ranges or not np.isfinite(scan.ranges).any():
+            self._last_ranges, self._unchanged_m = seen, 0.0
+        self._hangs = self._unchanged_m >= _HANGS_AFTER_M
         # A sector in which no ray measured anything reports nothing: its last reading grows old.
         return [RangeReport(at_s, first, (value,)) for first, value in enumerate(counts) if value is not None]
+
+    def _turned(self, odometry: Odometry) -> Turned:
+        if self._odometry.jumps != self._odometry_jumps:
+            self._odometry_jumps = self._odometry.jumps
+            self._wheels.forget()
+        turned = self._wheels.update(odometry)
+        self._unchanged_m += (abs(turned.left_ticks) + abs(turned.right_ticks)) / 2 * self._metres_per_tick
+        return turned
 
     def _publish(self, speeds: WheelSpeeds) -> None:
         self._publisher.publish(self._twists.message(self._twists.of_wheels(speeds), self._clock.wall_s()))

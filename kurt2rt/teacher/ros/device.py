@@ -31,7 +31,6 @@ class _Arrived(NamedTuple):
 
     payload: bytes
     at_s: float
-    wall_s: float
 
 
 class RosDevice:
@@ -61,7 +60,7 @@ class RosDevice:
         self._stamped, self._now, self._wall = stamped, now, wall
         self._twist: _Arrived | None = None
         self._watched_s = -math.inf
-        self._ages = StampedAge()
+        self._ages = StampedAge(now(), wall())
 
     async def run(self) -> None:
         """Serve until cancelled; the robot need not be there yet, and may restart.
@@ -118,7 +117,7 @@ class RosDevice:
             self._say(f"no service for {', '.join(unnamed)}: ROS allows letters, digits and _ in names")
 
     def _on_twist(self, payload: bytes) -> None:
-        self._twist = _Arrived(payload, self._now(), self._wall())
+        self._twist = _Arrived(payload, self._now())
 
     def _on_watch(self, _: bytes) -> None:
         self._watched_s = self._now()
@@ -139,8 +138,10 @@ class RosDevice:
                 drive.on_twist(ros.decode(arrived.payload, ros.Twist), arrived.at_s)
                 return
             message = ros.decode(arrived.payload, ros.TwistStamped)
-            age_s = self._ages.on_arrival(ros.to_seconds(message.header.stamp), arrived.wall_s)
-            if age_s < LEASE_S:
+            age_s = self._ages.on_arrival(message, arrived.at_s)
+            if age_s is None:
+                drive.refuse("the twist's stamp does not go on from the one before; was a clock set?", arrived.at_s)
+            elif age_s < LEASE_S:
                 drive.on_twist(message.twist, arrived.at_s - age_s)
             else:
                 drive.refuse(f"the twist is {age_s:.2f} s old, allowed is {LEASE_S:g}", arrived.at_s)

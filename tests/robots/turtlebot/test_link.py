@@ -1,6 +1,8 @@
 """Link to the base: sectors, encoders, ages, junk, foreign commands, errors of the base, and loss."""
 
 import math
+from collections.abc import Iterator
+from itertools import count, repeat
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, RangeReport, Report, WheelReport
+from kurt2rt.robots.turtlebot.lidar import ScanReadings
 from kurt2rt.robots.turtlebot.link import TurtlebotLink
 from kurt2rt.robots.turtlebot.simulated import SimulatedClock
 from kurt2rt.ros.laser_scan import full_turn_scan
@@ -85,12 +88,77 @@ def test_scan_too_near_reads_as_the_nearest_distance(wire: Wire) -> None:
     assert set(counts_of(wire.receive()).values()) == {round(SETTINGS.infrared.counts_at(0.12))}
 
 
-def test_scan_that_repeats_itself_is_junk(wire: Wire) -> None:
+def test_scan_with_a_repeated_stamp_is_junk(wire: Wire) -> None:
     for _ in range(3):
-        wire.clock.time_s += 0.2
-        wire.scan([0.5] * 360)
+        wire.scan([0.5] * 360, stamp_s=1.0)
     assert len(counts_of(wire.receive())) == 24
     assert wire.link.junk == 2
+
+
+def alarms_while_driving(wire: Wire, scans: Iterator[list[float]], *, way_m: float) -> list[str]:
+    """Drive straight on at 0.1 m/s, and return what the link tells of the base."""
+    alarms = []
+    for number in range(round(way_m / 0.02) + 1):
+        wire.clock.time_s += 0.2
+        wire.odom(PlanePose(x_m=number * 0.02))
+        wire.scan(next(scans))
+        alarms += [each.text for each in wire.receive() if isinstance(each, AlarmReport)]
+    return alarms
+
+
+def test_scans_that_stay_equal_over_a_way_are_a_hang(wire: Wire) -> None:
+    same = repeat([0.5] * 360)
+    assert alarms_while_driving(wire, same, way_m=0.26) == []
+    (told,) = alarms_while_driving(wire, same, way_m=0.1)
+    assert "the lidar hangs" in told
+    assert alarms_while_driving(wire, repeat([0.6] * 360), way_m=0.0) == [""]
+
+
+@pytest.mark.parametrize("ranges", [repeat([math.inf] * 360), ([0.5 + 0.001 * (n // 10)] * 360 for n in count())])
+def test_scans_of_an_empty_hall_or_that_change_are_no_hang(wire: Wire, ranges: Iterator[list[float]]) -> None:
+    assert alarms_while_driving(wire, ranges, way_m=1.0) == []
+
+
+def test_lidar_without_noise_lets_the_robot_stand_and_see() -> None:
+    settings = SETTINGS.model_copy(update={"lidar": SETTINGS.lidar.model_copy(update={"noise_m": 0.0})})
+    rig = MemoryRig(settings)
+    rig.run(5.0, STANDSTILL)
+    assert rig.readings.infrared_age_s < settings.guard.stale_infrared_s
+    assert rig.run(1.0).wheel_speeds == FORWARD
+    assert rig.robot.health.junk == 0
+
+
+def test_lidar_that_hangs_stops_the_robot_and_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    hangs = rig.electronics._fresh = ScanReadings([0] * 24, np.full(360, 0.5, np.float32))
+    monkeypatch.setattr(rig.electronics, "update_readings", lambda *_: setattr(rig.electronics, "_fresh", hangs))
+    result = rig.run(4.0)
+    assert (result.reasons, result.wheel_speeds) == ((GuardReason.ROBOT_FAULT,), STANDSTILL)
+    assert "the lidar hangs" in rig.robot.health.alarm
+
+
+@pytest.mark.parametrize("step_s", [-3600.0, -5.0, -2.0, -0.3, 0.3, 2.0, 5.0, 3600.0])
+def test_drive_clock_of_the_base_that_is_set_blinds_for_moments(monkeypatch: pytest.MonkeyPatch, step_s: float) -> None:
+    rig = MemoryRig()
+    clock = rig.link._clock
+    clock.time_s = 5000.0
+    assert rig.run(1.0).wheel_speeds == FORWARD
+    monkeypatch.setattr(clock, "wall_s", lambda: clock.time_s + step_s)
+    blind = [rig.tick().wheel_speeds != FORWARD for _ in range(500)]
+    assert not any(blind[200:])
+    assert not rig.robot.health.latched
+    assert rig.robot.health.trouble == f"topics in memory: scan: its clock was set by {step_s:+.1f} s"
+
+
+@pytest.mark.parametrize(("topic", "ahead_s"), [("scan", 0.6), ("odom", 2.0)])
+def test_drive_one_lying_message_is_forgotten(topic: str, ahead_s: float) -> None:
+    rig = MemoryRig()
+    rig.run(1.0)
+    stamp_s = rig.link._clock.time_s + ahead_s
+    scan = full_turn_scan(np.full(360, 0.5, np.float32), (0.12, 3.5), 0.2, stamp_s)
+    rig.send(topic, scan if topic == "scan" else odometry_message(PlanePose(), 0.0, 0.0, stamp_s))
+    assert {rig.tick().wheel_speeds for _ in range(500)} == {FORWARD}
 
 
 def test_scan_of_an_empty_hall_may_repeat_itself(wire: Wire) -> None:
@@ -109,8 +177,9 @@ def test_scan_that_was_delayed_is_as_old_as_its_stamp(wire: Wire) -> None:
 
 
 def test_odometry_forward_and_turn_become_ticks(wire: Wire) -> None:
-    wire.odom(PlanePose(), 10.0)
-    wire.odom(PlanePose(0.0, 0.1, math.pi / 2), 11.0)
+    wire.odom(PlanePose())
+    wire.clock.time_s += 1.0
+    wire.odom(PlanePose(0.0, 0.1, math.pi / 2))
     first, second = wheels_of(wire.receive())
     assert (first.left_ticks, first.right_ticks, first.duration_s) == (0, 0, 0.0)
     tick_m, half_m = SETTINGS.geometry.metres_per_tick, math.pi / 4 * SETTINGS.geometry.effective_track_m
@@ -121,8 +190,9 @@ def test_odometry_forward_and_turn_become_ticks(wire: Wire) -> None:
 
 
 def test_odometry_driving_backwards_counts_negative(wire: Wire) -> None:
-    wire.odom(PlanePose(heading_rad=3.0), 10.0)
-    wire.odom(PlanePose(-0.05 * math.cos(3.0), -0.05 * math.sin(3.0), 3.0), 10.5)
+    wire.odom(PlanePose(heading_rad=3.0))
+    wire.clock.time_s += 0.5
+    wire.odom(PlanePose(-0.05 * math.cos(3.0), -0.05 * math.sin(3.0), 3.0))
     assert wheels_of(wire.receive())[1].left_ticks == pytest.approx(-0.05 / SETTINGS.geometry.metres_per_tick, abs=1)
 
 
