@@ -169,6 +169,8 @@ class Stretch(NamedTuple):
     """Distance of the nearest RLA; infinite for a policy and without RLAs."""
     collisions: list[int]
     """Collisions so far."""
+    begins: list[int]
+    """1 where a question begins."""
 
 
 class Tally(NamedTuple):
@@ -178,7 +180,7 @@ class Tally(NamedTuple):
     unknown_ticks: int
     """Ticks in which it stood and asked."""
     questions: int
-    """Times that it began to ask."""
+    """Questions, each of which noise may end for moments (hal.open_question)."""
     first_question: int
     """Tick of the first question; 0: none."""
     collisions: int

@@ -55,6 +55,10 @@ class LessonLog(NamedTuple):
     """RLA that drives; 0 for none."""
     slow: NDArray[np.bool_]
     """True where a slow lesson slowed the wheels."""
+    sure: NDArray[np.bool_]
+    """True where the situation is inside R with a margin (hal.open_question)."""
+    turned: NDArray[np.bool_]
+    """True where a wheel turns."""
     touching: NDArray[np.bool_]
     collisions: NDArray[np.int32]
     """Collisions so far."""

@@ -17,23 +17,15 @@ class ProgressMeter:
         self._second = -1
         """Second of the newest bin; -1 before the first tick."""
         self._seconds = 0
-        self._asking = False
-        self._asked_at = -self._ticks_per_s
 
     def update(self, record: TickRecord) -> None:
         """Count one tick. Missed ticks pass as time and are not counted."""
         self._turn_to(record.tick // self._ticks_per_s)
         place = self._second % WINDOW_S
-        standing = record.standing
         self._ticks[place] += 1
-        if record.decision.rla_id is not None and standing.reason is StandReason.DRIVES:
+        if record.decision.rla_id is not None and record.standing.reason is StandReason.DRIVES:
             self._driven[place] += 1
-        # At the border of R the robot asks for moments at a time: count one question a second, as the terminal does.
-        asking = standing.asks and not standing.needs_resume
-        if asking and not self._asking and record.tick - self._asked_at >= self._ticks_per_s:
-            self._asks[place] += 1
-            self._asked_at = record.tick
-        self._asking = asking
+        self._asks[place] += record.question_begins
 
     def progress(self) -> Progress:
         """Return the sums over the last minute."""

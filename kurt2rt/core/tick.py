@@ -5,6 +5,7 @@ from collections.abc import Callable
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, DecisionCause, stopped
+from kurt2rt.core.decision.open_question import OpenQuestion
 from kurt2rt.core.decision.standing import BumperWatch, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.mid.mid_level import MidUsageCounter
@@ -54,7 +55,7 @@ class Tick:
         self._sensor_watch = parts.sensor_watch
         self._substitute = parts.substitute
         self._turned = False
-        """Return whether the last CONTROL frame let a wheel turn."""
+        """Whether the last CONTROL frame let a wheel turn."""
         self._timer = parts.timer
         self._options = options
         self._now = now
@@ -63,6 +64,7 @@ class Tick:
         """Return whether the robot stood at a bumper in the last tick and waited for its teacher's answer."""
         self._bumpers = BumperWatch()
         self._standing = StandingWatch()
+        self._question = OpenQuestion()
         self._saving_error: str | None = None
         self._publish_knowledge_at = 0
         self._number = 0
@@ -249,6 +251,9 @@ class Tick:
         error = choice.saving_error or self._handler.learner_failure
         standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
         results = tell_hindrance(choice.results, standing, motion.result)
+        if any(result.lesson for result in results):
+            self._question.close()
+        standing = self._question.update(decision, standing, behaviour=choice.behaviour, turned=self._turned)
         self._timer.lap(_PUBLISH)
         return TickRecord(
             tick=tick,
@@ -268,6 +273,7 @@ class Tick:
             number=self._number,
             knowledge=knowledge,
             standing=standing,
+            question_begins=self._question.begins,
             lesson_speed=self._handler.lesson_speed.share if self._handler.lesson_speed.slows else 1.0,
         )
 
@@ -282,6 +288,7 @@ class Tick:
                     self._handler.mid.mid.restart()
                 self._handler.forget_obstacles()
                 self._handler.delay.forget_question()
+                self._question.close()
                 if self._appraisal_perception is not None:
                     self._appraisal_perception.forget_turns()
                 self._reset_transitions()
@@ -319,7 +326,7 @@ class Tick:
     def _decision(self, tick: int, situation: Situation, readings: SensorReadings, *, blind: bool) -> Decision:
         """Return the decision of the levels, or of the teacher who drives by hand."""
         handler, authority = self._handler, self._handler.authority
-        handler.before_decision(tick, was_driving=self._driving)
+        handler.before_decision(tick, was_driving=self._driving, turned=self._turned)
         cause = self._stand_cause(tick, blind=blind)
         authority.expire(tick)
         if authority.is_manual(tick):

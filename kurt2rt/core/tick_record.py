@@ -46,7 +46,9 @@ class TickRecord(NamedTuple):
     knowledge: tuple[Rla, ...] | None = None
     """All active RLAs after this tick, if it changed them and once a second; None otherwise."""
     standing: Standing = DRIVES
-    """Reason that the robot stands, or DRIVES."""
+    """Reason that the robot stands, or DRIVES; while a question is open, that of its first tick (OpenQuestion)."""
+    question_begins: bool = False
+    """True in the first tick of a question."""
     broken_sensors: tuple[BrokenSensor, ...] = ()
     """Infra-red sensors that do not count in this tick."""
     lesson_speed: float = 1.0

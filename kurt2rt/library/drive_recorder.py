@@ -19,7 +19,6 @@ from kurt2rt.runs.recording.recording import Recording, RunContext
 _NO_LIMIT = Budget(total_bytes=1 << 62, segment_bytes=32_000_000)
 _WRITES_EVERY_TICKS = 10
 _SYNCS_EVERY_TICKS = 1000
-_QUESTIONS_EVERY_TICKS = 100
 _SIMULATED = "sim"
 
 
@@ -57,8 +56,6 @@ class DriveRecorder:
         with extra_named():
             self._recorder = recording.recorder(settings, task, knowledge, context, started=datetime.now(UTC))
         self._folder = folder
-        self._asking = False
-        self._asked_at = -_QUESTIONS_EVERY_TICKS
         self._recorder.poll()
         self._check()
         assert self._recorder.run is not None  # without trouble there is a folder
@@ -66,16 +63,13 @@ class DriveRecorder:
         """Folder of the run."""
 
     def on_tick(self, record: TickRecord, question: Callable[[], str]) -> None:
-        """Record a tick and, as the robot begins to ask, its question.
+        """Record a tick and, in the first tick of a question, the question.
 
         Raises UserError (kurt2rt.Error) if the disk fails.
         """
         self._recorder.on_tick(record)
-        asking = record.decision.asking
-        if asking and not self._asking and record.tick - self._asked_at >= _QUESTIONS_EVERY_TICKS:
-            self._asked_at = record.tick
+        if record.question_begins:
             self._recorder.on_question(question())
-        self._asking = asking
         if record.tick % _WRITES_EVERY_TICKS == 0:
             self._recorder.write_waiting()
         if record.tick % _SYNCS_EVERY_TICKS == 0:

@@ -83,8 +83,6 @@ class PostTick:
         self._set_periods(service.settings)
         self._unsaved: dict[str, str] = {}
         """Texts of lessons that are not durable yet, by command id."""
-        self._asking = False
-        self._asked_at = -self._ticks_per_second
         self.last: ProgramStatus | None = None
         """Status that the console got last; None before the first."""
 
@@ -104,7 +102,8 @@ class PostTick:
         if self._recorder is not None:
             # Before the tick's question and acknowledgements, so that both follow it in the recording.
             self._recorder.on_tick(record, saved=saves)
-        self._ask(record)
+        if record.question_begins:
+            self._ask(record)
         for acknowledgement in self._writer.acknowledged():
             self.on_acknowledged(acknowledgement)
         if saves:
@@ -157,15 +156,10 @@ class PostTick:
         self._console.status(self.last)
 
     def _ask(self, record: TickRecord) -> None:
-        if not record.decision.asking:
-            self._asking = False
-        elif not self._asking and record.tick - self._asked_at >= self._ticks_per_second:
-            self._asking = True
-            self._asked_at = record.tick
-            question = self._question_of(record)
-            if self._recorder is not None:
-                self._recorder.on_question(question)
-            self._console.question(question)
+        question = self._question_of(record)
+        if self._recorder is not None:
+            self._recorder.on_question(question)
+        self._console.question(question)
 
     def _question_of(self, record: TickRecord) -> Question | MidQuestion:
         runtime, match = self._runtime, record.decision.match

@@ -186,6 +186,7 @@ class RobotBatch:
             np.where(rlas == STANDS, STANDS, rlas - self._first_rows[robot]).tolist(),
             record["track_distance"][:end].tolist(),
             record["track_collisions"][:end].tolist(),
+            record["track_begins"][:end].tolist(),
         )
 
     def tally(self, robot: int) -> Tally:
@@ -224,7 +225,7 @@ class RobotBatch:
         """Let a taught behaviour be wanted of a robot; its next decision may change the action at once."""
         record, place = self._robots[robot], self._behaviours.index(behaviour)
         if record["behaviour"] != place:
-            record["behaviour"] = place
+            record["behaviour"], record["question_left"] = place, 0
             record["action_ticks"] = self._laws.mind.minimum_ticks
 
     def put(self, robot: int, pose: Pose) -> None:

@@ -66,10 +66,9 @@ def begin_tick(robot: Robot, world: World, laws: Laws) -> None:
 def finish_tick(robot: Robot, world: World, laws: Laws, knowledge: Knowledge, averages: Averages) -> None:
     """Run the rest of a tick from the robot's new pose: sensors; then sense, check, decide, guard of the notebook."""
     if sense_tick(robot, world, laws):
-        asked = robot.tick > 1 and robot.action < 0
         wanted = decide(robot, robot.at, laws.mind, knowledge, averages)
         drive_guarded(robot, wanted, robot.tick * laws.body.cycle_s, laws.guard)
-        count_tick(robot, asked, laws.stuck)
+        count_tick(robot, laws.stuck)
         if robot.kind == COMMANDED:
             trace(robot, robot.at)
         robot.crossed = crosses(robot)

@@ -53,6 +53,8 @@ class CompiledLesson(RobotBatch):
             right=np.full(rows, -1, dtype=np.int8),
             rlas=np.zeros(rows, dtype=np.int32),
             slow=np.zeros(rows, dtype=np.bool_),
+            sure=np.zeros(rows, dtype=np.bool_),
+            turned=np.zeros(rows, dtype=np.bool_),
             touching=np.zeros(rows, dtype=np.bool_),
             collisions=np.zeros(rows, dtype=np.int32),
         )

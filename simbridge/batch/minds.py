@@ -6,6 +6,7 @@ from behaviors.keep_distance import KeepDistanceNumbers, steer
 from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from behaviors.policies.streets import KEEPS_MIDDLE
 from hal.batch import FeatureKind
+from hal.open_question import SURE_SHARE
 from simbridge.batch.asking import FAILED, ask
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
@@ -185,6 +186,7 @@ def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
     if row < 0 or not distance <= knowledge.radius[row]:
         robot.action = robot.rla = -1
         return
+    robot.sure = 1 if distance <= SURE_SHARE * knowledge.radius[row] else 0
     answer = knowledge.answer[row]
     if hold_or_change(robot, knowledge.action[answer], law):
         robot.rla = answer
@@ -193,7 +195,7 @@ def _match(robot: Robot, k: int, law: MindLaw, knowledge: Knowledge) -> None:
 @compiled
 def ask_python(robot: Robot, law: MindLaw, mind: int) -> None:
     """Let the PythonMind at an address choose the action for the robot's situation; the robot leaves if it failed."""
-    robot.rla = -1
+    robot.rla, robot.sure = -1, 1
     action = ask(mind, robot.number)
     if action == FAILED:
         robot.left = UNDECIDED

@@ -193,6 +193,8 @@ class Robot:
     """Way of each side since a turn began."""
     rla: int
     """RLA whose action drives, by its row in the table; -1: none."""
+    sure: int
+    """1 if the situation is inside R with a margin (hal.open_question)."""
     nearest: int
     """Row of the RLA that was nearest last."""
     seen: Annotated[Floats, (SEEN,)]
@@ -212,6 +214,8 @@ class Robot:
     # Counts of the whole drive (hal.batch.Tally)
     unknown_ticks: int
     questions: int
+    question_left: int
+    """Ticks for which the last question stays open; 0: none is (hal.open_question)."""
     first_question: int
     first_collision: int
     mark_x_m: float
@@ -234,6 +238,8 @@ class Robot:
     track_heading_rad: Annotated[Floats, (STRETCH,)]
     track_action: Annotated[Integers, (STRETCH,)]
     """-1 where the robot stands and asks."""
+    track_begins: Annotated[Integers, (STRETCH,)]
+    """1 in the first tick of a question."""
     track_rla: Annotated[Integers, (STRETCH,)]
     track_distance: Annotated[Floats, (STRETCH,)]
     track_collisions: Annotated[Integers, (STRETCH,)]

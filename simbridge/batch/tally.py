@@ -2,26 +2,28 @@
 
 import math
 
+from hal.open_question import question_ticks
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import StuckLaw
 from simbridge.batch.record import Robot
 
 TRAIL_TICKS = 10
 """Ticks between two positions of the travelled distance."""
+_question_ticks = compiled(question_ticks)
 
 
 @compiled
-def count_tick(robot: Robot, asked: bool, law: StuckLaw) -> None:
-    """Count the present tick of a robot.
-
-    `asked`: whether the robot asked in the tick before.
-    """
-    if robot.action < 0:
-        robot.unknown_ticks += 1
-        if not asked:
-            robot.questions += 1
-            if robot.first_question == 0:
-                robot.first_question = robot.tick
+def count_tick(robot: Robot, law: StuckLaw) -> None:
+    """Count the present tick of a robot."""
+    asks = robot.action < 0
+    begins = asks and robot.question_left == 0
+    robot.question_left = _question_ticks(robot.question_left, asks, robot.sure != 0, robot.turned != 0)
+    robot.track_begins[robot.at] = 1 if begins else 0
+    robot.unknown_ticks += 1 if asks else 0
+    if begins:
+        robot.questions += 1
+        if robot.first_question == 0:
+            robot.first_question = robot.tick
     if robot.collisions > 0 and robot.first_collision == 0:
         robot.first_collision = robot.tick
     if robot.tick % TRAIL_TICKS == 0:
@@ -35,8 +37,8 @@ def count_tick(robot: Robot, asked: bool, law: StuckLaw) -> None:
 
 @compiled
 def restart_window(robot: Robot, law: StuckLaw) -> None:
-    """Begin a new window of the rule of being stuck in the present tick, in which the robot was put elsewhere."""
-    robot.kept, robot.kept_since, robot.stuck = 0, robot.tick, 0
+    """End the question and begin a new window of the rule of being stuck: the robot was put elsewhere in this tick."""
+    robot.kept, robot.kept_since, robot.stuck, robot.question_left = 0, robot.tick, 0, 0
     if law.positions > 0:
         _stays(robot, law)
 

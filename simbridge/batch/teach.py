@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from hal.batch_lesson import LessonCause, LessonLog
+from hal.open_question import SURE_SHARE
 from hal.slow_way import advance_way
 from simbridge.batch.borders import crosses
 from simbridge.batch.boxes import meet_box
@@ -144,6 +145,7 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
     # Not before the commands of this tick, which may want another behaviour.
     log.behaviours[tick], log.right[tick] = robot.behaviour, right_action(robot, laws.mind)
     drive_guarded(robot, (left_m_s, right_m_s), tick * laws.body.cycle_s, laws.guard)
+    log.turned[tick] = robot.turned != 0
     robot.crossed = crosses(robot)
     robot.at += 1
 
@@ -151,6 +153,7 @@ def _decide(robot: Robot, laws: Laws, learner: Learner, table: Table, orders: Or
 @compiled
 def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonLog) -> int:
     """Let the nearest RLA, Python or the teacher choose the action; return the cause, a number of LessonCause."""
+    log.sure[robot.tick] = False
     if orders.held >= 0:
         robot.action = orders.held
         return TEACHER
@@ -165,12 +168,14 @@ def _choose(robot: Robot, laws: Laws, table: Table, orders: Orders, log: LessonL
         robot.situation[width + i] = log.sums[tick, i] / features.average_steps * features.average_weights[i]
     if table.mind:
         ask_python(robot, laws.mind, table.mind)
+        log.sure[tick] = True
         return UNKNOWN if robot.action < 0 else LEARNER
     row, distance = scan_nearest(table.rows[0], robot.nearest, table.conditions, robot.situation)
     robot.nearest = row
     if row < 0 or not distance <= table.radius[row]:
         robot.action = robot.rla = -1
         return UNKNOWN
+    log.sure[tick] = distance <= SURE_SHARE * table.radius[row]
     if hold_or_change(robot, table.action[row], laws.mind):
         robot.rla = table.rla_ids[row]
         return BY_RLA

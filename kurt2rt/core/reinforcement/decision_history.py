@@ -76,25 +76,33 @@ class DecisionHistory:
         self._circumstances[row] = circumstances
         self._opinions[row] = opinion
 
-    def empty_copy(self) -> "DecisionHistory":
-        """Return an empty history with the same number of ticks and dimensions."""
-        return DecisionHistory(self._situations.shape[1], self._capacity)
+    def empty_copy(self, capacity: int) -> "DecisionHistory":
+        """Return an empty history of the last `capacity` ticks, with the same dimensions."""
+        return DecisionHistory(self._situations.shape[1], capacity)
 
-    def copy_from(self, other: "DecisionHistory") -> None:
-        """Store the ticks of a history of equal size in place of all own ones; allocates no arrays."""
-        self._ticks[:] = other._ticks
-        self._situations[:] = other._situations
-        self._answering[:] = other._answering
-        self._has_situation[:] = other._has_situation
-        self._touches[:] = other._touches
-        self._teachable[:] = other._teachable
-        self._slow[:] = other._slow
-        self._rlas[:] = other._rlas
-        self._learner_actions[:] = other._learner_actions
-        self._behaviours[:] = other._behaviours
-        self._circumstances[:] = other._circumstances
-        self._opinions[:] = other._opinions
-        self.newest = other.newest
+    def copy_ticks(self, other: "DecisionHistory", first: int, count: int, number: int) -> None:
+        """Store `count` ticks of another history, from `first` on, with the numbers `number`, `number` + 1 and so on.
+
+        Only situations, behaviours, RLAs and touches are copied, in slices: no arrays are allocated.
+        """
+        while count:
+            source, target = first % other._capacity, number % self._capacity
+            length = min(count, other._capacity - source, self._capacity - target)
+            rows, to = slice(source, source + length), slice(target, target + length)
+            # A tick that the other history missed keeps a number that is none of these.
+            self._ticks[to] = other._ticks[rows]
+            self._ticks[to] += number - first
+            self._situations[to] = other._situations[rows]
+            self._has_situation[to] = other._has_situation[rows]
+            self._touches[to] = other._touches[rows]
+            self._rlas[to] = other._rlas[rows]
+            self._behaviours[to] = other._behaviours[rows]
+            first, number, count = first + length, number + length, count - length
+
+    def number_of(self, tick: int, number: int) -> int | None:
+        """Return the number by which a tick can be read that was copied with this `number`; None if it was missed."""
+        del tick
+        return number if self.contains(number) else None
 
     def contains(self, tick: int) -> bool:
         """Return whether a tick is stored; ask before reading anything of a tick."""

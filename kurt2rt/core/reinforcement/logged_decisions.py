@@ -42,14 +42,17 @@ class LoggedDecisions(DecisionHistory):
         self._action_names, self._behaviour_names = tuple(actions), tuple(behaviours)
         self._average_steps = average_steps
 
-    def empty_copy(self) -> "LoggedDecisions":
-        """Return an empty history over the same log."""
-        names = self._action_names, self._behaviour_names
-        return LoggedDecisions(self._log, self._average_steps, *names, self._capacity)
+    def empty_copy(self, capacity: int) -> "LoggedDecisions":
+        """Return an empty history of the last `capacity` ticks of the same log."""
+        return LoggedDecisions(self._log, self._average_steps, self._action_names, self._behaviour_names, capacity)
 
-    def copy_from(self, other: DecisionHistory) -> None:
-        """Store the ticks that another history of this log stores now."""
-        self.newest = other.newest
+    def copy_ticks(self, other: DecisionHistory, first: int, count: int, number: int) -> None:
+        """Copy nothing: the log keeps all ticks."""
+
+    def number_of(self, tick: int, number: int) -> int:
+        """Return the tick itself, by which the log is read."""
+        del number
+        return tick
 
     def contains(self, tick: int) -> bool:
         """Return whether a tick is stored; ask before reading anything of a tick."""

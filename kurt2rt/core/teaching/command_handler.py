@@ -169,15 +169,15 @@ class CommandHandler:
         """Return the length of the open session at `tick`, or of the last one, in ticks."""
         return self._clock.ticks(tick)
 
-    def before_decision(self, tick: int, *, was_driving: bool) -> None:
+    def before_decision(self, tick: int, *, was_driving: bool, turned: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
         Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner,
-        and avoids no obstacles.
-        The decisions before a standstill are kept for a teacher who rewinds.
+        and avoids no obstacles. The decisions of ticks in which a wheel turned are kept for a teacher who rewinds.
+
+        `was_driving`: whether an action drove in the tick before. `turned`: whether a wheel turned in it.
         """
-        if was_driving is not self._rewind.was_driving:
-            self._rewind.update(driving=was_driving)
+        self._rewind.update(driving=turned)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
         taught = self.is_taught

@@ -208,19 +208,14 @@ class LessonBuilder:
             newest = self._recent.newest
             drove, touched = self._recent.driving_rla(newest), self._recent.touched(newest)
             return LessonContext(situation.vector, self._level.active_behaviour.behaviour, BASIC, drove, share, touched)
-        history = self._rewind.find(decision_tick)
-        if history is None:
+        found = self._rewind.find(decision_tick)
+        if found is None:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=decision_tick)
-        if not history.has_situation(decision_tick):
+        history, at = found
+        if not history.has_situation(at):
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
-        return LessonContext(
-            history.situation(decision_tick),
-            history.behaviour(decision_tick),
-            BASIC,
-            history.driving_rla(decision_tick),
-            share,
-            history.touched(decision_tick),
-        )
+        drove, touched = history.driving_rla(at), history.touched(at)
+        return LessonContext(history.situation(at), history.behaviour(at), BASIC, drove, share, touched)
 
     def _add_alternative(
         self, action: str, context: LessonContext, nearest: Match | None, origin: Origin

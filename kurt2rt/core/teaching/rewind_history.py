@@ -1,30 +1,74 @@
-"""Rewind history: decisions before a standstill, kept for the lessons of a teacher who looks back."""
+"""Rewind history: the last seconds of driving, kept for the lessons of a teacher who looks back."""
+
+from collections import deque
+from typing import NamedTuple
 
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
+DRIVEN_TICKS = 1200
+"""Ticks of driving that are kept: the ten seconds that the page offers, and what the robot drives until it stands."""
+_CHUNK_TICKS = 100
+"""Ticks of driving that are copied at once."""
+
+
+class _Stretch(NamedTuple):
+    """Ticks in a row in which a wheel turned."""
+
+    first: int
+    end: int
+    """Tick after the last one."""
+    number: int
+    """Number of the first of them, counted over all ticks of driving."""
+
 
 class RewindHistory:
-    """Recent decisions, and those of the last 1000 ticks before the newest standstill.
+    """Decisions of the last ticks of driving, however long the robot stood since or between them.
 
-    The history of recent decisions continues at standstill, so a teacher who stops the robot and looks back would lose
-    ten seconds of driving after ten seconds of thought. The copy is made once a standstill, in constant memory.
+    The history of recent decisions continues at standstill, so a teacher who thinks, and a robot that moves for
+    moments only, would lose the drive. Memory is constant.
     """
 
     def __init__(self, recent: DecisionHistory) -> None:
         """Copy from `recent`, which the tick continues to write."""
         self._recent = recent
-        self._before_standstill = recent.empty_copy()
-        self.was_driving = False
-        """Whether the robot drove at the last update."""
+        self._kept = recent.empty_copy(DRIVEN_TICKS + _CHUNK_TICKS)
+        self._stretches: deque[_Stretch] = deque()
+        self._driven = 0
+        """Ticks of driving up to the present stretch."""
+        self._first: int | None = None
+        """First tick of the present stretch; None at standstill."""
 
     def update(self, *, driving: bool) -> None:
-        """Copy the recent decisions if the robot drove before and does not now; call it when `driving` changes."""
-        if self.was_driving and not driving:
-            self._before_standstill.copy_from(self._recent)
-        self.was_driving = driving
+        """Follow the newest recent tick, in which a wheel turned if `driving`; call it at least when that changes."""
+        first, newest = self._first, self._recent.newest
+        if first is None:
+            self._first = newest if driving else None
+        elif not driving:
+            self._keep(first, newest)
+            self._first = None
+        elif newest - first >= _CHUNK_TICKS:
+            self._keep(first, newest)
+            self._first = newest
 
-    def find(self, tick: int) -> DecisionHistory | None:
-        """Return the history that stores a tick; None if neither does."""
+    def find(self, tick: int) -> tuple[DecisionHistory, int] | None:
+        """Return the history that stores a tick, and the number by which it is read there; None if none does."""
         if self._recent.contains(tick):
-            return self._recent
-        return self._before_standstill if self._before_standstill.contains(tick) else None
+            return self._recent, tick
+        stretches = [*self._stretches]
+        if self._first is not None:
+            stretches.append(_Stretch(self._first, self._recent.newest + 1, self._driven))
+        for stretch in reversed(stretches):
+            if stretch.first <= tick < stretch.end:
+                newest = stretches[-1].number + stretches[-1].end - stretches[-1].first
+                number = stretch.number + tick - stretch.first
+                read = self._kept.number_of(tick, number) if newest - number <= DRIVEN_TICKS else None
+                return None if read is None else (self._kept, read)
+        return None
+
+    def _keep(self, first: int, end: int) -> None:
+        """Copy the ticks of driving from `first` to before `end`, and forget the oldest ones."""
+        self._kept.copy_ticks(self._recent, first, end - first, self._driven)
+        self._stretches.append(_Stretch(first, end, self._driven))
+        self._driven += end - first
+        while self._driven - (oldest := self._stretches[0]).number - (oldest.end - oldest.first) > DRIVEN_TICKS:
+            self._stretches.popleft()

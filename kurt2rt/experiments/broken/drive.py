@@ -145,7 +145,7 @@ class BrokenSensorRun(Episode):
             self.simulation.rescue()
             self.send(Resume(self.next_id("go"), _EXPERIMENTER))
         asking = record.decision.asking
-        self.asks += asking and self._asked_ticks == 0
+        self.asks += self.question.begins
         self._asked_ticks = self._asked_ticks + 1 if asking else 0
         if self._asked_ticks * self.period_s >= _ASKS_S or self.is_stuck() or self.metric.needs_reset:
             self.reposition()

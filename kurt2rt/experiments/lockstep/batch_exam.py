@@ -130,6 +130,8 @@ class _Drive:
         poses = stretch.poses[:ticks]
         self._count_collisions(stretch, ticks)
         self._count_actions(stretch, ticks)
+        begins = zip(poses, stretch.begins, strict=False)
+        self._ask_positions += [Position(pose.x_m, pose.y_m) for pose, question_begins in begins if question_begins]
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.
         for step_m in starmap(_step_m, pairwise([self._pose, *poses])):
             self._travelled_m += step_m
@@ -194,18 +196,12 @@ class _Drive:
                 self._collision_positions.append(Position(pose.x_m, pose.y_m))
 
     def _count_actions(self, stretch: Stretch, ticks: int) -> None:
-        place = 0
         for action, run in groupby(stretch.actions[:ticks]):
             if action != self._action:
                 # A robot that asks in its first tick has not changed its action: before, it had none.
                 self._action_changes += not (self._action is None and action == STANDS)
-                if action == STANDS:
-                    pose = stretch.poses[place]
-                    self._ask_positions.append(Position(pose.x_m, pose.y_m))
                 self._action = action
-            length = len(list(run))
-            self._unknown_ticks += length if action == STANDS else 0
-            place += length
+            self._unknown_ticks += len(list(run)) if action == STANDS else 0
 
 
 def _step_m(before: Pose, after: Pose) -> float:

@@ -34,7 +34,7 @@ from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 
-_UNKNOWN = int(LessonCause.UNKNOWN)
+_UNKNOWN, _TEACHER = int(LessonCause.UNKNOWN), int(LessonCause.TEACHER)
 _STRETCH_TICKS = 120
 """Ticks that are driven before the teacher looks: half as many are taken back at a command on average."""
 _ENGINE_TICKS = 50
@@ -147,6 +147,8 @@ class BatchTrainingRun(TrainingRun):
         if due:
             results = self._mind.take(begin + 1)
             self._refused += require_accepted(results, begin + 1, self.task, self._teacher.may_be_refused)
+            if any(result.lesson for result in results):
+                self.question.close()
         cut = self._drive_on(begin)
         if cut is None:
             return False
@@ -285,8 +287,8 @@ class BatchTrainingRun(TrainingRun):
         asks = self.robot.log.causes[begin + 1 : cut + 1] == _UNKNOWN
         self.ticks = cut
         self.unknown_ticks += int(asks.sum())
-        begins = np.flatnonzero(asks & ~np.concatenate(([self.asking], asks[:-1])))
-        self.ask_positions += [Position(poses[place].x_m, poses[place].y_m) for place in begins.tolist()]
+        if self.question.is_open or asks.any():
+            self._count_questions(begin, poses)
         self.asking = bool(asks[-1])
         self._measure_all(poses)
         self._follow_detector(self._stuck, begin, cut - 1)
@@ -300,6 +302,17 @@ class BatchTrainingRun(TrainingRun):
             tick = second * self.ticks_per_second
             self._note_second(tick, self._mind.rlas_after(tick))
             self._on_progress(tick * self.period_s)
+
+    def _count_questions(self, begin: int, poses: list[Pose]) -> None:
+        """Count the questions of the ticks after `begin`, each at its pose."""
+        log, rows = self.robot.log, slice(begin + 1, begin + 1 + len(poses))
+        columns = (log.causes, log.behaviours, log.sure, log.turned)
+        ticks = zip(poses, *(column[rows].tolist() for column in columns), strict=True)
+        for pose, cause, behaviour, sure, turned in ticks:
+            asks, pressed = cause == _UNKNOWN, cause == _TEACHER
+            name = self.task.behaviours[behaviour]
+            if self.question.count(name, asks=asks, sure=sure, moves=turned, pressed=pressed):
+                self.ask_positions.append(Position(pose.x_m, pose.y_m))
 
     def _measure_all(self, poses: list[Pose]) -> None:
         # Added one by one, as in each tick of `Episode`: another order would change the last digits.

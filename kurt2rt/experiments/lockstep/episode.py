@@ -10,7 +10,9 @@ from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
 from hal.batch import StuckRule
+from hal.robot import STANDSTILL
 from hal.simulation import Pose, Position, Simulation
+from kurt2rt.core.decision.open_question import OpenQuestion
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
@@ -127,6 +129,7 @@ class Episode(ABC):
         """Ticks in situations that the robot does not know."""
         self.latched_ticks = 0
         self.asking = False
+        self.question = OpenQuestion()
         self.distance_travelled_m = 0.0
         """Distance on the robot's own wheels."""
         self.repositions = 0
@@ -158,7 +161,11 @@ class Episode(ABC):
         self.ticks = record.tick
         self.unknown_ticks += decision.asking
         self.latched_ticks = self.latched_ticks + 1 if record.guard_result.latched else 0
-        if decision.asking and not self.asking:
+        if any(result.lesson for result in record.results):
+            self.question.close()
+        turned = record.guard_result.wheel_speeds != STANDSTILL
+        self.question.update(decision, record.standing, behaviour=record.behaviour, turned=turned)
+        if self.question.begins:
             self.ask_positions.append(self.simulation.position)
             self.mid_asks += decision.asks_at == MID
         self.asking = decision.asking
@@ -226,4 +233,5 @@ class Episode(ABC):
     def _begin_at(self, pose: Pose) -> None:
         self._pose = self.simulation.pose
         self._stuck.restart()
+        self.question.close()
         self.metric.reset(pose)

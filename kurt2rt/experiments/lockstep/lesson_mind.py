@@ -205,17 +205,20 @@ class LessonMind:
         )
 
     def _before_decision(self, tick: int) -> None:
-        drove = tick > 1 and self._robot.log.actions[tick - 1] >= 0
-        self._handler.before_decision(tick, was_driving=bool(drove))
+        log = self._robot.log
+        drove, turned = tick > 1 and log.actions[tick - 1] >= 0, log.turned[tick - 1]
+        self._handler.before_decision(tick, was_driving=bool(drove), turned=bool(turned))
         self._decided = tick
 
     def _follow_standstills(self, until: int) -> None:
-        """Show the handler each tick, up to `until`, before which the robot began to drive or to stand."""
+        """Show the handler each tick, up to `until`, before which the robot or a wheel began to drive or to stand."""
         first = self._decided + 1
         if first > until:
             return
-        drove = self._robot.log.actions[max(0, first - 2) : until] >= 0
-        changes = np.flatnonzero(drove[1:] != drove[:-1]) + max(0, first - 2) + 2
+        rows = slice(max(0, first - 2), until)
+        drove, turned = self._robot.log.actions[rows] >= 0, self._robot.log.turned[rows]
+        changed = (drove[1:] != drove[:-1]) | (turned[1:] != turned[:-1])
+        changes = np.flatnonzero(changed) + rows.start + 2
         for tick in sorted({first, *changes.tolist()}):
             self._recent.newest = tick - 1
             self._before_decision(tick)

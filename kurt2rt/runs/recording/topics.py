@@ -66,7 +66,6 @@ class Topics:
         self._next_scan = self._next_scene = self._next_ground = 0
         self._begins: PlanePose | None = None
         self._doing = ""
-        self._asking = False
         self._reasons: tuple[GuardReason, ...] = ()
         self._saving_error: str | None = None
         self._tick = _channel(TICK, TICK_SCHEMA, context)
@@ -104,9 +103,7 @@ class Topics:
         if record.tick >= self._next_scan:
             self._next_scan = record.tick + self._scan_ticks
             self._log_pose(record, time_ns)
-        begins_to_ask = record.decision.asking and not self._asking
-        self._asking = record.decision.asking
-        if record.tick >= self._next_scene or begins_to_ask:
+        if record.tick >= self._next_scene or record.question_begins:
             self._next_scene = record.tick + self._scene_ticks
             self._log_scene(record, time_ns)
 

@@ -114,14 +114,14 @@ def test_history_returns_features_and_opinion_by_tick() -> None:
     assert (recent.circumstances(2), recent.opinion(2)) == (None, None)
 
 
-def test_copy_stays_while_the_copied_history_continues() -> None:
-    recent = remembered(*range(3, 13))
-    copy = recent.empty_copy()
-    copy.copy_from(recent)
+@pytest.mark.parametrize("number", [0, 5, 9])  # in one piece, and in two
+def test_copied_ticks_stay_while_the_history_continues(number: int) -> None:
+    recent = remembered(*range(3, 7), *range(8, 13))
+    copy = recent.empty_copy(12)
+    copy.copy_ticks(recent, 5, 6, number)
     for tick in range(13, 40):
         remember(recent, tick)
     assert not recent.contains(5)
-    assert copy.contains(5)
-    assert copy.newest == 12
-    assert copy.situation(5).tolist() == [5, -5]
-    assert copy.driving_rla(5) == 105
+    assert [copy.number_of(tick, number + tick - 5) for tick in (5, 6, 7, 10)] == [number, number + 1, None, number + 5]
+    assert copy.situation(number).tolist() == [5, -5]
+    assert copy.driving_rla(number) == 105

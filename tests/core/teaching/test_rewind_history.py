@@ -10,48 +10,67 @@ from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.teaching.rewind_history import RewindHistory
+from kurt2rt.core.teaching.rewind_history import DRIVEN_TICKS, RewindHistory
 from tests.core.rla.helpers import created
 from tests.core.teaching.test_command_handler import Lesson
 from tests.teacher.helpers import correct
 
-CAPACITY = 10
+CAPACITY = 1000
 
 
 class Drive:
-    """Robot that drives or stands, with a short history."""
+    """Robot that drives or stands."""
 
     def __init__(self) -> None:
         self.recent = DecisionHistory(1, CAPACITY)
         self.rewind = RewindHistory(self.recent)
         self.tick = 0
 
-    def run(self, ticks: int, *, driving: bool) -> None:
+    def run(self, ticks: int, *, driving: bool) -> int:
+        """Run so many ticks; return the first of them."""
+        first = self.tick
         for _ in range(ticks):
             situation = Situation(np.array([float(self.tick)]), history_frozen=False)
             self.recent.add(self.tick, situation, Decision(STANDSTILL, DecisionCause.RLA, "a", 1, None, True))
             self.rewind.update(driving=driving)
             self.tick += 1
+        return first
+
+    def remembers(self, tick: int) -> bool:
+        found = self.rewind.find(tick)
+        return found is not None and found[0].situation(found[1]).tolist() == [tick]
 
 
-def test_rewind_standing_for_long_finds_the_drive_before() -> None:
+def test_rewind_standing_for_a_minute_finds_ten_seconds_of_driving() -> None:
     drive = Drive()
-    drive.run(30, driving=True)
-    drive.run(500, driving=False)
-    history = drive.rewind.find(25)
-    assert history is not None
-    assert history.situation(25).tolist() == [25.0]
-    assert drive.rewind.find(30 - CAPACITY) is None
+    drive.run(3000, driving=True)
+    drive.run(6000, driving=False)
+    assert all(map(drive.remembers, range(3000 - DRIVEN_TICKS, 3000)))
+    assert not drive.remembers(3000 - DRIVEN_TICKS - 1)
 
 
-def test_rewind_after_the_next_drive_forgets_the_one_before() -> None:
+def test_rewind_finds_the_drive_before_pulses_and_questions() -> None:
     drive = Drive()
-    drive.run(30, driving=True)
-    drive.run(50, driving=False)
-    drive.run(30, driving=True)
-    drive.run(50, driving=False)
-    assert drive.rewind.find(25) is None
-    assert drive.rewind.find(105) is not None
+    drive.run(1000, driving=True)
+    pulses = []
+    for _ in range(50):  # a question at the border of R: the wheels turn for two ticks a second
+        drive.run(98, driving=False)
+        pulses.append(drive.run(2, driving=True))
+    drive.run(6000, driving=False)
+    assert all(map(drive.remembers, [*range(1000), *pulses]))
+    assert not drive.remembers(1050)
+
+
+def test_rewind_while_driving_keeps_the_drive_before_a_standstill() -> None:
+    drive = Drive()
+    drive.run(900, driving=True)
+    drive.run(6000, driving=False)
+    drive.run(DRIVEN_TICKS - 700, driving=True)
+    assert drive.remembers(200)
+    assert not drive.remembers(199)
+    drive.run(DRIVEN_TICKS, driving=True)
+    assert drive.remembers(6900 + DRIVEN_TICKS - 700)
+    assert not drive.remembers(899)
 
 
 @pytest.mark.parametrize("tick", [-1, 10_000])
@@ -62,8 +81,8 @@ def test_rewind_unknown_tick_is_not_found(tick: int) -> None:
 def test_correction_after_long_standstill_is_about_the_drive() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     wrong = lesson.go_on(40.0)
-    lesson.school.before_decision(lesson.tick, was_driving=True)
-    lesson.school.before_decision(lesson.go_on(0.0), was_driving=False)
+    lesson.school.before_decision(lesson.tick, was_driving=True, turned=True)
+    lesson.school.before_decision(lesson.go_on(0.0), was_driving=False, turned=False)
     lesson.go_on(0.0, 3000)
     result = lesson.say(replace(correct("b"), decision_tick=wrong))
     assert result.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, action="b")
@@ -74,8 +93,8 @@ def test_correction_of_a_tick_before_the_kept_ones_is_refused() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     old = lesson.go_on(40.0)
     lesson.go_on(0.0, 3000)
-    lesson.school.before_decision(lesson.tick, was_driving=True)
-    lesson.school.before_decision(lesson.go_on(0.0), was_driving=False)
+    lesson.school.before_decision(lesson.tick, was_driving=True, turned=True)
+    lesson.school.before_decision(lesson.go_on(0.0), was_driving=False, turned=False)
     assert lesson.say(replace(correct("b"), decision_tick=old)).outcome == Outcome.of(
         RefusalCode.TICK_FORGOTTEN, tick=old
     )

@@ -77,7 +77,7 @@ def drive_in_batch(
             course = batch.stretch(r)
             simulations[r].follow(course.poses)
             collisions[r] = course.collisions[-1]
-            for pose, action, rla, distance, _ in zip(*course, strict=True):
+            for pose, action, rla, distance, *_ in zip(*course, strict=True):
                 name, rla_id = batch.actions[action] if action >= 0 else None, ids[r][rla] if rla >= 0 else None
                 steps[r].append(Step(pose, name, rla_id, distance))
     return [

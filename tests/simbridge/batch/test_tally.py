@@ -20,19 +20,21 @@ SIZES = Sizes(1, 1, 1)
 
 def test_questions_and_unknown_ticks_are_counted() -> None:
     robot = empty_robots(1, SIZES)[0]
-    asked = False
-    for tick, action in enumerate([2, -1, -1, 3, -1], start=1):
-        robot.tick, robot.action = tick, action
-        count_tick(robot, asked, NO_RULE)
-        asked = action < 0
-    assert (robot.unknown_ticks, robot.questions, robot.first_question) == (3, 2, 2)
+    known, asks = [(2, 1)], [(-1, 1)]
+    begins: list[int] = []
+    for tick, (robot.action, robot.sure) in enumerate([*known, *asks * 2, *known * 49, *asks, *known * 50, *asks], 1):
+        robot.tick, robot.at = tick, tick - 1
+        count_tick(robot, NO_RULE)
+        begins += [tick] * robot.track_begins[robot.at]
+    assert begins == [2, 104]
+    assert (robot.unknown_ticks, robot.questions, robot.first_question) == (4, 2, 2)
 
 
 def test_first_collision_keeps_its_tick() -> None:
     robot = empty_robots(1, SIZES)[0]
     for tick, collisions in enumerate([0, 1, 1, 2], start=1):
         robot.tick, robot.collisions = tick, collisions
-        count_tick(robot, False, NO_RULE)
+        count_tick(robot, NO_RULE)
     assert robot.first_collision == 2
 
 
@@ -40,7 +42,7 @@ def test_distance_is_measured_from_the_tenth_tick_on() -> None:
     robot = empty_robots(1, SIZES)[0]
     for tick in range(1, 36):
         robot.tick, robot.x_m = tick, 0.003 * tick
-        count_tick(robot, False, NO_RULE)
+        count_tick(robot, NO_RULE)
     assert robot.travelled_m == pytest.approx(0.06)
 
 
@@ -58,7 +60,7 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
         heading_rad += chance.gauss(0.0, 0.03)
         x_m, y_m = x_m + step_m * math.cos(heading_rad), y_m + step_m * math.sin(heading_rad)
         robot.tick, robot.x_m, robot.y_m = tick, x_m, y_m
-        count_tick(robot, False, StuckLaw(*RULE))
+        count_tick(robot, StuckLaw(*RULE))
         stuck = detector.none_since_window(Pose(x_m, y_m, heading_rad))
         assert stuck == bool(robot.stuck)
         if stuck:
@@ -75,7 +77,7 @@ def test_robot_that_is_put_begins_the_window_of_the_detector(put_at: int) -> Non
     robot.kept_since = 1
     for tick in range(1, 1000):
         robot.tick = tick
-        count_tick(robot, False, law)
+        count_tick(robot, law)
         if tick == put_at:
             robot.x_m = 5.0
             restart_window(robot, law)

@@ -127,7 +127,7 @@ class _HoldRun(MarkedRun):
         self._chance = random.Random(f"mixing of {session_of(plan, setup.seed)}")
         self._named: deque[tuple[int, Label]] = deque(maxlen=200)
         self._own: deque[_Own] = deque()
-        self._was_in_charge = self._was_named = self._by_teacher = self._was_asking = False
+        self._was_in_charge = self._was_named = self._by_teacher = False
         self._fitted_at = self._stands_until = self._labels_fitted = 0
         self._troubles = self._asked = self._in_charge_ticks = self._asking_ticks = 0
 
@@ -137,9 +137,10 @@ class _HoldRun(MarkedRun):
         super().on_tick(record)
         stands = record.tick <= self._stands_until
         asking = record.decision.asking and not stands
-        self._asked += asking and not self._was_asking
+        self._asked += self.question.begins and not stands
         self._asking_ticks += asking
-        self._was_asking = asking
+        if record.tick == self._stands_until:  # if it asks after the fit, that is a question
+            self.question.close()
         names = self._pupil.charge is Charge.NAMES
         driven = self._in_charge.hand is not None if names else record.decision.cause is DecisionCause.TEACHER
         self._in_charge_ticks += driven
