@@ -36,20 +36,21 @@ def _clock_s(status: ProgramStatus) -> float:
 def format_activity(status: ProgramStatus) -> str:
     """Return what drives the wheels and why, or why the robot stands."""
     record = status.record
+    asks = record.standing.asks
     decision, match, stands = record.decision, record.decision.match, short_text(record.standing)
     near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
     if stands:
         return stands
-    if decision.rla_id is not None:
+    if decision.rla_id is not None and not asks:
         text = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
-    elif decision.driving:
+    elif decision.driving and not asks:
         text = f"{decision.action}, as the teacher says"
     elif decision.asking and decision.asks_at == MID:
         text = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
     else:
         about = f" about {record.behaviour}" if record.behaviour else ""
         text = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
-    if decision.mid is not None and decision.driving:
+    if decision.mid is not None and decision.driving and not asks:
         by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
         text += f", sent by {by}"
     return text

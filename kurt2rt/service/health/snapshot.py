@@ -81,6 +81,8 @@ def _doing(record: TickRecord) -> str:
     decision, stands = record.decision, short_text(record.standing)
     if stands:
         return stands
+    if record.standing.asks:
+        return "stands and asks"
     if decision.rla_id is not None:
         return f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}"
     if decision.driving:

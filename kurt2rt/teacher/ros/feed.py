@@ -8,6 +8,7 @@ import anyio
 from kurt2rt.channel.protocol.health import Trouble
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.ros import messages as ros
 from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import topic_of
@@ -38,6 +39,8 @@ class Feed:
         self._transform = port.publisher(topic_of("/tf", ros.TFMessage))
         self._question = port.publisher(topic_of("question", ros.String))
         self._diagnostics = port.publisher(topic_of("/diagnostics", ros.DiagnosticArray))
+        self._asks: tuple[str, str] | None = None
+        """Reason and behaviour of the question; None without one."""
         self._asked = ""
         self._odometer = Odometer()
         self.introduce(hello)
@@ -58,10 +61,12 @@ class Feed:
         if place is not None:
             self._odometry.publish(odometry(place, stamp))
             self._transform.publish(transform(place.pose, stamp))
-        asked = str(build_question(state, hello.sensor_words)) if state.stands.asks else ""
-        if asked != self._asked:
-            self._asked = asked
-            self._question.publish(ros.String(asked))
+        asks = (state.stands.reason, state.behaviour) if state.stands.asks else None
+        # One question has one text. States of moments in which noise lets the robot drive do not have its words.
+        if asks != self._asks and (asks is None or state.cause in ASKING):
+            self._asks = asks
+            self._asked = "" if asks is None else str(build_question(state, hello.sensor_words))
+            self._question.publish(ros.String(self._asked))
 
     async def diagnose(self, more: Callable[[], Sequence[ros.DiagnosticStatus]]) -> None:
         """Publish the diagnostics once a second, with `more`, and repeat the question for late listeners.

@@ -14,6 +14,7 @@ from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.health_text import lines_of
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.phase import Phase
@@ -220,9 +221,10 @@ class TerminalTeacher:
                 standing = state.trusted, state.role
                 self._say(f"critic: {format_trust(state)}")
             if state.stands.asks and not state.stands.needs_resume:
-                if state.stands.reason != asking:
+                # Noise lets the robot drive for moments while its question is open; those states do not have its words.
+                if state.stands.reason != asking and state.cause in ASKING:
                     self._say(str(build_question(state, self._words)))
-                asking = state.stands.reason
+                    asking = state.stands.reason
                 told = ""
                 continue
             asking = ""

@@ -9,6 +9,7 @@ from tests.teacher.page.test_browser import assert_handy
 
 SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 DRIVE_FROM, DRIVE_TO, EACH = 1000, 1600, 100
+MINUTE = 6000
 _PICK = """
 const slider = document.querySelector('#rewind-time');
 slider.value = arguments[0];
@@ -29,8 +30,8 @@ def lesson(a_lesson: Lesson) -> Lesson:
     """Return a lesson whose robot drives for 6 s, each second by another RLA."""
     a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
     for tick in range(DRIVE_FROM + EACH, DRIVE_TO + 1, EACH):
-        a_lesson.show(tick=tick, rla=tick // EACH)
-        a_lesson.reads("#sentence", f"RLA {tick // EACH} ")
+        a_lesson.show(tick=tick, rla=tick // EACH, clock_s=tick / EACH)
+        a_lesson.reads("#clock", f"0:{tick // EACH}")
     return a_lesson
 
 
@@ -50,6 +51,7 @@ def test_rewind_stops_the_robot_and_shows_the_past(lesson: Lesson) -> None:
 
 def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> None:
     enter(lesson)
+    lesson.show(tick=DRIVE_TO + MINUTE)  # the teacher thinks
     lesson.phone.run(_PICK, -3)
     lesson.phone.touch("[data-action=spin_left]")
     lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "the correction is sent")
@@ -57,6 +59,22 @@ def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> 
     assert (name, action, more) == ("correct", "spin_left", [])
     assert abs(tick - 1300) < EACH / 2
     assert lesson.phone.shows("#rewind-bar"), "another moment may be wrong, too"
+
+
+def test_rewind_reaches_the_drive_before_a_question_and_its_pulses(lesson: Lesson) -> None:
+    for second in range(20, 32, 3):
+        for later, (ticks, speed_m_s) in enumerate(((2, 0.0), (MINUTE, 0.0), (2, 0.3))):
+            assert lesson.robot.state is not None
+            lesson.show(
+                tick=lesson.robot.state.tick + ticks,
+                left_m_s=speed_m_s,
+                right_m_s=speed_m_s,
+                clock_s=float(second + later),
+            )
+            lesson.reads("#clock", f"0:{second + later}")
+    enter(lesson)
+    lesson.phone.run(_PICK, -3)
+    lesson.reads("#rewind-says", "s before it stood: RLA 13 ")
 
 
 def test_then_go_lets_the_robot_drive_on_after_the_lesson(lesson: Lesson) -> None:

@@ -390,7 +390,7 @@ function announce(state) {
 }
 
 function draw() {
-  drawRobot($("robot-view"), hello, rewind.state ?? link.state);
+  drawRobot($("robot-view"), hello, rewind.state ?? link.state, rewind.state ?? decision.worded);
   world.draw();
 }
 
@@ -414,7 +414,6 @@ function showFreshness() {
 }
 
 function showWarnings(state) {
-  setText($("guard"), state.guard.length ? `guard: ${state.guard.join(", ")}` : "");
   const lines = state.trouble ? [state.trouble] : [];
   lines.push(...health.urgent(state));
   if (state.unsaved) lines.push(`${state.unsaved} lessons not saved yet`);

@@ -7,7 +7,8 @@ import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const VALUES_FROM_PHASE = 3;
-const CALM_MS = 500; // readings change by a centimetre with every state, too fast to read
+const CALM_MS = 1000; // a text stays for so long at least, so that it can be read
+const ASKED = ["unknown", "doubt", "touches"]; // causes by which a state has a question
 const GAUGE_SHARE = 0.7; // position of R on the gauge
 
 export function when(stamp) {
@@ -72,7 +73,75 @@ export function sentence(state) {
   }
 }
 
+function asks({ stands }) {
+  return stands.asks && !stands.needs_go;
+}
+
+function asksWay(state) {
+  return Boolean(asks(state) && state.asks_at === MID && state.mid);
+}
+
+function known(state) {
+  return state.nearest !== null && state.distance !== null && state.radius > 0;
+}
+
+// Changes with each act of a person: GO, a stop, a press, a lesson, another phase, robot or behaviour.
+function actsOf({ stands, by_hand: byHand, lessons, phase, behaviour }, { boot }) {
+  return JSON.stringify([boot, stands.needs_go, byHand, lessons, phase, behaviour]);
+}
+
+// Returns the sentence of a state, and which RLA is nearest.
+function headline(state) {
+  const flickers = asks(state) && !ASKED.includes(state.cause) && !standsFor(state);
+  const says = flickers ? "I don't know this situation, teach me" : sentence(state);
+  const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
+  if (known(state)) return [says, `nearest: ${asksWay(state) ? "mid-level RLA" : "RLA"} ${state.nearest}, ${its}`];
+  if (!asksWay(state)) return [says, "touch the action that is right here"];
+  // Without a distance the robot was put elsewhere.
+  const nowhere = state.nearest !== null && state.distance === null;
+  return [says, nowhere ? "goals: touch “is here”" : "touch the way that is right here"];
+}
+
+// Returns the texts of a state that change with each reading.
+function numbersOf(state, hello) {
+  const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · value ${signed(state.value)}`;
+  const off = known(state) ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
+  const basic = asks(state) ? state.question.map((line) => line.slice(3)) : null;
+  return {
+    off: asksWay(state) ? differs(state, hello.mid) : off,
+    guard: state.guard.length ? `guard: ${state.guard.join(", ")}` : "",
+    question: asksWay(state) ? [hello.mid, state.mid.here, state.mid.there] : basic,
+  };
+}
+
+// Chooses the states that are put into words, so that a text stays for a second at least.
+class Calm {
+  state = null;
+  changed = false; // whether the newest choice changed the words
+  #words = "";
+  #sinceMs = -Infinity;
+
+  // `words`: texts of the state. `atOnce`: they are shown even if the last ones are new.
+  choose(state, words, atOnce) {
+    const next = JSON.stringify(words);
+    const nowMs = performance.now();
+    this.changed = next !== this.#words;
+    if (this.changed && !atOnce && nowMs - this.#sinceMs < CALM_MS) {
+      this.changed = false;
+      return this.state;
+    }
+    if (this.changed) this.#sinceMs = nowMs;
+    this.#words = next;
+    this.state = state;
+    return state;
+  }
+}
+
 export class Decision {
+  #headline = new Calm();
+  #numbers = new Calm();
+  #acts = "";
+  #guard = document.getElementById("guard");
   #box = document.getElementById("why");
   #nearest = document.getElementById("nearest");
   #trace = new Trace(document.getElementById("trace"));
@@ -82,33 +151,47 @@ export class Decision {
   #text = document.getElementById("gauge-text");
   #differences = document.getElementById("differences");
   #shown = "";
-  #shownMs = -Infinity;
+
+  // The state whose question is shown; null before the first.
+  get worded() {
+    return this.#numbers.state;
+  }
 
   show(state, hello) {
-    const asks = state.stands.asks && !state.stands.needs_go;
-    this.#box.classList.toggle("stands", standsFor(state));
-    const which = asks && state.asks_at === MID && state.mid;
-    this.#box.classList.toggle("asks", asks);
-    this.#box.classList.toggle("which", Boolean(which));
-    setText(this.#sentence, sentence(state));
-    const known = state.nearest !== null && state.distance !== null && state.radius > 0;
-    const share = known ? state.distance / state.radius : 0;
+    const share = known(state) ? state.distance / state.radius : 0;
     this.#gauge.classList.toggle("beyond", share > 1);
-    this.#gauge.classList.toggle("none", !known);
+    this.#gauge.classList.toggle("none", !known(state));
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
-    const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
-    const rla = which ? "mid-level RLA" : "RLA";
-    const nowhere = which && state.nearest !== null && state.distance === null; // the robot was put elsewhere
-    const untaught = nowhere ? "goals: touch “is here”" : which ? "touch the way that is right here" : "touch the action that is right here";
-    setText(this.#nearest, known ? `nearest: ${rla} ${state.nearest}, ${its}` : untaught);
-    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · value ${signed(state.value)}`;
-    const off = which ? differs(state, hello.mid) : known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
-    setText(this.#text, off);
+    this.#trace.add(state.tick, known(state) && !asksWay(state) ? share : null);
     this.#surprise(state);
-    this.#trace.add(state.tick, known && !which ? share : null);
-    if (!asks) this.#shownMs = -Infinity; // shows the next question at once
-    if (which) this.#compare(state.mid, hello.mid);
-    else if (asks) this.#show(state.question);
+    const acts = actsOf(state, hello);
+    const acted = acts !== this.#acts;
+    this.#acts = acts;
+    const worded = this.#headline.state;
+    const asked = worded !== null && asks(worded);
+    // While a question is open, noise lets the robot drive for moments; those states have no words of their own.
+    if (asked && asks(state) && !ASKED.includes(state.cause) && !acted) return;
+    // A person is shown at once what they changed, and that the robot begins to ask.
+    const atOnce = acted || (asks(state) && !asked);
+    this.#say(this.#headline.choose(state, headline(state), atOnce));
+    this.#count(this.#numbers.choose(state, numbersOf(state, hello), atOnce || this.#headline.changed), hello);
+  }
+
+  #say(state) {
+    const [says, nearest] = headline(state);
+    this.#box.classList.toggle("stands", standsFor(state));
+    this.#box.classList.toggle("asks", asks(state));
+    this.#box.classList.toggle("which", asksWay(state));
+    setText(this.#sentence, says);
+    setText(this.#nearest, nearest);
+  }
+
+  #count(state, hello) {
+    const { off, guard, question } = numbersOf(state, hello);
+    setText(this.#text, off);
+    setText(this.#guard, guard);
+    if (asksWay(state)) this.#differ(question, () => strip(state.mid.here, state.mid.there, hello.mid));
+    else if (question) this.#differ(question, () => [differenceList(state.question)]);
     else this.#trace.draw();
   }
 
@@ -121,22 +204,13 @@ export class Decision {
     setText(line, it.text);
   }
 
-  // Shows the symbols that the robot passed, and below them the condition of the nearest mid-level RLA.
-  #compare(mid, introduced) {
-    const key = JSON.stringify([introduced, mid.here, mid.there]);
+  // Shows what differs: the symbols that the robot passed and below them the nearest condition, or each differing
+  // sensor by its place, with the reading here and the taught one.
+  #differ(found, parts) {
+    const key = JSON.stringify(found);
     if (key === this.#shown) return;
     this.#shown = key;
-    this.#differences.replaceChildren(...strip(mid.here, mid.there, introduced));
-  }
-
-  // Shows each differing sensor by its place, with the reading here and the taught one.
-  #show(question) {
-    const key = JSON.stringify(question.map((line) => line.slice(3)));
-    const nowMs = performance.now();
-    if (key === this.#shown || nowMs - this.#shownMs < CALM_MS) return;
-    this.#shown = key;
-    this.#shownMs = nowMs;
-    this.#differences.replaceChildren(differenceList(question));
+    this.#differences.replaceChildren(...parts());
   }
 }
 

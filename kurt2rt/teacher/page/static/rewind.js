@@ -3,7 +3,7 @@
 import { sentence, setText } from "./decision.js";
 import { text } from "./texts.js";
 
-const KEPT_TICKS = 990; // the robot keeps 1000, and drives some more until it has stopped
+const KEPT_TICKS = 1000; // of driving; the robot keeps 1200, and drives some more until it has stopped
 const BRAKING_TICKS = 100; // a robot that is stopped stands within a second
 const PICK_M = 0.6; // farthest touch from the path
 
@@ -13,8 +13,10 @@ export class Rewind {
   #go = document.getElementById("rewind-go");
   #says = document.getElementById("rewind-says");
   #boot = null;
-  #states = []; // of driving, oldest first
-  #openedTick = 0; // newest tick of driving when rewind was entered
+  #states = []; // of driving, oldest first, each with the ticks driven before it
+  #driven = 0; // ticks driven up to the newest state, a gap between two pictures counted in full
+  #before = null; // newest state, also of a robot that stands
+  #opened = null; // newest state of driving when rewind was entered; the slider shows driven time before it
   #tickS = 0.01;
   #onChange;
   #onOpen;
@@ -40,6 +42,7 @@ export class Rewind {
     if (boot === this.#boot) return;
     this.#boot = boot;
     this.#states = [];
+    this.#before = null;
     this.leave();
   }
 
@@ -55,20 +58,23 @@ export class Rewind {
 
   // Keeps a state of a driving robot; leaves the past when the robot drives on.
   add(state) {
-    if (!state.left_m_s && !state.right_m_s) return;
-    if (this.open && state.tick - this.#openedTick < BRAKING_TICKS) return;
+    const before = this.#before ?? state;
+    this.#before = state;
+    if (turns(before) || turns(state)) this.#driven += state.tick - before.tick;
+    if (!turns(state)) return;
+    if (this.open && state.tick - this.#opened.tick < BRAKING_TICKS) return;
     this.leave();
-    this.#states.push(state);
-    while (state.tick - this.#states[0].tick > KEPT_TICKS) this.#states.shift();
+    this.#states.push({ ...state, driven: this.#driven });
+    while (this.#driven - this.#states[0].driven > KEPT_TICKS) this.#states.shift();
   }
 
   // Shows the newest moment of driving, until `leave`.
   enter() {
     if (!this.#states.length) return;
     this.open = true;
-    this.#openedTick = this.#states.at(-1).tick;
+    this.#opened = this.#states.at(-1);
     this.#bar.hidden = false;
-    this.#time.min = -(this.#openedTick - this.#states[0].tick) * this.#tickS;
+    this.#time.min = -(this.#opened.driven - this.#states[0].driven) * this.#tickS;
     this.#time.max = 0;
     this.#time.value = 0;
     this.#time.focus();
@@ -88,8 +94,9 @@ export class Rewind {
   // The state of the picked moment; null outside rewind.
   get state() {
     if (!this.open) return null;
-    const tick = this.#openedTick + Number(this.#time.value) / this.#tickS;
-    return this.#states.reduce((best, each) => (Math.abs(each.tick - tick) < Math.abs(best.tick - tick) ? each : best));
+    const driven = this.#opened.driven + Number(this.#time.value) / this.#tickS;
+    const away = (each) => Math.abs(each.driven - driven);
+    return this.#states.reduce((best, each) => (away(each) < away(best) ? each : best));
   }
 
   // Picks the moment whose place is nearest to a touched point of the world, in metres; false if none is near.
@@ -97,17 +104,21 @@ export class Rewind {
     const away = ({ place }) => (place ? Math.hypot(place.x_m - x, place.y_m - y) : Infinity);
     const nearest = this.#states.reduce((best, each) => (away(each) < away(best) ? each : best));
     if (away(nearest) > PICK_M) return false;
-    this.#time.value = (nearest.tick - this.#openedTick) * this.#tickS;
+    this.#time.value = (nearest.driven - this.#opened.driven) * this.#tickS;
     this.#show();
     return true;
   }
 
   #show() {
     const { state } = this;
-    const seconds = ((this.#openedTick - state.tick) * this.#tickS).toFixed(1);
+    const seconds = ((this.#opened.driven - state.driven) * this.#tickS).toFixed(1);
     const says = text("rewound", { seconds, sentence: sentence(state) });
     setText(this.#says, says);
     this.#time.setAttribute("aria-valuetext", says);
     this.#onChange();
   }
+}
+
+function turns({ left_m_s: left, right_m_s: right }) {
+  return Boolean(left || right);
 }

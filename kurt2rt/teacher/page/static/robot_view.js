@@ -11,8 +11,8 @@ function colour(metres) {
   return between(FAR, NEAR, Math.min(1, Math.max(0, (0.45 - metres) / 0.3)));
 }
 
-// Draws the robot; while it asks, differing sensors are marked as in the picture of `kurt2rt why`.
-export function drawRobot(canvas, hello, state) {
+// Draws the robot; sensors that differ in the question of the state `asked` are marked as in the picture of `kurt2rt why`.
+export function drawRobot(canvas, hello, state, asked) {
   const drawn = sheet(canvas);
   if (!drawn || !hello || !state) return;
   const { paint, width, height } = drawn;
@@ -30,7 +30,7 @@ export function drawRobot(canvas, hello, state) {
   paint.rotate(-Math.PI / 2); // forward is up
   paint.scale(1, -1); // y is to the left
   rings(paint, length, breadth, scale);
-  const marked = differing(state, hello);
+  const marked = differing(asked, hello);
   hello.sensors.forEach(([name, , x, y, heading], i) => {
     const metres = distance(hello, state.infrared[i] ?? 0);
     beam(paint, x, y, (heading * Math.PI) / 180, metres, scale, metres >= farthest(hello), marked.has(name));
