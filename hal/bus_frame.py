@@ -21,6 +21,9 @@ def pack_bus_frame(frame: can.Message) -> bytes:
     if length > _LONGEST or frame.is_fd:
         raise ValueError(f"frame 0x{frame.arbitration_id:X} is not of classic CAN: {length} bytes, FD {frame.is_fd}")
     flagged_id = frame.arbitration_id
+    # A wider identifier would come out as another one, or set flags.
+    if not 0 <= flagged_id <= (_EXTENDED_ID if frame.is_extended_id or frame.is_error_frame else _STANDARD_ID):
+        raise ValueError(f"frame 0x{flagged_id:X} is not of classic CAN: its identifier has too many bits")
     if frame.is_extended_id:
         flagged_id |= _EXTENDED
     if frame.is_remote_frame:

@@ -54,6 +54,16 @@ class Kurt2rtBus(SharedBus):
             frame.timestamp += self._epoch_s
         return frame
 
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Append a frame; `timeout` (s) is unused.
+
+        Raises can.CanOperationError if the bus is lost, or for a frame that is not classic CAN.
+        """
+        try:
+            super().send(msg, timeout)
+        except ValueError as error:
+            raise can.CanOperationError(f"{INTERFACE} {self.channel}: {error}") from error
+
     @staticmethod
     def _detect_available_configs() -> list[Any]:
         """Return the configurations of all buses that a program of this user has open."""

@@ -67,6 +67,27 @@ def test_bus_sends_to_other_ends(name: str, robot: SharedBus) -> None:
     assert (frame.arbitration_id, bytes(frame.data)) == (0x10, b"\x07")
 
 
+@pytest.mark.parametrize(
+    "frame",
+    [
+        can.Message(arbitration_id=0x10, is_extended_id=False, is_fd=True, data=b"\x01"),
+        can.Message(arbitration_id=0x10, is_extended_id=False, data=bytes(9)),
+        can.Message(arbitration_id=0x800, is_extended_id=False),
+        can.Message(arbitration_id=0x8000_0001),
+        can.Message(arbitration_id=1 << 32),
+        can.Message(arbitration_id=-1),
+    ],
+    ids=["FD", "long", "wide", "with flags", "over 32 bits", "negative"],
+)
+def test_frame_that_is_not_classic_can_is_a_can_error(name: str, robot: SharedBus, frame: can.Message) -> None:
+    with (
+        can.Bus(interface=INTERFACE, channel=name) as bus,
+        pytest.raises(can.CanOperationError, match=f"^{INTERFACE} {name}: frame 0x"),
+    ):
+        bus.send(frame)
+    assert robot.recv(0) is None
+
+
 def test_open_bus_is_detected(name: str, robot: SharedBus) -> None:
     assert robot.channel == name
     found = can.detect_available_configs(INTERFACE)
