@@ -8,7 +8,15 @@ from hal.bus import BusError
 from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from hal.robot_link import AlarmReport, BumperReport, ForeignCommandReport, RangeReport, Report, WheelReport
+from hal.robot_link import (
+    AlarmReport,
+    BumperReport,
+    ForeignCommandReport,
+    NoticeReport,
+    RangeReport,
+    Report,
+    WheelReport,
+)
 from tests.hal.helpers import ROBOT, SENSORS, TICK_S
 from tests.hal.linked_scene import SLOW, Scene
 
@@ -253,3 +261,20 @@ def test_watchdog_brakes_over_the_link(scene: Scene) -> None:
         scene.robot.sense(scene.now_s)
         assert scene.robot.drive(SLOW, scene.now_s, scene.now_s).reasons == (GuardReason.TICKS_CEASED,)
     assert scene.link.sent[-1] == "brake"
+
+
+def test_notice_of_the_link_is_told_and_stops_nothing(scene: Scene) -> None:
+    scene.drive()
+    scene.link.reports = [NoticeReport(scene.now_s, "the clock\nwas set")]
+    assert scene.tick().wheel_speeds == SLOW
+    assert scene.robot.health.trouble == "link of a test: the clock was set"
+    scene.link.reports = [NoticeReport(scene.now_s, "")]
+    scene.tick()
+    assert scene.robot.health.trouble == ""
+
+
+def test_notice_does_not_hide_the_reason_of_a_stop(scene: Scene) -> None:
+    scene.drive()
+    scene.link.reports = [NoticeReport(scene.now_s, "late"), AlarmReport(scene.now_s, "too hot")]
+    assert scene.tick().latched
+    assert "too hot" in scene.robot.health.trouble

@@ -35,11 +35,13 @@ def difference(counter: int, before: int) -> int:
 
 
 class Lines:
-    """One end's lines on a port: damaged ones are counted as junk, own ones are numbered."""
+    """One end's lines on a port, ending with LF or CR LF: damaged ones are counted as junk, own ones are numbered."""
 
     def __init__(self, port: BytePort, first_number: int = 0) -> None:
         self.port = port
         self.junk = 0
+        self.junk_in_a_row = 0
+        """Lines that could not be read since the newest valid one."""
         self._rest = b""
         self._numbers = count(first_number)
 
@@ -48,15 +50,28 @@ class Lines:
         *lines, self._rest = (self._rest + self.port.read()).split(b"\n")
         if len(self._rest) > _LONGEST:
             self._rest = b""
-            self.junk += 1
+            self.count_junk()
         messages: list[Message] = []
         for line in lines:
-            match = _LINE.fullmatch(line)
+            match = _LINE.fullmatch(line.removesuffix(b"\r"))
             if match is None or int(match[3], 16) != crc_hqx(line[: match.end(2)], 0):
-                self.junk += 1
+                self.count_junk()
             else:
+                self.junk_in_a_row = 0
                 messages.append((match[1].decode(), tuple(map(int, match[2].split()))))
         return messages
+
+    def count_junk(self) -> None:
+        """Count one line that could not be read."""
+        self.junk += 1
+        self.junk_in_a_row += 1
+
+    @property
+    def trouble(self) -> str:
+        """Sentence about what came since the newest valid line and could not be read; empty if nothing did."""
+        if self.junk_in_a_row:
+            return f"{self.junk_in_a_row} lines came, none valid"
+        return f"{len(self._rest)} bytes came, no whole line" if self._rest else ""
 
     def write(self, word: str, *numbers: int) -> int:
         """Write a line and return its number. Raises hal.bus.BusError. Callable from any thread."""

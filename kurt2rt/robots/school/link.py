@@ -2,21 +2,32 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hal.bus import BusError
 from hal.byte_port import BytePort
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
-from hal.robot_link import ForeignCommandReport, RangeReport, Report, WheelReport
+from hal.robot_link import ForeignCommandReport, NoticeReport, RangeReport, Report, WheelReport
+from hal.sender_clock import SenderClock
 from kurt2rt.robots.school import lines
 from kurt2rt.robots.school.lines import Lines, difference
 
-_HELLO_EVERY_S = 0.5
-_GREETED_WITHIN_S = 2.0
+_HELLO_EVERY_S = 0.25
+_GREETED_WITHIN_S = 10.0
+"""A board that an opening resets may boot for 8 s; opening the port once more would reset it again."""
+_SILENT_S = 0.5
+"""A robot that sent no valid line for so long may have been switched off and on, and is greeted again."""
+_TOLD_EVERY_S = 1.0
+_JUNK_IN_A_ROW = 5
+"""Lines within `stale_infrared_s`."""
 _CLOCK_ERROR = 0.006
 """Largest error of the robot's clock, as a ratio; that of a ceramic resonator is 0.5 %."""
+_SLACK_S = 0.03
+"""Jitter of a line: a tick, and the 16 ms for which a USB adapter collects bytes."""
 _LATEST_COMMANDS = 1000
 """Own commands, 10 s of them, among which the robot's last one has to be."""
+_FASTEST_TICKS_MS = 6
+"""Three times the ticks of the robot's highest speed in 1 ms: if there were more, the counters began again."""
 
 
 class SchoolLink:
@@ -29,15 +40,23 @@ class SchoolLink:
         self.name, self._port, self._sensors = port.name, port, sensors
         self._lines = Lines(port, first_number)
         self._last_command = first_number
+        self._sent_s = [-math.inf] * (_LATEST_COMMANDS + 1)
+        """Times of the latest commands, by their numbers modulo its length."""
+        self._now_s = -math.inf
+        self._told, self._told_at_s = "", -math.inf
         self._begin()
 
     def _begin(self) -> None:
         self.greeted = False
         self._hello_at_s = -math.inf
+        self._heard_at_s = -math.inf
+        """Time of the newest valid line, or of the first look."""
+        self._strangers = 0
+        """Valid lines before the greeting."""
         self._last: tuple[int, int, int] | None = None
-        """Milliseconds and ticks of the last line."""
-        self._offset_s = math.inf
-        """Runtime's clock minus the robot's, by the line that was on its way for the shortest time."""
+        """Milliseconds, from any start and unbounded, and ticks of the last line."""
+        self._clock = SenderClock(_CLOCK_ERROR, _SLACK_S)
+        self._jumps = 0
 
     @property
     def junk(self) -> int:
@@ -54,25 +73,33 @@ class SchoolLink:
 
         Raises hal.bus.BusError for a lost line, and for a device that is no school robot of this version.
         """
+        self._now_s = now_s
         reports: list[Report] = []
-        for word, numbers in self._lines.read():
+        messages = self._lines.read()
+        if messages or self._heard_at_s == -math.inf:
+            self._heard_at_s = now_s
+        for word, numbers in messages:
             if word == lines.HELLO:
                 self._check_greeting(numbers[1:])
             elif self.greeted:
                 reports += self._reports_of(word, numbers, now_s)
-        if not self.greeted and not 0.0 <= now_s - self._hello_at_s < _HELLO_EVERY_S:
+            else:
+                self._strangers += 1
+        silent = now_s - self._heard_at_s >= _SILENT_S
+        if (silent or not self.greeted) and not 0.0 <= now_s - self._hello_at_s < _HELLO_EVERY_S:
             self._hello_at_s = now_s
             self._lines.write(lines.HELLO, lines.VERSION)
+        self._tell(reports, silent=silent)
         return reports
 
-    def greet(self) -> None:
-        """Wait up to 2 s for the greeting, before a run. Raises hal.bus.BusError."""
-        ends_s = time.monotonic() + _GREETED_WITHIN_S
+    def greet(self, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep) -> None:
+        """Wait for the greeting, up to 10 s by `clock`, before a run. Raises hal.bus.BusError."""
+        ends_s = clock() + _GREETED_WITHIN_S
         while not self.greeted:
-            self.receive(time.monotonic())
-            if time.monotonic() > ends_s:
-                raise BusError("no school robot answers", where=self.name, do=self.remedy)
-            time.sleep(0.01)
+            self.receive(clock())
+            if clock() > ends_s:
+                raise BusError(self._ungreeted, where=self.name, do=self._ungreeted_remedy)
+            sleep(0.01)
 
     def applied(self, speeds: WheelSpeeds) -> WheelSpeeds:
         """Return set points in m/s, towards 0 to whole mm/s."""
@@ -81,12 +108,12 @@ class SchoolLink:
     def send(self, speeds: WheelSpeeds) -> None:
         """Send finite set points in m/s. Raises hal.bus.BusError."""
         if self.greeted:
-            self._last_command = self._lines.write(lines.DRIVE, *map(_millimetres, speeds))
+            self._note_command(self._lines.write(lines.DRIVE, *map(_millimetres, speeds)))
 
     def brake(self) -> None:
         """Send the brake. Raises hal.bus.BusError."""
         if self.greeted:
-            self._last_command = self._lines.write(lines.BRAKE)
+            self._note_command(self._lines.write(lines.BRAKE))
 
     def forget_unconfirmed(self) -> None:
         """Do nothing: the operating system counts the bytes that wait."""
@@ -110,27 +137,60 @@ class SchoolLink:
 
     def _reports_of(self, word: str, numbers: tuple[int, ...], now_s: float) -> list[Report]:
         if word != lines.SENSE or len(numbers) != 5 + self._sensors:
-            self._lines.junk += 1
+            self._lines.count_junk()
             return []
-        (number, time_ms, left, right, command), counts = numbers[:5], numbers[5:]
+        (_, time_ms, left, right, command), counts = numbers[:5], numbers[5:]
         last_ms, last_left, last_right = self._last or (time_ms, left, right)
-        elapsed_ms = difference(time_ms, last_ms)
-        begins = self._last is None or (number == 0 and elapsed_ms < 0)  # switched off and on
-        if not 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS or (elapsed_ms <= 0 and not begins):
+        time_ms = last_ms + difference(time_ms, last_ms)
+        behind = (self._last_command - command) % lines.NUMBERS
+        knows = command != lines.NO_COMMAND and behind <= _LATEST_COMMANDS
+        answer_s = now_s - self._sent_s[command % len(self._sent_s)] if knows else math.inf
+        age_s = self._clock.age_s(time_ms / 1000, now_s, answer_s) if _possible(counts) else None
+        if age_s is None:
             self._lines.junk += 1  # an old line again tells nothing of now
             return []
-        self._last = time_ms, left, right
-        robot_s = time_ms % lines.COUNTERS / 1000
-        drift_s = math.inf if begins else _CLOCK_ERROR * elapsed_ms / 1000
-        self._offset_s = min(self._offset_s + drift_s, now_s - robot_s)
-        at_s = robot_s + self._offset_s
-        turned = (
-            (0, 0, 0.0) if begins else (difference(left, last_left), difference(right, last_right), elapsed_ms / 1000)
-        )
+        turned = difference(left, last_left), difference(right, last_right), (time_ms - last_ms) / 1000
+        began = self._last is None or self._jumps != self._clock.jumps
+        if began or max(map(abs, turned[:2])) > _FASTEST_TICKS_MS * (time_ms - last_ms):
+            turned = 0, 0, 0.0
+        self._last, self._jumps = (time_ms, left, right), self._clock.jumps
+        at_s = now_s - age_s
         reports: list[Report] = [RangeReport(at_s, 0, counts), WheelReport(at_s, *turned)]
-        if command != lines.NO_COMMAND and (self._last_command - command) % lines.NUMBERS > _LATEST_COMMANDS:
+        if command != lines.NO_COMMAND and not knows:
             reports.append(ForeignCommandReport(at_s))
         return reports
+
+    def _note_command(self, number: int) -> None:
+        self._sent_s[number % len(self._sent_s)] = self._now_s
+        self._last_command = number
+
+    @property
+    def _ungreeted(self) -> str:
+        if self._strangers:
+            return f"{self._strangers} lines of a school robot came, and no greeting"
+        came = self._lines.trouble
+        return f"no school robot answers: {came}" if came else "no school robot answers"
+
+    @property
+    def _ungreeted_remedy(self) -> str:
+        came = self._strangers or self._lines.trouble
+        return "check bit rate, firmware and both wires of the cable" if came else self.remedy
+
+    def _tell(self, reports: list[Report], *, silent: bool) -> None:
+        """Report what keeps readings from arriving, when it changes and at most once a second."""
+        if silent and not self.greeted:
+            told = f"{self._ungreeted}; {self._ungreeted_remedy}"
+        elif silent or self._lines.junk_in_a_row >= _JUNK_IN_A_ROW:
+            told = f"{self._lines.trouble or 'no line comes'}; {self._ungreeted_remedy}"
+        else:
+            told = self._clock.notice(self._now_s)
+        if told != self._told and not (told and self._told and 0.0 <= self._now_s - self._told_at_s < _TOLD_EVERY_S):
+            self._told, self._told_at_s = told, self._now_s
+            reports.append(NoticeReport(self._now_s, told))
+
+
+def _possible(counts: tuple[int, ...]) -> bool:
+    return 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS
 
 
 def _millimetres(speed_m_s: float) -> int:

@@ -1,5 +1,6 @@
 """The school robot on a pseudo-terminal, opened by pyserial as a real port is."""
 
+import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +12,7 @@ from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult
 from hal.robot_kind import kind_of
+from hal.serial_port import SerialPort
 from hal.settings import SettingsError
 from kurt2rt.robots.school.kind import SCHOOL
 from simbridge.pty_port import PtyPort
@@ -59,6 +61,27 @@ def test_serial_robot_greets_drives_and_is_lost(tmp_path: Path) -> None:
                 drive_until(robot, drives_again)
         finally:
             robot.close()
+
+
+def test_serial_board_that_boots_needs_one_opening(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    openings, open_port = [], SerialPort._open
+
+    def counted(port: SerialPort) -> serial.Serial:
+        openings.append(port)
+        return open_port(port)
+
+    monkeypatch.setattr(SerialPort, "_open", counted)
+    simulated = PtyRobot(tmp_path / "robot")
+    write = simulated.port.write
+    monkeypatch.setattr(simulated.port, "write", lambda data: write(data.replace(b"\n", b"\r\n")))
+    boot = threading.Timer(0.3, simulated.thread.start)
+    boot.start()
+    robot = SCHOOL.open(SETTINGS, str(tmp_path / "robot"))
+    drive_until(robot, lambda result: result.wheel_speeds == FORWARD)
+    robot.close()
+    simulated.unplug()
+    assert len(openings) == 1
+    assert robot.health.junk == 0
 
 
 def test_serial_robot_brakes_when_its_program_ends(tmp_path: Path) -> None:

@@ -138,14 +138,14 @@ def test_lidar_that_hangs_stops_the_robot_and_is_named(monkeypatch: pytest.Monke
     assert "the lidar hangs" in rig.robot.health.alarm
 
 
-@pytest.mark.parametrize("step_s", [-3600.0, -5.0, -2.0, -0.3, 0.3, 2.0, 5.0, 3600.0])
-def test_drive_clock_of_the_base_that_is_set_blinds_for_moments(monkeypatch: pytest.MonkeyPatch, step_s: float) -> None:
+@pytest.mark.parametrize("step_s", [-3600.0, -0.3, 0.3, 5.0])
+def test_drive_clock_of_the_base_that_is_set_blinds_shortly(monkeypatch: pytest.MonkeyPatch, step_s: float) -> None:
     rig = MemoryRig()
     clock = rig.link._clock
     clock.time_s = 5000.0
     assert rig.run(1.0).wheel_speeds == FORWARD
     monkeypatch.setattr(clock, "wall_s", lambda: clock.time_s + step_s)
-    blind = [rig.tick().wheel_speeds != FORWARD for _ in range(500)]
+    blind = [rig.tick().wheel_speeds != FORWARD for _ in range(250)]
     assert not any(blind[200:])
     assert not rig.robot.health.latched
     assert rig.robot.health.trouble == f"topics in memory: scan: its clock was set by {step_s:+.1f} s"
