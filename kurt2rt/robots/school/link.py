@@ -26,6 +26,7 @@ _SLACK_S = 0.03
 """Jitter of a line: a tick, and the 16 ms for which a USB adapter collects bytes."""
 _LATEST_COMMANDS = 1000
 """Own commands, 10 s of them, among which the robot's last one has to be."""
+_COMMAND_BYTES = len(lines.encode(lines.DRIVE, lines.NUMBERS - 1, 100, 100))
 _FASTEST_TICKS_MS = 6
 """Three times the ticks of the robot's highest speed in 1 ms: if there were more, the counters began again."""
 
@@ -66,7 +67,7 @@ class SchoolLink:
     @property
     def unconfirmed(self) -> int:
         """Own lines that wait to leave this machine."""
-        return -(-self._port.waiting // len(lines.encode(lines.DRIVE, lines.NUMBERS - 1, 100, 100)))
+        return -(-self._port.waiting // _COMMAND_BYTES)
 
     def receive(self, now_s: float) -> Sequence[Report]:
         """Return all reports that arrived, oldest first; `now_s` on the runtime's clock.
@@ -89,7 +90,8 @@ class SchoolLink:
         if (silent or not self.greeted) and not 0.0 <= now_s - self._hello_at_s < _HELLO_EVERY_S:
             self._hello_at_s = now_s
             self._lines.write(lines.HELLO, lines.VERSION)
-        self._tell(reports, silent=silent)
+        if messages or silent or self._told:
+            self._tell(reports, silent=silent)
         return reports
 
     def greet(self, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep) -> None:
@@ -145,13 +147,15 @@ class SchoolLink:
         behind = (self._last_command - command) % lines.NUMBERS
         knows = command != lines.NO_COMMAND and behind <= _LATEST_COMMANDS
         answer_s = now_s - self._sent_s[command % len(self._sent_s)] if knows else math.inf
-        age_s = self._clock.age_s(time_ms / 1000, now_s, answer_s) if _possible(counts) else None
+        possible = 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS
+        age_s = self._clock.age_s(time_ms / 1000, now_s, answer_s) if possible else None
         if age_s is None:
             self._lines.junk += 1  # an old line again tells nothing of now
             return []
-        turned = difference(left, last_left), difference(right, last_right), (time_ms - last_ms) / 1000
+        left_ticks, right_ticks = difference(left, last_left), difference(right, last_right)
+        turned = left_ticks, right_ticks, (time_ms - last_ms) / 1000
         began = self._last is None or self._jumps != self._clock.jumps
-        if began or max(map(abs, turned[:2])) > _FASTEST_TICKS_MS * (time_ms - last_ms):
+        if began or max(abs(left_ticks), abs(right_ticks)) > _FASTEST_TICKS_MS * (time_ms - last_ms):
             turned = 0, 0, 0.0
         self._last, self._jumps = (time_ms, left, right), self._clock.jumps
         at_s = now_s - age_s
@@ -187,10 +191,6 @@ class SchoolLink:
         if told != self._told and not (told and self._told and 0.0 <= self._now_s - self._told_at_s < _TOLD_EVERY_S):
             self._told, self._told_at_s = told, self._now_s
             reports.append(NoticeReport(self._now_s, told))
-
-
-def _possible(counts: tuple[int, ...]) -> bool:
-    return 0 <= min(counts) <= max(counts) <= HIGHEST_COUNTS
 
 
 def _millimetres(speed_m_s: float) -> int:

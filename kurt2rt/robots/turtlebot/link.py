@@ -1,5 +1,6 @@
 """Runtime's end of the topics of a base: /scan and /odom in, /cmd_vel out (hal.robot_link.RobotLink)."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,6 +18,8 @@ from kurt2rt.ros.port import RosPort
 from kurt2rt.ros.topic import topic_of
 from kurt2rt.ros.twist import Twists
 
+_LOOK_S = 1.0
+"""Time between two looks at the stamps while no message counts."""
 _HANGS_AFTER_M = 0.3
 _HANGS = f"the lidar hangs, its scans stayed equal while the wheels drove {_HANGS_AFTER_M:g} m; start its driver again"
 
@@ -48,6 +51,7 @@ class TurtlebotLink:
         self._hangs = False
         self._odometry_jumps = 0
         self._told_error = self._told_notice = ""
+        self._looked_at_s = -math.inf
 
     @property
     def junk(self) -> int:
@@ -71,10 +75,12 @@ class TurtlebotLink:
             if error != self._told_error:
                 self._told_error = error
                 reports.append(AlarmReport(now_s, error))
-        notice = self._scans.notice or self._odometry.notice
-        if notice != self._told_notice:
-            self._told_notice = notice
-            reports.append(NoticeReport(now_s, notice))
+        if reports or now_s - self._looked_at_s >= _LOOK_S:
+            self._looked_at_s = now_s
+            notice = self._scans.notice or self._odometry.notice
+            if notice != self._told_notice:
+                self._told_notice = notice
+                reports.append(NoticeReport(now_s, notice))
         return reports
 
     def applied(self, speeds: WheelSpeeds) -> WheelSpeeds:

@@ -110,7 +110,7 @@ def test_board_that_talks_another_way_after_a_restart_is_named() -> None:
     assert notices(drive(board, 1.0)) == [""]
 
 
-def test_board_that_waits_for_a_greeting_after_a_restart_gets_one() -> None:
+def test_board_that_waits_for_a_greeting_again_gets_one() -> None:
     board = Board()
     greet(board)
     drive(board, 0.5)

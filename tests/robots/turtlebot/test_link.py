@@ -10,7 +10,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.robot_link import AlarmReport, RangeReport, Report, WheelReport
+from hal.robot_link import AlarmReport, NoticeReport, RangeReport, Report, WheelReport
 from kurt2rt.robots.turtlebot.lidar import ScanReadings
 from kurt2rt.robots.turtlebot.link import TurtlebotLink
 from kurt2rt.robots.turtlebot.simulated import SimulatedClock
@@ -93,6 +93,16 @@ def test_scan_with_a_repeated_stamp_is_junk(wire: Wire) -> None:
         wire.scan([0.5] * 360, stamp_s=1.0)
     assert len(counts_of(wire.receive())) == 24
     assert wire.link.junk == 2
+
+
+def test_topics_whose_stamps_stand_still_are_named(wire: Wire) -> None:
+    told = []
+    for _ in range(30):
+        wire.clock.time_s += 0.1
+        wire.scan([0.5] * 360, stamp_s=1.0)
+        wire.odom(PlanePose(), 1.0)
+        told += [each.text for each in wire.receive() if isinstance(each, NoticeReport)]
+    assert told == ["scan: its time stamps repeat, or go to and fro"]
 
 
 def alarms_while_driving(wire: Wire, scans: Iterator[list[float]], *, way_m: float) -> list[str]:
