@@ -14,6 +14,7 @@ from kurt2rt.cli.interpreted_batch import say_if_interpreted
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.study_run import says_how_to_go_on
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.platform.text_table import print_whole
@@ -88,7 +89,8 @@ def search(options: _Options) -> None:
         say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
     whole_s = trials_s + check_time_s(plan)
-    with open_executor(options.on, options.jobs) as executor, results.held(), one_bar(whole_s) as bar:
+    executors = open_executor(options.on, options.jobs)
+    with says_how_to_go_on(results), executors as executor, results.held(), one_bar(whole_s) as bar:
         require_no_difference(results, {plan.made_of.source})
         journal = TrialJournal(plan)
         run_trials(plan, journal, trials, executor, bar.update)

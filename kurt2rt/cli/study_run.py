@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from rich.console import Console
+
 from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.loop_options import say_choice
 from kurt2rt.cli.progress import OneBar, one_bar
@@ -12,6 +14,24 @@ from kurt2rt.experiments.study.loop_choice import NO_CHOICE, LoopChoice
 from kurt2rt.experiments.study.plan import StudyPlan, missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_record import record_study
+
+
+@contextmanager
+def says_how_to_go_on(results: Results) -> Iterator[None]:
+    """Say at Ctrl-C that finished jobs are kept."""
+    try:
+        yield
+    except BaseException as error:
+        group = error if isinstance(error, BaseExceptionGroup) else BaseExceptionGroup("", [error])
+        if group.subgroup(KeyboardInterrupt) is not None:
+            say = Console(stderr=True, highlight=False).print
+            say(
+                f"kurt2rt: stopped; finished jobs are in {results.folder}, those that ran begin again. "
+                "The same command goes on from there",
+                markup=False,
+                soft_wrap=True,
+            )
+        raise
 
 
 @contextmanager
@@ -46,7 +66,7 @@ def study_run(
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 
     own = plan if part is None else part
-    with open_executor(on, jobs) as executor, results.held():
+    with says_how_to_go_on(results), open_executor(on, jobs) as executor, results.held():
         require_no_difference(results, {job.made_of.source for wave in plan.waves for job in wave})
         missing_s = missing_time_s(own, results)
         if missing_s:

@@ -281,8 +281,11 @@ class Tick:
         match event:
             case PairingRenewed(teacher):
                 self._handler.authority.reset_sequence(teacher)
-            case SpeedChanged(times):
-                self._handler.authority.speed = times
+            case SpeedChanged(times, falls_behind):
+                before, self._handler.authority.speed = self._handler.authority.speed, times
+                stop = self._handler.active_stop
+                if falls_behind and stop is not None and stop.reason is StopReason.LINK_LOST:
+                    self._handler.active_stop = ActiveStop(StopReason.FALLS_BEHIND, str(before))
             case RobotRepositioned():
                 if self._handler.mid is not None:
                     self._handler.mid.mid.restart()

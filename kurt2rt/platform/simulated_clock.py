@@ -106,7 +106,7 @@ class SimulatedClock:
             self._world.hold()
         self._speed = self._wanted
         self._now_s, self._due_s, self._ahead_s = now_s, real_s, now_s - real_s
-        self._measured_from_s = real_s, now_s
+        self._measured_from_s, self._reached = (real_s, now_s), float(self._speed)
         if self._speed == 1:
             self._world.go_on()
 

@@ -25,6 +25,7 @@ from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.clock import Clock
 from kurt2rt.runs.recording.recording import RunContext
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
+from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.settings import ServiceSettings
 
 
@@ -47,11 +48,10 @@ class RobotService:
     stamps: dict[str, str] = field(default_factory=dict)
     """UTC time of each durable lesson, by command id; `PostTick` adds new lessons."""
 
-    def channel_dependencies(self, begin_exam: Callable[[Path, Path], None] | None = None) -> ChannelDependencies:
-        """Return the parts of the service that the channel reads: journal, copies and packages of the knowledge.
+    def channel_dependencies(self, exam: LiveExam | None = None) -> ChannelDependencies:
+        """Return the parts of the service that the channel reads: journal, knowledge's copies and packages, exam.
 
-        Args:
-            begin_exam: starts an exam of a copy of the knowledge, with the path of its picture; None: no exams.
+        `exam`: None: no exams.
         """
         runtime, writer = self.runtime, self.writer
         journal = JournalStatus(
@@ -60,8 +60,11 @@ class RobotService:
             stamp_of=lambda command_id: self.stamps.get(command_id, ""),
         )
         package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)
-        copies = BackupService(Path(self.settings.knowledge), writer, package, begin_exam)
-        return ChannelDependencies(journal, copies, lambda: "", None)
+        knowledge = Path(self.settings.knowledge)
+        if exam is None:
+            return ChannelDependencies(journal, BackupService(knowledge, writer, package), lambda: "", None)
+        copies = BackupService(knowledge, writer, package, exam.begin, exam.picture)
+        return ChannelDependencies(journal, copies, lambda: "", None, exam=lambda: exam.status)
 
 
 def assemble_service(

@@ -22,15 +22,23 @@ Command = Callable[[Path, Path], Sequence[str]]
 class LiveExam:
     """One exam at a time; a thread reads the status that its process prints as lines of JSON (`exam_status.EXAM`)."""
 
-    def __init__(self, command: Command) -> None:
-        """`command`: its process ends by itself as soon as its standard input does."""
+    def __init__(self, command: Command, status: ExamStatus = NO_EXAM, picture: Path | None = None) -> None:
+        """Start with the verdict of an earlier run on the same knowledge file.
+
+        Args:
+            command: its process ends by itself as soon as its standard input does.
+            status: newest exam of the knowledge file.
+            picture: its picture; None without one.
+        """
         self._command = command
         self._process: subprocess.Popen[bytes] | None = None
         self._reading: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
-        self.status = NO_EXAM
+        self.status = status
         """Status, replaced by the thread that reads."""
+        self.picture = picture
+        """Picture of the newest exam, drawn once it has a verdict; None before the first exam."""
 
     def begin(self, knowledge: Path, picture: Path) -> None:
         """Start an exam of a copy of the knowledge, deleted at the end; `picture` is the file to draw.
@@ -51,7 +59,7 @@ class LiveExam:
             except OSError as error:
                 knowledge.unlink(missing_ok=True)
                 raise KnowledgeError(KnowledgeCode.EXAM_NOT_STARTED, error=error) from error
-            self.status = ExamStatus(True, 0.0, "the exam begins")
+            self.status, self.picture = ExamStatus(True, 0.0, "the exam begins"), picture
             self._reading = threading.Thread(
                 target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True
             )

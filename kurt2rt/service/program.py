@@ -257,7 +257,8 @@ class RobotProgram:
         return Probes(lambda: opened.robot.health, drops, errors, folders, lambda: self._screen.links)
 
     def _exam(self, opened: OpenedRobot) -> LiveExam | None:
-        if opened.simulated_world is None:
+        runs = self._simulated
+        if opened.simulated_world is None or runs is None:
             return None
         words = (self._service.robot, self._service.task, str(self._options.seed))
 
@@ -265,7 +266,14 @@ class RobotProgram:
             # Without -P the present folder would be searched for modules.
             return (sys.executable, "-P", "-m", "kurt2rt.cli.exam_process", str(knowledge), str(picture), *words)
 
-        return self._run_stack.enter_context(LiveExam(command))
+        knowledge = runs.present.knowledge
+        exam = LiveExam(command, *runs.verdicts.get(knowledge, ()))
+
+        def keep() -> None:
+            runs.verdicts[knowledge] = exam.status, exam.picture
+
+        self._run_stack.callback(keep)  # after the exam was closed
+        return self._run_stack.enter_context(exam)
 
     def _measure(self, simulation: "Simulation") -> "LiveMeasure":
         from kurt2rt.service.live_measure import LiveMeasure

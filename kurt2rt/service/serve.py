@@ -253,14 +253,12 @@ class _Run:
         if options is None:
             yield None
             return
-        exam = options.exam
         dependencies = replace(
-            self._service.channel_dependencies(None if exam is None else exam.begin),
+            self._service.channel_dependencies(options.exam),
             bus_trouble=options.bus_trouble,
             world=options.simulated_world,
             boot=bytes.fromhex(self._run.boot),
             health=lambda: health.newest,
-            exam=None if exam is None else lambda: exam.status,
             run_control=options.run_control,
             speed=speed,
             progress=options.measure,

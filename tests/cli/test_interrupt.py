@@ -44,6 +44,20 @@ def test_interrupt_while_packages_are_imported_ends_at_once(at: str, words: list
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
 
+@pytest.mark.parametrize("study", ["phases", "paper"])
+def test_interrupt_in_a_study_says_how_it_goes_on(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, study: str
+) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("kurt2rt.cli.study_run.run_missing", interrupted)
+    said = kurt2rt(study, "--quick", "--out", "made")
+    assert (said.exit_code, said.out) == (130, "")
+    assert "stopped; finished jobs are in made" in said.err
+    assert "The same command goes on from there" in said.err
+
+
 def test_interrupt_in_a_command_leaves_no_traceback(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt

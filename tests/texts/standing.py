@@ -38,6 +38,7 @@ def stops() -> Iterator[tuple[str, str]]:
         StopReason.SESSION_OVER: "morning",
         StopReason.BEHAVIOUR_OVER: "spin_left",
         StopReason.SENSOR_BROKEN: "front left edge (s15)",
+        StopReason.FALLS_BEHIND: "3",
         StopReason.GUARD: "wheels disobey",
         StopReason.OTHER: "a sentence of another version",
     }

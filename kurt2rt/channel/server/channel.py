@@ -16,20 +16,26 @@ from kurt2rt.channel.server.reply import done, refusal, unsaved
 from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, RequestHandler
 from kurt2rt.channel.server.resources import Keys, RobotSite
 from kurt2rt.channel.server.state_builder import StateBuilder
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
 from kurt2rt.core.teaching.inbox import InboxFullError
-from kurt2rt.core.teaching.system_events import PairingRenewed
+from kurt2rt.core.teaching.system_events import PairingRenewed, SpeedChanged
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.platform.simulated_clock import Speed
 from kurt2rt.runs.explain.collect import LiveExplainer
 from kurt2rt.runtime import Runtime
 
 STATES_PER_S = 20
 LOOPBACK, EVERYWHERE = "127.0.0.1", "::"
 _REFRESH_S = 1.0
+
+
+_KEEPS_UP = 0.9
+"""Fraction of the chosen speed from which on the computer counts as fast enough for it."""
 
 
 class Channel:
@@ -57,7 +63,7 @@ class Channel:
         self._unsaved: dict[str, Outcome] = {}
         """Outcomes of lessons that are not durable yet, by command id."""
         self._every_ticks = max(1, round(1 / (STATES_PER_S * runtime.robot.cycle_s)))
-        self._speed = parts.speed
+        self._speed, self._inbox = parts.speed, runtime.inbox
         self._ticks = 0
 
     @property
@@ -97,6 +103,8 @@ class Channel:
                 # The lessons of a hold, or of a drive by hand, have an id of their own, which the outcome names.
                 lesson = result.outcome.fields.get("lesson")
                 handler.settle(result.command_id, done(tick, result.outcome, lesson=lesson))
+        if self._speed is not None and self._speed.wanted > 1:
+            self._slow_down(self._speed, record.standing.stop)
         self._states.on_tick(record)
         self._explainer.follow(record)
         self._ticks += 1
@@ -108,6 +116,12 @@ class Channel:
             self._states.pause()
         elif self._ticks % (self._every_ticks * speed) == 0 or self.site.waits_for_state:
             self.site.publish(encode_state(self._states.build(record)))
+
+    def _slow_down(self, speed: Speed, stop: ActiveStop | None) -> None:
+        """Return to real time if the link seemed lost because the computer cannot keep up with the chosen speed."""
+        if stop is not None and stop.reason is StopReason.LINK_LOST and speed.reached < _KEEPS_UP * speed.wanted:
+            speed.set(1)
+            self._inbox.put(SpeedChanged(1, falls_behind=True))
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """Answer the command of a lesson that became durable, or failed to."""

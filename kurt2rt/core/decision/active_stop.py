@@ -20,6 +20,8 @@ class StopReason(StrEnum):
     """The robot drove, and its new teacher has sent no sign of presence yet."""
     LINK_LOST = "link lost"
     """The robot drove, and messages of its teacher ceased."""
+    FALLS_BEHIND = "falls behind"
+    """The same, because the computer was too slow for the speed of the simulation."""
     STARTED = "started"
     """The robot program was started."""
     NEXT_RUN = "next run"
@@ -47,7 +49,7 @@ class ActiveStop(NamedTuple):
     @property
     def is_automatic(self) -> bool:
         """Return whether the guard or a lost link caused the stop. A script may resume after these two only."""
-        return self.reason in (StopReason.GUARD, StopReason.LINK_LOST)
+        return self.reason in (StopReason.GUARD, StopReason.LINK_LOST, StopReason.FALLS_BEHIND)
 
 
 _OF_A_TEACHER = (StopReason.SAID_STOP, StopReason.LET_GO, StopReason.TEACHER_NOT_YET, StopReason.LINK_LOST)

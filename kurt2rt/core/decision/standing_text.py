@@ -57,6 +57,7 @@ _STOPS: dict[StopReason, str] = {
     StopReason.NO_TEACHER: "no teacher is there",
     StopReason.TEACHER_NOT_YET: "{name} is not there yet",
     StopReason.LINK_LOST: "lost the link to {name}",
+    StopReason.FALLS_BEHIND: "the computer is too slow for {name} times real time; the simulation is back in real time",
     StopReason.STARTED: "the robot program was started",
     StopReason.NEXT_RUN: "a new run was begun",
     StopReason.SENSOR_BROKEN: "its infra-red sensor {name} is broken",

@@ -25,6 +25,8 @@ class SpeedChanged:
     """New speed of a simulation: robot time passes `times` as fast as real time."""
 
     times: int
+    falls_behind: bool = False
+    """True if the computer was too slow for the speed before, so that its teacher's messages came too late."""
 
 
 SystemEvent = PairingRenewed | RobotRepositioned | SpeedChanged

@@ -48,17 +48,27 @@ class BackupService:
     """Maker of copies that hold all that was taught before the call. All methods raise KnowledgeError."""
 
     def __init__(
-        self, knowledge: Path, writer: JournalWriter, package: Package, examine: Examine | None = None
+        self,
+        knowledge: Path,
+        writer: JournalWriter,
+        package: Package,
+        examine: Examine | None = None,
+        picture: Path | None = None,
     ) -> None:
         """Put copies into the folders `saved` and `exported` next to the knowledge file, exams into `exams`.
 
-        `examine`: None: this robot is not examined.
+        Args:
+            knowledge: file that is copied.
+            writer: of the file.
+            package: makes a package of it.
+            examine: None: this robot is not examined.
+            picture: of an exam in an earlier run, which can be read, too.
         """
         self._examine = examine
         self._knowledge = knowledge
         self._writer = writer
         self._package = package
-        self._made: dict[str, Path] = {}
+        self._made: dict[str, Path] = {} if picture is None else {picture.name: picture}
 
     async def save(self, label: str) -> SavedCopy:
         """Save a copy of the knowledge file, with `label` in its name. Raises KnowledgeError."""

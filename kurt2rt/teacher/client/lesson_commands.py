@@ -50,7 +50,7 @@ class LessonCommands(CommandClient):
     async def correct_earlier(self, action: str, seconds: float) -> Answer:
         """Correct what the basic level did `seconds` before it last drove (rewind).
 
-        A standing robot keeps its last 10 s of driving until it has driven and stopped again.
+        A robot keeps its last 10 s of driving, however long it has stood since or between.
 
         Raises:
             ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
@@ -58,10 +58,11 @@ class LessonCommands(CommandClient):
         """
         if not 0.0 <= seconds <= _REWIND_S:
             raise ValueError(f"seconds: a robot keeps the last {_REWIND_S:g} s of driving (got {seconds:g})")
-        drove = self._stream.drove_tick
-        if drove is None:
+        stream = self._stream
+        tick = None if stream.tick_before(0) is None else stream.tick_before(await self._ticks(seconds))
+        if tick is None:
             raise ValueError("this device has not seen the robot drive; correct what it does from now on")
-        return await self.correct(action, of=max(0, drove - await self._ticks(seconds)))
+        return await self.correct(action, of=tick)
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         """Reward what the robot did (phase 3).

@@ -9,6 +9,8 @@ import anyio
 from kurt2rt.channel.protocol.state import State
 
 _RATE_OVER_S = 1.0
+_DRIVING_STATES = 400
+"""States of a driving robot that are kept: twice as many as come in the ten seconds of driving that it remembers."""
 
 
 class StateStream:
@@ -21,8 +23,8 @@ class StateStream:
         """Number of states that came."""
         self.restarts = 0
         """Number of restarts of the robot program that were seen."""
-        self.drove_tick: int | None = None
-        """Newest tick of the robot's present start whose state showed turning wheels; None before the first."""
+        self._drove: deque[tuple[int, int]] = deque(maxlen=_DRIVING_STATES)
+        """Tick of each state of the present start that showed turning wheels, with the ticks driven until then."""
         self._now = now
         self._came_s: deque[float] = deque(maxlen=100)
         self._answered_tick = -1
@@ -74,15 +76,26 @@ class StateStream:
             if state.boot != self.newest.boot:
                 self.restarts += 1
                 self._answered_tick = self._stopped_tick = -1
-                self.drove_tick = None
+                self._drove.clear()
             elif state.tick < self.newest.tick:
                 return
-        self.newest = state
-        if state.left_m_s or state.right_m_s:
-            self.drove_tick = state.tick
+        before, self.newest = self.newest, state
+        if _turns(state):
+            # A gap between two states counts in full if a wheel turned at either end: it may have driven all the time.
+            tick, driven = self._drove[-1] if self._drove else (state.tick, 0)
+            stood_to = tick if before is None or _turns(before) else max(tick, before.tick)
+            self._drove.append((state.tick, driven + state.tick - stood_to))
         self.count += 1
         self._came_s.append(self._now())
         self._wake()
+
+    def tick_before(self, ticks: int) -> int | None:
+        """Return the tick that lies so many `ticks` of driving before the newest of them; None if none was seen."""
+        if not self._drove:
+            return None
+        newest = self._drove[-1][1]
+        tick, driven = next((each for each in reversed(self._drove) if newest - each[1] >= ticks), self._drove[0])
+        return max(0, tick - (ticks - (newest - driven)))
 
     def close(self) -> None:
         """End the stream and wake its readers."""
@@ -108,3 +121,8 @@ class StateStream:
     def _wake(self) -> None:
         self._changed.set()
         self._changed = anyio.Event()
+
+
+def _turns(state: State) -> bool:
+    """Return whether a wheel turned in a state."""
+    return bool(state.left_m_s or state.right_m_s)

@@ -28,6 +28,7 @@ from kurt2rt.teacher.terminal.terminal_text import (
     format_critic_change,
     format_mid_command,
     format_mid_situation,
+    format_misunderstood,
     format_opinion,
     format_state,
     format_surprise,
@@ -257,8 +258,10 @@ class TerminalTeacher:
                 self._say(format_opinion(state, hello.appraisals))
                 latest = await robot.lessons(_LESSONS_SEARCHED)
                 self._say(format_critic_change(next((each for each in latest if each.teacher == CRITIC), None)))
-            case _:
+            case ["help"]:
                 self._say_all(help_lines(hello))
+            case _:
+                self._say(format_misunderstood(words, hello))
 
     def _command(self, words: Sequence[str], hello: Hello, state: State | None) -> Awaitable[Answer] | None:
         """Return the command of a line, if it is one; `state` is the newest one when it was typed."""

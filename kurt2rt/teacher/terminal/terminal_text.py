@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from difflib import get_close_matches
 
 from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
@@ -71,6 +72,23 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
     if len(hello.behaviours) > 1:
         lines.append(f"taught behaviours: {', '.join(hello.behaviours)}")
     return tuple(lines)
+
+
+def format_misunderstood(words: Sequence[str], hello: Hello) -> str:
+    """Return what is wrong with a typed line that is no command of this robot, and what may be meant.
+
+    `words`: of the line, at least one.
+    """
+    names = (*hello.actions, *(each.name for each in hello.appraisals), *hello.behaviours)
+    lines = [line for part in help_lines(hello) for line in part.splitlines() if "  " in line]
+    forms = [form for line in lines for form in line.split("  ")[0].split(", ")]
+    usages = {form.split()[0]: form for form in forms if form.split()[0] not in ("an", "a", "(just")}
+    usage = usages.get(words[0])
+    wrong = words[0] if usage is None else next((each for each in words[1:] if each[0].isalpha()), "")
+    near = get_close_matches(wrong, names if usage else (*names, *usages), n=3) if wrong not in names else []
+    says = f"{words[0]}: no such command or action" if usage is None else f"{' '.join(words)}: type {usage}"
+    maybe = f"; did you mean {' or '.join(near)}?" if near else ""
+    return f"not done, {says}{maybe or ('; help shows what can be typed' if usage is None else '')}"
 
 
 def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | MidQuestion:

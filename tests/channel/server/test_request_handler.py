@@ -62,6 +62,7 @@ from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.outcome_text import text_of
@@ -71,6 +72,7 @@ from kurt2rt.core.teaching.commands import Stop, Teach, Watch
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.file_part import FilePart
+from kurt2rt.platform.simulated_clock import SimulatedClock
 from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL
@@ -708,6 +710,29 @@ async def test_speed_scales_leases_in_robot_time() -> None:
     assert not desk.runtime.handler.authority.is_present(desk.tick)
     told = SIMULATION.read((await desk.ask(SimulationRequest())).body["simulation"])
     assert (told.speed, told.reached) == (4, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("reached", "stop", "times"),
+    [
+        (2.5, ActiveStop(StopReason.FALLS_BEHIND, "4"), 1),
+        (4.0, ActiveStop(StopReason.LINK_LOST, "ann"), 4),
+    ],
+)
+async def test_computer_too_slow_for_the_speed_is_no_lost_link(
+    monkeypatch: pytest.MonkeyPatch, reached: float, stop: ActiveStop, times: int
+) -> None:
+    desk = ChannelFixture(ground=Yard())
+    monkeypatch.setattr(SimulatedClock, "reached", reached)
+    await desk.ask(desk.command(TakeRequest))
+    assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
+    desk.runtime.inbox.put(Teach("t", "ann", "forward"))
+    await desk.stream(desk.watch())
+    desk.run(4 * 24)
+    assert desk.record.decision.driving
+    desk.run(2)
+    assert desk.record.standing.stop == stop
+    assert (desk.speed.wanted, desk.runtime.handler.authority.speed) == (times, times)
 
 
 async def test_put_back_is_refused_after_stop_like_place() -> None:

@@ -64,14 +64,14 @@ def test_minute_at_the_border_of_r_is_one_question(border: Border) -> None:
     assert (len(border.asked), border.meter.progress().asks) == (1, 1)
 
 
-def test_question_at_the_border_ends_after_half_a_second_with_a_margin(border: Border) -> None:
+def test_question_ends_after_half_a_second_with_a_margin(border: Border) -> None:
     border.run(SURE, OPEN_TICKS // 2 - 1)
     assert not border.asks_anew()
     border.run(SURE, OPEN_TICKS // 2)
     assert border.asks_anew()
 
 
-def test_question_ends_after_a_second_of_driving_without_a_margin(border: Border) -> None:
+def test_question_ends_after_a_second_of_driving(border: Border) -> None:
     match = border.run(INSIDE).decision.match
     assert match is not None
     assert SURE_SHARE * RADIUS < match.distance <= RADIUS
@@ -81,7 +81,7 @@ def test_question_ends_after_a_second_of_driving_without_a_margin(border: Border
     assert border.asks_anew()
 
 
-def test_question_of_a_robot_whose_wheels_stand_stays_open(border: Border) -> None:
+def test_question_of_a_robot_that_stands_stays_open(border: Border) -> None:
     border.corridor.robot.touches_in_front = True
     border.run(INSIDE, 40)  # not for as long as to ask about the bumper
     border.run(BORDER + 20)
@@ -119,7 +119,7 @@ def test_answered_robot_drives_and_shows_it(border: Border) -> None:
     assert record.standing == DRIVES
 
 
-def test_question_at_a_bumper_replaces_one_that_is_asked_no_more(border: Border) -> None:
+def test_question_at_a_bumper_replaces_the_one_before(border: Border) -> None:
     border.corridor.robot.touches_in_front = True
     border.run(INSIDE, 98)
     assert border.run(BORDER + 20).standing == ASKS  # noise: still the first question

@@ -8,6 +8,7 @@ import sys
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import cast
@@ -278,6 +279,23 @@ async def test_correct_earlier_counts_back_from_the_last_drive(client: TeacherCl
     await client.correct_earlier("spin_left", 0.02)
     (correction,) = await robot.hears(CorrectRequest)
     assert (correction.action, correction.decision_tick) == ("spin_left", drove.tick - 2)
+
+
+async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(request: Request) -> Reply:
+        return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+
+    robot.mind = introduces_itself
+    robot.showing = False
+    first = robot.state.tick
+    pictures = []
+    for after, speed_m_s in ((0, 0.3), (50, 0.3), (52, 0.0), (6000, 0.0), (6002, 0.3)):
+        robot.state = replace(robot.state, tick=first + after)
+        pictures.append(robot.show(left_m_s=speed_m_s, right_m_s=speed_m_s))
+        await seen(client, lambda: client.state == pictures[-1])
+    await client.correct_earlier("spin_left", 0.10)
+    (correction,) = await robot.hears(CorrectRequest)
+    assert correction.decision_tick == pictures[0].tick + 42
 
 
 @pytest.mark.parametrize("seconds", [-0.1, 10.1, float("nan")])

@@ -61,7 +61,7 @@ def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> 
     assert lesson.phone.shows("#rewind-bar"), "another moment may be wrong, too"
 
 
-def test_rewind_reaches_the_drive_before_a_question_and_its_pulses(lesson: Lesson) -> None:
+def test_rewind_reaches_the_drive_before_a_question(lesson: Lesson) -> None:
     for second in range(20, 32, 3):
         for later, (ticks, speed_m_s) in enumerate(((2, 0.0), (MINUTE, 0.0), (2, 0.3))):
             assert lesson.robot.state is not None

@@ -50,6 +50,7 @@ from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import (
     build_question,
     format_critic_change,
+    format_misunderstood,
     format_opinion,
     format_state,
     is_notable,
@@ -57,6 +58,7 @@ from kurt2rt.teacher.terminal.terminal_text import (
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
 from tests.teacher.client.test_client import HELLO, LONGEST_S, Clock, be_patient, seen
+from tests.teacher.page.fake_robot import A_HELLO
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 
@@ -290,11 +292,8 @@ async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: Stand
             "delete ²",
             "step forward 1e9",
         ):
-            shown = sum("help, quit" in each for each in console.said)
             console.type(line)
-            with anyio.fail_after(LONGEST_S):
-                while sum("help, quit" in each for each in console.said) == shown:
-                    await console._news.wait()
+            await console.reads(f"not done, {line}: type {line.split()[0]} ")
         console.type("step forward 999999999")
         await console.reads("refused: ticks has to be a whole number")
         robot.mind = RobotStub(LessonsRequest)
@@ -371,7 +370,7 @@ async def test_pursue_selects_one_of_several_behaviours(pairing: Pairing, robot:
         await console.reads("/pursue is done")
         assert [each.behaviour for each in robot.all_of(PursueRequest)] == ["turn_left"]
         console.type("pursue")
-        await console.reads("pursue NAME ")
+        await console.reads("not done, pursue: type pursue NAME")
 
 
 async def test_question_names_places_and_centimetres(pairing: Pairing, robot: StandInRobot) -> None:
@@ -404,6 +403,20 @@ def test_build_question_has_the_selected_behaviour() -> None:
 def test_format_state_names_the_behaviour_of_the_rla() -> None:
     assert rla_title(3, "") in format_state(state(action="forward", rla=3))
     assert rla_title(3, "turn_left") in format_state(state(action="forward", rla=3, behaviour="turn_left"))
+
+
+@pytest.mark.parametrize(
+    ("typed", "says"),
+    [
+        ("forwrd", "not done, forwrd: no such command or action; did you mean forward?"),
+        ("rewnd 2 forward", "not done, rewnd: no such command or action; did you mean rewind"),
+        ("xyzzy", "not done, xyzzy: no such command or action; help shows what can be typed"),
+        ("hold forwad 2", "not done, hold forwad 2: type hold ACTION SECONDS; did you mean forward?"),
+        ("hold forward", "not done, hold forward: type hold ACTION SECONDS"),
+    ],
+)
+def test_wrong_word_is_named_with_what_may_be_meant(typed: str, says: str) -> None:
+    assert format_misunderstood(typed.split(), A_HELLO).startswith(says)
 
 
 async def test_appraisal_by_name_teaches_the_critic(pairing: Pairing, robot: StandInRobot) -> None:
