@@ -1,17 +1,20 @@
 """An event loop whose time jumps to the next deadline: real sockets, real keys, a real disk, and no waiting.
 
 On loopback a datagram is in the other socket's queue when `sendto` returns, so a loop with nothing to read really has
-nothing to do before its next timer.
+nothing to do before its next timer. The time of a `SteppedLoop` stands until a test lets some of it pass.
 """
 
 import asyncio
 import functools
+import math
 import selectors
 from collections.abc import Callable, Coroutine, Iterator
 from contextlib import contextmanager
 from types import TracebackType
 from typing import Any, Self, TypeVar, cast
 
+import anyio
+import anyio.to_thread
 import pytest
 
 from kurt2rt.channel.server.endpoint import open_endpoint
@@ -19,6 +22,12 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 
 _Told = TypeVar("_Told")
 _DISK_S = 30.0
+_ROUNDING_S = 1e-7
+"""Timers due within it fire together."""
+_MOST_TURNS = 500
+"""Turns in a row that only call each other: what ends them is a timer, as for a task that anyio cancels in each turn."""
+_TURNS = 20
+"""Turns in which what began at the end of a time is done."""
 _STUCK_S = 30.0
 """Real seconds in which a loop without any timer has to get something to read, or it never will."""
 
@@ -26,19 +35,31 @@ _STUCK_S = 30.0
 class _JumpingSelector(selectors.DefaultSelector):
     """Selector that jumps the clock instead of waiting."""
 
-    def __init__(self) -> None:
+    def __init__(self, next_s: Callable[[], float]) -> None:
+        """`next_s`: returns the time of the next timer, infinite without one."""
         super().__init__()
+        self.next_s = next_s
+        self._turns = 0
         self.now_s = 0.0
+        self.until_s = math.inf
+        """Time at which the clock stands."""
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
         ready = super().select(0)
-        if ready or timeout == 0:
+        self._turns = 0 if ready or timeout != 0 else self._turns + 1
+        if ready or (timeout == 0 and self._turns < _MOST_TURNS):
             return ready
-        if timeout is None:
+        self._turns = 0
+        if timeout is None and self.until_s == math.inf:
             ready = super().select(_STUCK_S)
             assert ready, "nothing is under way and no timer runs: this test would wait for ever"
             return ready
-        self.now_s += max(0.0, timeout)
+        due_s = self.next_s()
+        if due_s > self.until_s + _ROUNDING_S:
+            self.now_s = max(self.now_s, self.until_s)
+            return super().select(timeout and None)
+        # Not by the timeout: a time that is less than the timer's by its rounding would set that timer again for ever.
+        self.now_s = max(self.now_s, due_s)
         return []
 
 
@@ -46,9 +67,9 @@ class JumpingLoop(asyncio.SelectorEventLoop):
     """Time begins at 0 and is the same in every run. Threads would race against it: what uses one works in place."""
 
     def __init__(self) -> None:
-        self._jumping = _JumpingSelector()
+        self._jumping = _JumpingSelector(lambda: self._scheduled[0].when() if self._scheduled else math.inf)
         super().__init__(self._jumping)
-        self._clock_resolution = 1e-7  # asyncio's: timers due within it fire together
+        self._clock_resolution = _ROUNDING_S  # asyncio's
 
     def time(self) -> float:
         """Return the simulated time in seconds."""
@@ -59,6 +80,25 @@ class JumpingLoop(asyncio.SelectorEventLoop):
         done = self.create_future()
         done.set_result(func(*args))
         return done
+
+
+class SteppedLoop(JumpingLoop):
+    """Loop that serves sockets and other threads at once, and whose timers wait until the test lets time pass."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._jumping.until_s = 0.0
+
+    async def jump(self) -> None:
+        """Let time jump from here on, as a JumpingLoop does: what ends waits for no test."""
+        self._jumping.until_s = math.inf
+
+    async def pass_time(self, seconds: float) -> None:
+        """Let all happen that happens in so many seconds."""
+        self._jumping.until_s += seconds
+        await asyncio.sleep(self._jumping.until_s - self.time())
+        for _ in range(_TURNS):
+            await asyncio.sleep(0)
 
 
 class LoopClock:
@@ -89,12 +129,18 @@ class _PromptWriter(JournalWriter):
         return super().acknowledged()
 
 
-async def _in_place(work: Callable[..., _Told], *args: Any, **_: Any) -> _Told:
-    return work(*args)
+_in_a_thread = anyio.to_thread.run_sync
+
+
+async def _in_place(work: Callable[..., Any], *args: Any, **options: Any) -> Any:
+    if isinstance(asyncio.get_running_loop(), JumpingLoop):
+        return work(*args)
+    return await _in_a_thread(work, *args, **options)
 
 
 @contextmanager
-def _no_other_time() -> Iterator[None]:
+def no_other_time() -> Iterator[None]:
+    """Keep the robot's service and its channel to the time of their loop, and to its thread, meanwhile."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("kurt2rt.service.serve.TimerfdClock", LoopClock)
         patch.setattr("kurt2rt.service.serve.JournalWriter", _PromptWriter)
@@ -106,5 +152,5 @@ def _no_other_time() -> Iterator[None]:
 
 def run_jumping(story: Callable[[], Coroutine[Any, Any, _Told]]) -> _Told:
     """Run a story to its end in simulated time, the robot's service and its channel with it."""
-    with _no_other_time(), asyncio.Runner(loop_factory=cast(Callable[[], Any], JumpingLoop)) as runner:
+    with no_other_time(), asyncio.Runner(loop_factory=cast(Callable[[], Any], JumpingLoop)) as runner:
         return runner.run(story())

@@ -1,7 +1,6 @@
 """Web application of the page: static files, and a WebSocket between the page and the bridge."""
 
 import mimetypes
-import time
 from pathlib import Path
 
 import anyio
@@ -84,7 +83,7 @@ async def _receive_text(websocket: WebSocket) -> str:
 async def _send(websocket: WebSocket, connection: PageConnection, scope: anyio.CancelScope) -> None:
     while True:
         await connection.wait()
-        while (text := connection.pop(time.monotonic())) is not None:
+        while (text := connection.pop(anyio.current_time())) is not None:
             if not await _deliver(websocket, text):
                 scope.cancel()
                 return

@@ -1,7 +1,6 @@
 """Bridge between the open pages and the robot: states to the pages, commands and presses to the robot."""
 
 import contextlib
-import time
 from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import Any
@@ -42,7 +41,7 @@ class Bridge:
     """
 
     def __init__(
-        self, robot: TeacherClient, device: str, robot_place: str, *, now: Callable[[], float] = time.monotonic
+        self, robot: TeacherClient, device: str, robot_place: str, *, now: Callable[[], float] = anyio.current_time
     ) -> None:
         """`robot_place` is the robot's address, for texts; `now` is a monotonic clock in s."""
         self._robot = robot

@@ -35,9 +35,9 @@ def a_phone(phone_of_this_file: Phone, request: pytest.FixtureRequest) -> Iterat
 
 
 @pytest.fixture(scope="module")
-def room(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Classroom]:
+def room(tmp_path_factory: pytest.TempPathFactory, phone_of_this_file: Phone) -> Iterator[Classroom]:
     """One robot for all tests of a file."""
-    with classroom(tmp_path_factory.mktemp("classroom")) as opened:
+    with classroom(tmp_path_factory.mktemp("classroom"), phone_of_this_file) as opened:
         yield opened
 
 

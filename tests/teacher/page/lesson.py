@@ -6,10 +6,11 @@ from dataclasses import replace
 from functools import partial
 
 import anyio
-from anyio.from_thread import BlockingPortal, start_blocking_portal
+from anyio.from_thread import BlockingPortal
 
 from kurt2rt.channel.protocol.state import State
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
+from tests.teacher.page.page_time import PageTime, stepped_portal
 from tests.teacher.page.phone import PORTRAIT, Phone
 from tests.teacher.page.test_served_page import TOKEN, Served, served
 
@@ -23,8 +24,9 @@ return [clock.textContent, claim.hidden];
 class Lesson:
     """A robot, and the page that its teacher has open."""
 
-    def __init__(self, phone: Phone, portal: BlockingPortal, page: Served) -> None:
+    def __init__(self, phone: Phone, portal: BlockingPortal, time: PageTime, page: Served) -> None:
         self.phone = phone
+        self._time = time
         self.robot = page.robot
         self._portal = portal
         self._address = f"http://127.0.0.1:{page.port}/pair?token={TOKEN}"
@@ -36,6 +38,7 @@ class Lesson:
         The page stays loaded and is introduced to the new robot, because to load it takes far longer.
         """
         self._begun += 1
+        self.phone.time = self._time
         boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
         self._portal.call(self.robot.reset)
         prepare(self.robot)
@@ -76,10 +79,11 @@ async def show_on(robot: FakeRobot) -> None:
 @contextmanager
 def lessons(phone: Phone) -> Iterator[Lesson]:
     """Serve a page and a robot, for one lesson after another."""
-    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+    with (
+        stepped_portal() as (portal, time),
+        portal.wrap_async_context_manager(served()) as page,
+        time.shown_on(phone),
+    ):
         pictures = portal.start_task_soon(show_on, page.robot)
-        try:
-            yield Lesson(phone, portal, page)
-        finally:
-            phone.leave()
-            pictures.cancel()
+        yield Lesson(phone, portal, time, page)
+        pictures.cancel()

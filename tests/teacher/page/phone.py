@@ -3,21 +3,24 @@
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 from selenium import webdriver
-from selenium.common.exceptions import StaleElementReferenceException, TimeoutException
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.wait import WebDriverWait
+
+from tests.teacher.page import page_time
+from tests.teacher.page.page_time import PageTime, pass_page_time
 
 BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
 PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 800)
-PATIENCE_S = 30.0
-"""Ends a story whose event never comes."""
+PATIENCE_S = 60.0
+"""Seconds of the page in which an event has to come."""
+STEP_S = 0.05
 
 # Each page gets a process of its own, and the next one has its process already, unless it is told not to: starting
 # them was most of what the stories took. A transition is painted many times. Optimising the page's scripts takes
@@ -52,18 +55,10 @@ return Boolean(e?.checkVisibility({visibilityProperty: true, opacityProperty: tr
 """
 
 _MIDDLE = """
-const [selector, done] = arguments;
-let before = "";
-const look = () => {
-  const e = document.querySelector(selector);
-  e.scrollIntoView({block: "nearest"});
-  const b = e.getBoundingClientRect();
-  const middle = [b.x + b.width / 2, b.y + b.height / 2];
-  if (String(middle) === before) return done(middle);
-  before = String(middle);
-  requestAnimationFrame(look);
-};
-look();
+const e = document.querySelector(arguments[0]);
+e.scrollIntoView({block: "nearest"});
+const b = e.getBoundingClientRect();
+return [b.x + b.width / 2, b.y + b.height / 2];
 """
 
 _TIDY = """
@@ -92,7 +87,10 @@ class Phone:
         self.driver = driver
         self._screenshots = screenshots
         self._at: str | None = None
+        self.time: PageTime | None = None
+        """Time of the server whose page is open; None: of the page alone."""
         self._before = self._add_before_scripts(_HAS_BEEN_HERE)
+        self._add_before_scripts(page_time.SCRIPT)
         self._add_before_scripts(_KEEPS_WHAT_IT_SAYS)
 
     @contextmanager
@@ -136,7 +134,7 @@ class Phone:
             self.run(_TIDY)
 
     def leave(self) -> None:
-        """Go where there is nothing."""
+        """Go where there is nothing, and no server."""
         self.open("about:blank")
 
     def text(self, selector: str) -> str:
@@ -164,13 +162,22 @@ class Phone:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, until: Callable[[], object], what: str) -> None:
-        """Wait for something to be so. The failure tells the last sentences of the page, which it clears after 8 s."""
-        waiting = WebDriverWait(self.driver, PATIENCE_S, 0.05, (StaleElementReferenceException,))
-        try:
-            waiting.until(lambda _: until(), f"never: {what}")
-        except TimeoutException as never:
-            never.msg = f"{never.msg}; the page said {self.run('return window.saidBefore?.slice(-4);')}"
-            raise
+        """Let time pass until something is so. The failure tells the last sentences of the page, which it clears."""
+        for _ in range(round(PATIENCE_S / STEP_S)):
+            with suppress(StaleElementReferenceException):
+                if until():
+                    return
+            self.pass_time(STEP_S)
+        raise AssertionError(f"never: {what}; the page said {self.run('return window.saidBefore?.slice(-4);')}")
+
+    def pass_time(self, seconds: float) -> None:
+        """Let time pass for the page and its server, in steps that are shorter than what either waits for."""
+        for step in range(max(1, round(seconds / STEP_S))):
+            rest_s = min(STEP_S, seconds - step * STEP_S)
+            if self.time is None:
+                pass_page_time(self, rest_s)
+            else:
+                self.time.pass_time(self, rest_s)
 
     def touch(self, selector: str) -> None:
         """Touch the middle of an element."""
@@ -178,11 +185,12 @@ class Phone:
         self.finger_up()
 
     def middle(self, selector: str) -> tuple[float, float]:
-        """Return the middle of an element on the screen, scrolled there, once it stands still for a frame.
+        """Return the middle of an element on the screen, scrolled there, once the page shows all that came for it.
 
         A new state may move what stands below its text, and a finger would touch what has come there instead.
         """
-        x, y = self.driver.execute_async_script(_MIDDLE, selector)
+        self.pass_time(0.0)
+        x, y = self.run(_MIDDLE, selector)
         return float(x), float(y)
 
     def finger_down(self, x: float, y: float) -> None:

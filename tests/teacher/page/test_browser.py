@@ -60,6 +60,7 @@ def said(phone: Phone) -> str:
 
 def begin(phone: Phone, room: Classroom) -> None:
     """Open the page and be the teacher."""
+    phone.time = room.time
     room.mend()
     phone.turn(PORTRAIT)
     phone.come_to(room.address)
@@ -161,8 +162,9 @@ def test_a_page_whose_scripts_stand_still_lets_go_of_the_robot(a_phone: Phone, r
     begin(phone, room)
     hold_stick(phone)
     phone.wait(lambda: room.state().by_hand, "the robot drives by hand")
-    phone.run("setTimeout(() => { for (const end = Date.now() + 1000; Date.now() < end; ); })")
-    phone.wait(lambda: not room.state().by_hand and room.state().left_m_s == 0, "the robot stands")
+    room.time.pass_server_time(1.0)
+    assert not room.state().by_hand
+    assert room.state().left_m_s == 0
     phone.wait(lambda: not phone.has("#stick.held"), "the circle lets go")
     phone.finger_up()
 
@@ -278,7 +280,7 @@ def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Cl
     phone = a_phone
     begin(phone, room)
     for _ in range(room.state().lessons):
-        assert room.portal.call(room.client.undo).accepted
+        assert room.time.pass_until(room.client.undo).accepted
     phone.wait(lambda: lessons_shown(phone) == 0, "the page knows")
     stand(phone, room)
     phone.touch("#go")
@@ -316,7 +318,7 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     phone.wait(lambda: not room.client.watching, "its server knows that no teacher looks")
     # A page that went may have left a stop on its way, also behind the first resume.
     resumed = room.client.resume
-    phone.wait(lambda: room.portal.call(resumed).accepted and room.state().stopped is None, "the robot may drive")
+    phone.wait(lambda: room.time.pass_until(resumed).accepted and room.state().stopped is None, "the robot may drive")
     phone.touch("#stop")
     phone.wait(lambda: "no link" in phone.text("#said"), "the page says that STOP waits")
     assert phone.text("#stop") == "STOP …"

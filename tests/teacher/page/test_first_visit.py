@@ -20,7 +20,7 @@ STORED = "return localStorage.getItem('kurt2rt.bubbles');"
 
 def test_first_lesson_of_a_fresh_start_takes_two_taps(a_phone: Phone, tmp_path: Path) -> None:
     phone = a_phone
-    with classroom(tmp_path) as room, phone.first_visit():
+    with classroom(tmp_path, phone) as room, phone.first_visit():
         phone.open(room.address)
         phone.wait(lambda: phone.text("#what") == "Teach it to follow the wall on its left", "what the task is")
         phone.wait(lambda: phone.shows("#claim-button"), "the robot can be taken")

@@ -50,7 +50,7 @@ def presses(lesson: Lesson) -> list[tuple[object, ...]]:
 
 def polled(phone: Phone) -> None:
     """Wait for a few polls of the gamepad."""
-    phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 200);")
+    phone.pass_time(0.2)
 
 
 def hold(lesson: Lesson) -> None:

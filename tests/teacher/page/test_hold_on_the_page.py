@@ -1,6 +1,5 @@
 """Hold to correct on the page: a held button drives and teaches, a tap is a lesson as ever."""
 
-import time
 from dataclasses import replace
 
 import pytest
@@ -29,10 +28,6 @@ def finger_down(lesson: Lesson) -> None:
     lesson.phone.wait(lambda: lesson.told("hold"), "the action is held")
 
 
-def waited(phone: Phone, milliseconds: int) -> None:
-    phone.driver.execute_async_script("const [ms, done] = arguments; setTimeout(done, ms);", milliseconds)
-
-
 def test_held_button_holds_its_action_until_the_finger_lifts(lesson: Lesson) -> None:
     finger_down(lesson)
     assert lesson.phone.has(f"{BUTTON}.held")
@@ -40,7 +35,7 @@ def test_held_button_holds_its_action_until_the_finger_lifts(lesson: Lesson) -> 
     lesson.phone.finger_up()
     lesson.phone.wait(lambda: lesson.robot.told_of("let_go"), "it is released")
     count = len(lesson.told("hold"))
-    waited(lesson.phone, 200)
+    lesson.phone.pass_time(0.2)
     assert set(lesson.told("hold")) == {"spin_left"}
     assert len(lesson.told("hold")) == count
     assert lesson.told("correct") == [], "a hold is no tap"
@@ -52,7 +47,7 @@ def test_tap_on_a_button_is_a_late_correction(lesson: Lesson) -> None:
     lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "a correction")
     (told,) = lesson.robot.told_of("correct")
     assert (told[1], told[3]) == ("spin_left", "late")
-    waited(lesson.phone, 400)
+    lesson.phone.pass_time(0.4)
     assert lesson.told("hold") == []
 
 
@@ -73,7 +68,7 @@ def test_standing_is_taught_by_a_second_touch_only(a_lesson: Lesson) -> None:
 def test_standing_is_not_held(a_lesson: Lesson) -> None:
     a_lesson.begin(with_stand, standing=Standing())
     a_lesson.phone.finger_down(*a_lesson.phone.middle("[data-action=stand]"))
-    waited(a_lesson.phone, 600)
+    a_lesson.phone.pass_time(0.6)
     a_lesson.phone.finger_up()
     assert a_lesson.told("hold") == []
 
@@ -112,7 +107,7 @@ def test_hold_ends_with_the_page_and_does_not_come_back(lesson: Lesson, end: str
     lesson.phone.run(end)
     lesson.phone.wait(lambda: lesson.robot.told_of("let_go"), "it is released")
     count = len(lesson.told("hold"))
-    waited(lesson.phone, 200)
+    lesson.phone.pass_time(0.2)
     assert len(lesson.told("hold")) == count
     lesson.phone.finger_up()
     lesson.phone.run("document.querySelector('#tab-teach').click()")
@@ -130,7 +125,7 @@ def test_long_touch_on_a_stopped_robot_is_a_tap(lesson: Lesson) -> None:
     lesson.show(standing=Standing(StandReason.STOPPED, True), action=None, left_m_s=0.0, right_m_s=0.0)
     lesson.phone.wait(lambda: lesson.phone.has("#go:enabled"), "it is stopped")
     lesson.phone.finger_down(*lesson.phone.middle(BUTTON))
-    waited(lesson.phone, 500)
+    lesson.phone.pass_time(0.5)
     lesson.phone.finger_up()
     lesson.phone.wait(lambda: lesson.told("correct") == ["spin_left"], "a correction")
     assert lesson.told("hold") == []
@@ -150,27 +145,13 @@ def test_digit_key_held_holds_and_tapped_corrects(lesson: Lesson) -> None:
     assert set(lesson.told("hold")) == {first}
 
 
-def hold_forward(phone: Phone, room: Classroom) -> bool:
-    """Hold the button; return whether the robot drives, whose deadman a stall of browser, page or robot ends."""
-    if phone.has("#go:enabled"):
-        phone.touch("#go")
-    phone.wait(lambda: room.state().stands.asks, "the robot asks")
-    phone.finger_down(*phone.middle("[data-action=forward]"))
-    until_s = time.monotonic() + 5.0
-    while time.monotonic() < until_s:
-        if room.state().by_hand and room.state().left_m_s > 0.05:
-            return True
-        waited(phone, 20)
-    return False
-
-
 def test_held_button_drives_and_teaches_a_real_robot(a_phone: Phone, room: Classroom) -> None:
     begin(a_phone, room)
-    while not hold_forward(a_phone, room):
-        a_phone.finger_up()
-        if room.state().rlas:
-            room.portal.call(room.client.undo)
-            a_phone.wait(lambda: not room.state().rlas, "it knows nothing again")
+    if a_phone.has("#go:enabled"):
+        a_phone.touch("#go")
+    a_phone.wait(lambda: room.state().stands.asks, "the robot asks")
+    a_phone.finger_down(*a_phone.middle("[data-action=forward]"))
+    a_phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "it drives")
     a_phone.wait(lambda: room.state().rlas > 0, "it is taught")
     a_phone.finger_up()
     a_phone.wait(lambda: not room.state().by_hand, "it is released")

@@ -217,7 +217,7 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
     a_phone: Phone, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     phone = a_phone
-    with classroom(tmp_path_factory.mktemp("streets"), "--task", "route") as room:
+    with classroom(tmp_path_factory.mktemp("streets"), phone, "route") as room:
         phone.turn(PORTRAIT)
         phone.open(room.address)
         phone.wait(lambda: "Which way? I know none yet" in phone.text("#sentence"), "it asks which way")

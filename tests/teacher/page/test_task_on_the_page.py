@@ -118,7 +118,7 @@ def test_trail_outlives_a_reload_and_ends_with_the_robot_program(a_lesson: Lesso
 
 def stay(phone: Phone) -> None:
     """Send more states: the page stores ten places a second."""
-    phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 300);")
+    phone.pass_time(0.3)
 
 
 def reload(phone: Phone) -> None:
