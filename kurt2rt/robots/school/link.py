@@ -20,6 +20,8 @@ _SILENT_S = 0.5
 _TOLD_EVERY_S = 1.0
 _JUNK_IN_A_ROW = 5
 """Lines within `stale_infrared_s`."""
+_UNANSWERED_LINES = 50
+"""Lines of a second in which no greeting was answered: the wire to the robot may be broken."""
 _CLOCK_ERROR = 0.006
 """Largest error of the robot's clock, as a ratio; that of a ceramic resonator is 0.5 %."""
 _SLACK_S = 0.03
@@ -41,7 +43,7 @@ class SchoolLink:
         self.name, self._port, self._sensors = port.name, port, sensors
         self._lines = Lines(port, first_number)
         self._last_command = first_number
-        self._sent_s = [-math.inf] * (_LATEST_COMMANDS + 1)
+        self._sent_s = [-math.inf] * 1024  # a divisor of NUMBERS, so two of the latest commands never share a place
         """Times of the latest commands, by their numbers modulo its length."""
         self._now_s = -math.inf
         self._told, self._told_at_s = "", -math.inf
@@ -182,7 +184,7 @@ class SchoolLink:
 
     def _tell(self, reports: list[Report], *, silent: bool) -> None:
         """Report what keeps readings from arriving, when it changes and at most once a second."""
-        if silent and not self.greeted:
+        if not self.greeted and (silent or self._strangers > _UNANSWERED_LINES):
             told = f"{self._ungreeted}; {self._ungreeted_remedy}"
         elif silent or self._lines.junk_in_a_row >= _JUNK_IN_A_ROW:
             told = f"{self._lines.trouble or 'no line comes'}; {self._ungreeted_remedy}"

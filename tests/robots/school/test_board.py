@@ -123,3 +123,13 @@ def test_board_that_waits_for_a_greeting_again_gets_one() -> None:
         board.link.receive(board.now_s)
         sent.append(board._port.read())
     assert any(each.startswith(b"school ") for each in sent)
+
+
+def test_board_that_never_answers_after_a_loss_is_named() -> None:
+    board = Board()
+    greet(board)
+    board.link.reopen()
+    board.garbage = encode("sense", 1, 20, 0, 0, -1, *(9,) * 7)
+    told = notices(drive(board, 2.0))
+    assert told
+    assert "came, and no greeting; check bit rate, firmware and both wires" in told[-1]
