@@ -251,9 +251,9 @@ class Tick:
         error = choice.saving_error or self._handler.learner_failure
         standing = self._standing.update(decision, motion.result, standing_at_s, self._handler.active_stop, error)
         results = tell_hindrance(choice.results, standing, motion.result)
-        if any(result.lesson for result in results):
+        if results and any(result.lesson for result in results):
             self._question.close()
-        standing = self._question.update(decision, standing, behaviour=choice.behaviour, turned=self._turned)
+        standing = self._question.update(decision, standing, choice.behaviour, self._turned)
         self._timer.lap(_PUBLISH)
         return TickRecord(
             tick=tick,

@@ -62,7 +62,7 @@ class OpenQuestion:
             self._left = question_ticks(self._left, asks, sure, moves)
         return self.begins
 
-    def update(self, decision: Decision, standing: Standing, *, behaviour: str, turned: bool) -> Standing:
+    def update(self, decision: Decision, standing: Standing, behaviour: str, turned: bool) -> Standing:
         """Count one tick; return the standing that teachers are shown: that of the open question, except at a stop.
 
         Args:
@@ -71,10 +71,10 @@ class OpenQuestion:
             behaviour: active taught behaviour.
             turned: whether a wheel turns.
         """
-        asks = decision.asking and not standing.needs_resume
-        if not asks and not self._left:  # most ticks
+        if not self._left and not standing.asks:  # most ticks
             self.begins = False
             return standing
+        asks = decision.asking and not standing.needs_resume
         pressed = decision.cause is _TEACHER
         # A question of another kind replaces this one, if the robot asks it for as long as it would be sure otherwise.
         other = asks and self._left > 0 and standing.reason is not self._standing.reason

@@ -53,7 +53,7 @@ from kurt2rt.core.teaching.handler_parts import HandlerParts, knowledge_updater_
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
 from kurt2rt.core.teaching.late_press import LatePresses
 from kurt2rt.core.teaching.lesson_result import LessonResult
-from kurt2rt.core.teaching.rewind_history import RewindHistory
+from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
 from kurt2rt.core.teaching.stop_record import StopRecord
 from kurt2rt.core.teaching.stream_handler import StreamHandler
@@ -177,7 +177,8 @@ class CommandHandler:
 
         `was_driving`: whether an action drove in the tick before. `turned`: whether a wheel turned in it.
         """
-        self._rewind.update(driving=turned)
+        if turned is not self._rewind.driving or tick % CHUNK_TICKS == 0:
+            self._rewind.update(driving=turned)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
         taught = self.is_taught

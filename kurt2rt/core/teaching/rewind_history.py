@@ -7,7 +7,7 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
 DRIVEN_TICKS = 1200
 """Ticks of driving that are kept: the ten seconds that the page offers, and what the robot drives until it stands."""
-_CHUNK_TICKS = 100
+CHUNK_TICKS = 100
 """Ticks of driving that are copied at once."""
 
 
@@ -31,24 +31,24 @@ class RewindHistory:
     def __init__(self, recent: DecisionHistory) -> None:
         """Copy from `recent`, which the tick continues to write."""
         self._recent = recent
-        self._kept = recent.empty_copy(DRIVEN_TICKS + _CHUNK_TICKS)
+        self._kept = recent.empty_copy(DRIVEN_TICKS)
         self._stretches: deque[_Stretch] = deque()
         self._driven = 0
         """Ticks of driving up to the present stretch."""
         self._first: int | None = None
-        """First tick of the present stretch; None at standstill."""
+        """First tick of the present stretch that was not copied; None at standstill."""
+        self.driving = False
+        """Whether a wheel turned at the last update."""
 
     def update(self, *, driving: bool) -> None:
-        """Follow the newest recent tick, in which a wheel turned if `driving`; call it at least when that changes."""
-        first, newest = self._first, self._recent.newest
-        if first is None:
-            self._first = newest if driving else None
-        elif not driving:
-            self._keep(first, newest)
-            self._first = None
-        elif newest - first >= _CHUNK_TICKS:
-            self._keep(first, newest)
-            self._first = newest
+        """Follow the newest recent tick, in which a wheel turned if `driving`.
+
+        Call it when that changes, and each CHUNK_TICKS ticks unless the recent history keeps all ticks.
+        """
+        self.driving, newest = driving, self._recent.newest
+        if self._first is not None and newest > self._first:
+            self._keep(self._first, newest)
+        self._first = newest if driving else None
 
     def find(self, tick: int) -> tuple[DecisionHistory, int] | None:
         """Return the history that stores a tick, and the number by which it is read there; None if none does."""

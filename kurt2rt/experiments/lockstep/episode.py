@@ -161,10 +161,10 @@ class Episode(ABC):
         self.ticks = record.tick
         self.unknown_ticks += decision.asking
         self.latched_ticks = self.latched_ticks + 1 if record.guard_result.latched else 0
-        if any(result.lesson for result in record.results):
+        if record.results and any(result.lesson for result in record.results):
             self.question.close()
         turned = record.guard_result.wheel_speeds != STANDSTILL
-        self.question.update(decision, record.standing, behaviour=record.behaviour, turned=turned)
+        self.question.update(decision, record.standing, record.behaviour, turned)
         if self.question.begins:
             self.ask_positions.append(self.simulation.position)
             self.mid_asks += decision.asks_at == MID
