@@ -6,8 +6,6 @@ from pathlib import Path
 
 from rich.console import Console
 
-from rich.console import Console
-
 from kurt2rt.cli.executor_option import open_executor
 from kurt2rt.cli.loop_options import say_choice
 from kurt2rt.cli.progress import OneBar, one_bar

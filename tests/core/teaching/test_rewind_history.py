@@ -41,7 +41,7 @@ class Drive:
         return found is not None and found[0].situation(found[1]).tolist() == [tick]
 
 
-def test_rewind_standing_for_a_minute_finds_ten_seconds_of_driving() -> None:
+def test_rewind_after_a_minute_finds_ten_seconds_of_driving() -> None:
     drive = Drive()
     drive.run(3000, driving=True)
     drive.run(6000, driving=False)
@@ -61,7 +61,7 @@ def test_rewind_finds_the_drive_before_pulses_and_questions() -> None:
     assert not drive.remembers(1050)
 
 
-def test_rewind_while_driving_keeps_the_drive_before_a_standstill() -> None:
+def test_rewind_while_driving_keeps_the_drive_before() -> None:
     drive = Drive()
     drive.run(900, driving=True)
     drive.run(6000, driving=False)
