@@ -1,6 +1,7 @@
 # make run    a simulated robot that asks to be taught, and the page to teach it from; ARGS=--auto teaches by itself
 # make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
 # make test   lint, types, and the tests that need nothing but Python
+# make trust  those tests twenty times, ten of them next to busy processors: two hours; RUNS=4 BUSY=2 does fewer
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
@@ -16,7 +17,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test test-deep guard mutants kills equal-lessons studies rivals wheelhouse hil bench lint types clean
+.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies rivals wheelhouse hil bench lint types clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -29,6 +30,12 @@ demo: $(INSTALLED)
 test: $(INSTALLED)
 	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types $(COMPILED)
 	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
+
+# A test that fails only on a busy machine is a fault of the test, or worse.
+RUNS ?= 20
+BUSY ?= 10
+trust: $(INSTALLED) $(COMPILED)
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.many_runs --runs $(RUNS) --busy $(BUSY)
 
 # A test that waits for a processor has not failed: six times what the quick ones have.
 test-deep: $(INSTALLED) guard

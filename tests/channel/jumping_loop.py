@@ -25,7 +25,7 @@ _DISK_S = 30.0
 _ROUNDING_S = 1e-7
 """Timers due within it fire together."""
 _MOST_TURNS = 500
-"""Turns in a row that only call each other: what ends them is a timer, as for a task that anyio cancels in each turn."""
+"""Turns in a row that only call each other, as anyio cancels a task in each turn: a timer has to end them."""
 _TURNS = 20
 """Turns in which what began at the end of a time is done."""
 _STUCK_S = 30.0

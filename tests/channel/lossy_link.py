@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
+from tests.patience import PATIENCE_S
+
 _LARGEST_DATAGRAM = 65_536
 
 
@@ -121,8 +123,8 @@ class LossyLink:
         self._cut = False
 
     async def until(self, holds: Callable[[], bool]) -> None:
-        """Wait until something holds that changes with the traffic, such as a tally; at most 10 s."""
-        async with asyncio.timeout(10.0):
+        """Wait until something holds that changes with the traffic, such as a tally."""
+        async with asyncio.timeout(PATIENCE_S):
             while not holds():
                 self._news.clear()
                 await self._news.wait()

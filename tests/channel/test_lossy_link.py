@@ -7,6 +7,7 @@ from typing import cast
 import pytest
 
 from tests.channel.lossy_link import LossyLink, Weather
+from tests.patience import PATIENCE_S
 
 
 class Mailbox(asyncio.DatagramProtocol):
@@ -34,7 +35,7 @@ class Mailbox(asyncio.DatagramProtocol):
             self.transport.sendto(each)
 
     async def until(self, count: int) -> list[bytes]:
-        async with asyncio.timeout(5.0):
+        async with asyncio.timeout(PATIENCE_S):
             while len(self.arrived) < count:
                 self.news.clear()
                 await self.news.wait()
@@ -88,7 +89,7 @@ async def fates(robot: Mailbox, weather: Weather, seed: int) -> list[bytes]:
             await link.until(lambda: link.down.came == number + 1)  # noqa: B023 - called only in this round
         link.change_weather(down=Weather())
         client.send(b"end")
-        async with asyncio.timeout(5.0):
+        async with asyncio.timeout(PATIENCE_S):
             while b"END" not in client.arrived:
                 client.news.clear()
                 await client.news.wait()

@@ -40,6 +40,7 @@ from tests.channel.channel_fixture import ChannelFixture
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
 from tests.knowledge.refusals import refused
+from tests.patience import PATIENCE_S
 
 ROBOT, TASK = load_kurt2(), load_task("wall_following")
 TEACHER = TeacherNow("phone", 2, "noon")
@@ -260,7 +261,7 @@ async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClien
 
 async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> State:
     """Return the first state with these values, of another start of the robot than `boot`."""
-    with anyio.fail_after(30.0):
+    with anyio.fail_after(PATIENCE_S):
         async for state in client.states():
             if state.boot != boot and all(getattr(state, name) == value for name, value in wanted.items()):
                 return state
@@ -269,7 +270,7 @@ async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> S
 
 async def state_at(client: TeacherClient, tick: int) -> State:
     """Return the first state of a tick or later."""
-    with anyio.fail_after(30.0):
+    with anyio.fail_after(PATIENCE_S):
         async for state in client.states():
             if state.tick >= tick:
                 return state

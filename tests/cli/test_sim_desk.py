@@ -16,6 +16,7 @@ from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
+from tests.patience import PATIENCE_S
 from tests.simbridge.rig import ROBOT
 
 WORLD = load_world("a")
@@ -152,7 +153,7 @@ def test_the_status_line_tells_where_it_is_and_what_it_was_told(table: Table) ->
 
 def test_lines_are_there_when_they_are_looked_for() -> None:
     keyboard = TypedLines(io.StringIO("lift\nlower\n"))
-    keyboard.thread.join(30.0)
+    keyboard.thread.join(PATIENCE_S)
     assert keyboard.ended
     assert list(keyboard.typed()) == ["lift\n", "lower\n"]
     assert list(keyboard.typed()) == []

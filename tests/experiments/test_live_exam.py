@@ -18,6 +18,7 @@ from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.service.live_exam import LiveExam
 from tests.knowledge.refusals import refused
+from tests.patience import PATIENCE_S
 
 OVER = ExamStatus(False, 1.0, "Passed in 0 of 1 worlds.")
 
@@ -37,7 +38,7 @@ def saying(*lines: str, after: str = "") -> "LiveExam":
 
 def ended(exam: LiveExam) -> ExamStatus:
     assert exam._reading is not None
-    exam._reading.join(10.0)
+    exam._reading.join(PATIENCE_S)
     return exam.status
 
 

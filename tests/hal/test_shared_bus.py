@@ -20,6 +20,7 @@ from tests.forked_program import ForkedProcess, has_fork_server
 from tests.hal.bus_conformance import Behind, Ends, ErrorFrameConformance, Join, joining
 from tests.hal.helpers import cycle, send
 from tests.hal.shared_bus_writer import NUMBERED, payload
+from tests.patience import PATIENCE_S
 
 ROOT = Path(__file__).parents[2]
 WRITER = "tests.hal.shared_bus_writer"
@@ -280,7 +281,7 @@ def test_tools_of_python_can_listen_and_wait(name: str) -> None:
     reader = can.BufferedReader()
     with can.Notifier(bus, [reader], timeout=0.01):
         other.send(cycle()[0])
-        message = reader.get_message(timeout=20.0)
+        message = reader.get_message(timeout=PATIENCE_S)
     assert message is not None
     assert bytes(message.data) == cycle()[0].data
     assert other.recv(0.001) is None

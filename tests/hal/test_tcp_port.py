@@ -9,13 +9,12 @@ import pytest
 from hal.bus import BusError
 from hal.tcp_port import TcpPort
 from simbridge.tcp_listener import TcpListener
-
-_PATIENCE_S = 20.0
+from tests.patience import PATIENCE_S
 
 
 def wait_for(what: Callable[[], bool]) -> None:
     """Wait until something holds; the kernel carries bytes between the ends."""
-    ends_s = time.monotonic() + _PATIENCE_S
+    ends_s = time.monotonic() + PATIENCE_S
     while not what():
         assert time.monotonic() < ends_s, "nothing came"
         time.sleep(0.002)

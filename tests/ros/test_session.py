@@ -12,6 +12,7 @@ from kurt2rt.ros.port import RosConnectionError
 from kurt2rt.ros.session import TriggerRequest, ZenohSession
 from kurt2rt.ros.settings import Naming, RosSettings
 from kurt2rt.ros.topic import key_expression, topic_of, trigger_service
+from tests.patience import PATIENCE_S
 from tests.ros.examples import TWIST
 from tests.ros.helpers import free_locator, wait_for
 
@@ -108,7 +109,7 @@ def test_session_rmw_zenoh_entities_are_seen_by_their_tokens() -> None:
         watcher = stack.enter_context(zenoh.open(_client(ends.locator)))
 
         def tokens() -> set[str]:
-            replies = watcher.liveliness().get("@ros2_lv/0/**", timeout=20)
+            replies = watcher.liveliness().get("@ros2_lv/0/**", timeout=PATIENCE_S)
             return {str(each.ok.key_expr).split("/")[5] for each in replies if each.ok}
 
         wait_for(lambda: {"NN", "MP"} <= tokens())

@@ -21,6 +21,7 @@ from simbridge.robot.noise import Noise
 from simbridge.robot.world import World
 from simbridge.robot_simulation import RobotSimulation
 from simbridge.simulation import Kurt2SimulationFactory
+from tests.patience import PATIENCE_S
 from tests.simbridge.direct_link import DirectEnd, DirectLink
 from tests.simbridge.rig import ROBOT
 
@@ -133,7 +134,7 @@ def test_link_simulation_lives_in_real_time() -> None:
     with FACTORY.live("a", 1) as live:
         assert isinstance(live.robot, LinkedRobot)
         assert live.robot.watchdog.running
-        deadline_s = time.monotonic() + 10.0
+        deadline_s = time.monotonic() + PATIENCE_S
         while live.robot.sense(time.monotonic()).infrared_age_s > 1.0 and time.monotonic() < deadline_s:
             time.sleep(0.01)
         assert live.world.lives

@@ -21,6 +21,7 @@ from kurt2rt.channel.protocol.requests import TakeRequest
 from kurt2rt.channel.security.pairing import Pairing
 from kurt2rt.core.outcome import ResultCode
 from tests.channel.robot_at_work import RobotAtWork, journal_of, robot_at_work
+from tests.patience import PATIENCE_S
 
 _NAMES = ("coap-client", "coap-client-notls", "coap-client-openssl", "coap-client-gnutls")
 _SECONDS = "5"
@@ -50,7 +51,7 @@ def oscore_client() -> str:
 
 async def said(client: str, *arguments: str) -> tuple[str, str]:
     """Return standard output and standard error of the client."""
-    with anyio.fail_after(20.0):
+    with anyio.fail_after(PATIENCE_S):
         done = await anyio.run_process([client, "-B", _SECONDS, *arguments], check=False)
     return done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
@@ -92,7 +93,7 @@ async def _aiocoap_client(at_work: RobotAtWork, pairing: Pairing) -> AsyncIterat
 
 async def test_aiocoap_oscore_client_observes_and_commands(tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work, _aiocoap_client(at_work, at_work.pairing) as client:
-        with anyio.fail_after(20.0):
+        with anyio.fail_after(PATIENCE_S):
             response = await client.request(aiocoap.Message(code=aiocoap.GET, uri=address(at_work, "/state"))).response
             state = decode_state(response.payload)
             assert (response.code, state.teacher) == (aiocoap.CONTENT, None)

@@ -24,8 +24,8 @@ from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.channel.robot_at_work import service_settings
 from tests.channel.robot_process import resident_kb
+from tests.patience import PATIENCE_S
 
-_PATIENCE_S = 30.0
 _MOST_GROWTH_KB = 20 * 1024
 _STOP_WITHIN_S = 1.0
 """Ten times what a stop took at most on a machine with two busy cores."""
@@ -47,7 +47,7 @@ class Child:
 
     async def line(self, holds: Callable[[str], Any]) -> str:
         """Wait for a line with which something holds."""
-        with anyio.fail_after(_PATIENCE_S):
+        with anyio.fail_after(PATIENCE_S):
             while True:
                 for line in self.lines:
                     if holds(line):
@@ -57,7 +57,7 @@ class Child:
     async def over(self) -> list[str]:
         """Send SIGTERM; all that it printed."""
         self._process.terminate()
-        with anyio.fail_after(_PATIENCE_S):
+        with anyio.fail_after(PATIENCE_S):
             while True:
                 try:
                     await self._read()

@@ -12,6 +12,7 @@ from kurt2rt.channel.security.oscore_context import CHUNK, OscoreContext
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from tests.channel.sides import answer_challenge, ask, ask_until_fresh, sequence_of
 from tests.cli.helpers import ROOT, started
+from tests.patience import PATIENCE_S
 
 
 def opened(folder: Path, chunk: int = CHUNK) -> OscoreContext:
@@ -39,7 +40,7 @@ class SlowDisk:
         def slow(folder: ContextFolder, next_to_send: int) -> None:
             self.in_place += threading.get_ident() == here
             self.asked.set()
-            assert self.may_store.wait(timeout=10)
+            assert self.may_store.wait(timeout=PATIENCE_S)
             if self.broken:
                 raise OSError(28, "No space left on device")
             write(folder, next_to_send)
@@ -50,7 +51,7 @@ class SlowDisk:
         """Wait until no thread stores any more."""
         for thread in threading.enumerate():
             if thread.name.startswith("oscore"):
-                thread.join(timeout=10)
+                thread.join(timeout=PATIENCE_S)
 
 
 def test_context_request_is_unprotected_with_teacher_name(pairing: Pairing) -> None:
@@ -99,7 +100,7 @@ def test_a_number_that_is_not_stored_yet_is_not_given_out(pairing: Pairing, monk
     disk.may_store.clear()
     for _ in range(10):
         context.new_sequence_number()
-    assert disk.asked.wait(timeout=10)
+    assert disk.asked.wait(timeout=PATIENCE_S)
     threading.Timer(0.05, disk.may_store.set).start()
     assert context.new_sequence_number() == 10  # waited for the thread
     assert json.loads(sequence_of(pairing.teacher))["next-to-send"] == 20

@@ -19,6 +19,7 @@ from kurt2rt.channel.server.datagram_filter import Counters, Limits
 from kurt2rt.channel.server.endpoint import Endpoint, _unless_reachable, open_endpoint
 from tests.channel.clock import Clock
 from tests.channel.jumping_loop import run_jumping
+from tests.patience import PATIENCE_S
 
 UNLIMITED = Limits(strangers_at_once=1e9)
 PING = bytes([0x40, 0, 0x12, 0x34])
@@ -95,13 +96,13 @@ class Sender(asyncio.DatagramProtocol):
         return token
 
     async def answer(self) -> aiocoap.Message:
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             return aiocoap.Message.decode(await self.received.get())
 
     async def ping(self) -> None:
         """Wait until the robot has read all datagrams so far."""
         self.send(PING)
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             while await self.received.get() != PONG:
                 pass
 
@@ -169,7 +170,7 @@ async def test_bound_to_one_address_it_is_not_there_at_others(listens: str, aske
     async with robot_at(listens) as robot:
         sender = await robot.sender(asked)
         sender.post("echo")
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(PATIENCE_S):
             await sender.refused.wait()
         assert robot.endpoint.counters.received == 0
 

@@ -46,6 +46,7 @@ from kurt2rt.core.tick_record import TickRecord
 from tests.channel.channel_fixture import BOOT, ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
+from tests.patience import PATIENCE_S
 
 CODES = (aiocoap.GET, aiocoap.POST, aiocoap.PUT, aiocoap.DELETE, aiocoap.FETCH)
 EVERYWHERE = (*PATHS, "/state", "/", "/nothing/here", "/.well-known/core")
@@ -551,7 +552,7 @@ class Line:
 
     async def _response(self, message: Any) -> Any:
         message.unresolved_remote = self._host
-        async with asyncio.timeout(10.0):
+        async with asyncio.timeout(PATIENCE_S):
             return await self._coap.request(message, handle_blockwise=False).response
 
 

@@ -16,9 +16,8 @@ from hal.serial_port import SerialPort
 from hal.settings import SettingsError
 from kurt2rt.robots.school.kind import SCHOOL
 from simbridge.pty_port import PtyPort
+from tests.patience import PATIENCE_S
 from tests.robots.school.rig import FORWARD, SETTINGS, PtyRobot
-
-PATIENCE_S = 20.0
 
 
 def drive_until(robot: object, reached: Callable[[GuardResult], bool]) -> GuardResult:

@@ -11,8 +11,7 @@ from kurt2rt.service.health.machine import MachineMonitor, battery_of
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes
 from tests.channel.channel_fixture import ChannelFixture
-
-PATIENCE_S = 10.0
+from tests.patience import PATIENCE_S
 
 
 class Keeping:

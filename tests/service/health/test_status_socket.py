@@ -25,9 +25,8 @@ from kurt2rt.service.health.status_socket import (
     short_name,
     status_socket_path,
 )
+from tests.patience import PATIENCE_S
 from tests.service.health.reports import ILL, WELL
-
-PATIENCE_S = 10.0
 
 
 class Watch:

@@ -23,6 +23,7 @@ from kurt2rt.teacher.client.answer import RefusedError
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.world_loading import load_world
 from tests.channel.lossy_link import LossyLink, Weather
+from tests.patience import PATIENCE_S
 from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
 
 A_BAD_LINK = Weather(loss=0.1, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
@@ -59,7 +60,7 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
 
 
 async def state_where(robot: TeacherClient, **wanted: object) -> State:
-    with anyio.fail_after(20.0):
+    with anyio.fail_after(PATIENCE_S):
         async for state in robot.states():
             if all(getattr(state, name) == value for name, value in wanted.items()):
                 return state
@@ -113,7 +114,7 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
             async with robot.driving() as drive:
                 assert drive.set(0.2, 0.2)
                 await anyio.sleep(0.6)
-            with anyio.fail_after(20.0):
+            with anyio.fail_after(PATIENCE_S):
                 async for state in robot.states():
                     if state.shown is not None:
                         break
@@ -123,7 +124,7 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
             assert answer.outcome is not None
             assert answer.outcome.code is ResultCode.DEMONSTRATION_TAUGHT
             lesson = answer.outcome.fields["lesson"]
-            with anyio.fail_after(20.0):
+            with anyio.fail_after(PATIENCE_S):
                 async for state in robot.states():
                     if state.lessons and not state.unsaved:
                         break

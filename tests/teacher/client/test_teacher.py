@@ -20,6 +20,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots
+from tests.patience import PATIENCE_S
 from tests.teacher.stand_in_robot import stand_in_robot
 
 _Result = TypeVar("_Result")
@@ -138,7 +139,7 @@ async def test_attention_ends_after_the_last_call(pairing: Pairing) -> None:
         await in_a_thread(teacher.open)
         await in_a_thread(lambda: teacher.wait_until(lambda state: state.teacher == "phone"))
         await robot.hears(WatchRequest)
-        with anyio.fail_after(10.0):
+        with anyio.fail_after(PATIENCE_S):
             heard = -1
             while heard != (heard := len(robot.all_of(WatchRequest))):  # noqa: ASYNC110
                 await anyio.sleep(0.2)  # ten messages, if attention lasted

@@ -1,8 +1,8 @@
 """Time of a page and its server, which stands while a test or the browser thinks.
 
-A page that waits for real time is at the mercy of a busy machine: a state that is late by half a second is no state, and
-what a page says it takes back after some seconds. So the page's timers run only when the test lets time pass, and no
-time passes before all messages under way between page and server have arrived.
+In real time a busy machine decides: a page without a state for half a second refuses commands, and it takes back what
+it says after some seconds. So the page's timers run only when the test lets time pass, and no time passes before all
+messages under way between page and server have arrived.
 """
 
 import asyncio

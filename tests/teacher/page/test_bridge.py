@@ -20,6 +20,7 @@ from kurt2rt.teacher.page.messages import Hidden, HoldPress, PageHeartbeat, Page
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.texts import PageNotice
 from kurt2rt.teacher.page.texts import text_of as page_text_of
+from tests.patience import PATIENCE_S
 from tests.teacher.page.clock import Clock
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 from tests.teacher.stand_in_robot import in_a_task_of_its_own
@@ -466,7 +467,7 @@ async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture
 async def test_lessons_after_names_the_answered_command(page: Page) -> None:
     await page.see()
     answer = await page.command("answer", action="forward", level="basic", beside=False)
-    with anyio.fail_after(5):
+    with anyio.fail_after(PATIENCE_S):
         while page.last("lessons")["after"] < answer["done"]:
             await settled()
             await anyio.sleep(0.01)
@@ -555,7 +556,7 @@ async def test_restarted_robot_is_asked_for_hello_again(fixture: BridgeFixture, 
     await page.see()
     before = len(fixture.told("hello"))
     await page.see(boot=b"new!")
-    with anyio.fail_after(5):
+    with anyio.fail_after(PATIENCE_S):
         while len(fixture.told("hello")) == before:
             await settled()
             await anyio.sleep(0.01)

@@ -22,11 +22,11 @@ from kurt2rt.teacher.page.device_pages import DevicePages, PageSite, is_within_t
 from kurt2rt.teacher.page.device_server import Pairings, local_devices, run_device_pages
 from kurt2rt.teacher.page.served_pages import ServedPages
 from kurt2rt.teacher.page.server import listen
+from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import FakeRobot
 
 ELSEWHERE = "127.0.0.2"
 """Address of this machine that a port on 127.0.0.1 alone does not serve."""
-PATIENCE_S = 20.0
 
 
 @dataclass
@@ -102,7 +102,7 @@ async def get(address: str, path: str, headers: dict[str, str] | None = None) ->
     """Status, body and cookie of what is at `address`, a host and a port."""
 
     def ask() -> tuple[int, str, str]:
-        connection = http.client.HTTPConnection(address, timeout=10)
+        connection = http.client.HTTPConnection(address, timeout=PATIENCE_S)
         try:
             connection.request("GET", path, headers=headers or {})
             response = connection.getresponse()

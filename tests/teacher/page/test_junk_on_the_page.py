@@ -14,6 +14,7 @@ import anyio
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from tests.patience import PATIENCE_S
 from tests.teacher.page.test_served_page import Served, hear, see, served
 
 _KEY = base64.b64encode(bytes(16)).decode()
@@ -34,7 +35,7 @@ class Line:
 
     async def over(self) -> None:
         """Read until the server has closed it."""
-        with anyio.fail_after(10.0), contextlib.suppress(ConnectionError):
+        with anyio.fail_after(PATIENCE_S), contextlib.suppress(ConnectionError):
             while await self.reader.read(65_536):
                 pass
 

@@ -21,6 +21,7 @@ from kurt2rt.teacher.page.app import STATIC
 from kurt2rt.teacher.page.public_address import PageError, PublicAddress
 from kurt2rt.teacher.page.server import listen, run_page
 from tests.channel.missing_family import remove_family
+from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import FakeRobot
 
 TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
@@ -52,7 +53,7 @@ class Served:
         self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET", body: bytes | None = None
     ) -> Got:
         def ask() -> Got:
-            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
             try:
                 connection.request(method, path, body, headers or {})
                 response = connection.getresponse()
@@ -248,14 +249,14 @@ async def test_silent_connections_do_not_keep_the_teacher_out() -> None:
 async def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None:
     async with served(request_within_s=0.1) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
         await connection.send(said)
-        with anyio.fail_after(4), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
+        with anyio.fail_after(PATIENCE_S), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
             while True:
                 await connection.receive()
 
 
 async def test_half_a_request_does_not_buy_more_time() -> None:
     async with served(request_within_s=0.3) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
-        with anyio.fail_after(4), contextlib.suppress(anyio.BrokenResourceError):
+        with anyio.fail_after(PATIENCE_S), contextlib.suppress(anyio.BrokenResourceError):
             while True:
                 await connection.send(b"X")
                 await anyio.sleep(0.02)

@@ -15,6 +15,7 @@ from config import CONFIG_DIR
 from kurt2rt.channel.security.pairing import pair, read_device, revoke
 from kurt2rt.teacher.page.server import listen
 from tests.cli.helpers import running
+from tests.patience import PATIENCE_S
 
 HERE = ("--page-address", "127.0.0.1")
 """A phone is told this address also where this machine is in no network."""
@@ -31,7 +32,7 @@ def free_udp_port() -> int:
 def cookie_of(address: str) -> str:
     """Open the address that was printed, as a browser does."""
     parts = urlsplit(address)
-    connection = http.client.HTTPConnection(parts.netloc, timeout=60)
+    connection = http.client.HTTPConnection(parts.netloc, timeout=PATIENCE_S)
     try:
         connection.request("GET", f"{parts.path}?{parts.query}")
         response = connection.getresponse()
@@ -49,10 +50,10 @@ def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path)
         assert address.startswith("http://127.0.0.1:")
         at = urlsplit(address).netloc
         headers = {"Cookie": cookie_of(address), "Origin": f"http://{at}"}
-        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=60) as websocket:
+        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=PATIENCE_S) as websocket:
             said: dict[str, str] = {}
             while said.get("kind") != "silent":
-                said = json.loads(websocket.recv(timeout=10))
+                said = json.loads(websocket.recv(timeout=PATIENCE_S))
         assert f"127.0.0.1:{port}" in said["text"]
         ended = page.end(signal.SIGTERM)
     assert ended.exit_code == 0
@@ -66,7 +67,7 @@ def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
         address = urlsplit(page.wait_for("http://").strip())
         cookie_of(address._replace(netloc=f"127.0.0.1:{address.port}").geturl())  # it is served, also on loopback
         revoke(teachers, devices, "phone")
-        assert page.process.wait(timeout=20) == 2
+        assert page.process.wait(timeout=PATIENCE_S) == 2
         assert page.process.stderr is not None
         (line,) = page.process.stderr.read().splitlines()
     assert line.startswith("kurt2rt: phone: ")
@@ -90,7 +91,7 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
             cookie_of(f"http://127.0.0.1:{served}/pair?token={read_device(tmp_path / 'var/devices/phone').token}")
             assert page.end(signal.SIGTERM).err == ""
         with running("teach", "--as", "phone", "--page-port", str(port), folder=tmp_path) as page:
-            page.process.wait(timeout=20)
+            page.process.wait(timeout=PATIENCE_S)
             assert page.process.stderr is not None
             assert os.strerror(errno.EADDRINUSE) in page.process.stderr.read()
 

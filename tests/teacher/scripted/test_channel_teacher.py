@@ -36,6 +36,7 @@ from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_state
 from tests.channel.states import state
+from tests.patience import PATIENCE_S
 from tests.teacher.client.test_client import HELLO
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 
@@ -147,7 +148,7 @@ async def lesson(
             over.set()
 
     over = anyio.Event()
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
 
             async def teach() -> None:
@@ -204,7 +205,7 @@ async def show_when_seen(robot: StandInRobot, client: TeacherClient) -> None:
 async def test_teach_by_script_selects_each_behaviour_in_turn(robot: StandInRobot, client: TeacherClient) -> None:
     streets(robot, 0.2)
     said: list[str] = []
-    with anyio.fail_after(30.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(show_when_seen, robot, client)
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 20.0), said.append)
@@ -226,7 +227,7 @@ async def test_teach_by_script_without_progress_repositions_the_robot(
 ) -> None:
     streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     said: list[str] = []
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
             (first, *_) = await robot.hears(PlaceRequest)
@@ -240,7 +241,7 @@ async def test_teach_by_script_without_progress_repositions_the_robot(
 async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, client: TeacherClient) -> None:
     mind = streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     said: list[str] = []
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
             await robot.hears(PhaseRequest)
@@ -259,7 +260,7 @@ async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, 
 
 async def test_teach_by_script_phase_5_guard_stop_is_resumed(robot: StandInRobot, client: TeacherClient) -> None:
     streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), lambda _: None)
             await robot.hears(ResumeRequest)
@@ -274,7 +275,7 @@ async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
     mind = streets(robot, 0.5, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     mind.refuses_phase = Phase.AUTONOMOUS
     said: list[str] = []
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), said.append)
             await robot.hears(PhaseRequest, 2)  # phase 1, and 5 at the end
@@ -294,7 +295,7 @@ async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInR
     robot.mind = Mind(robot)
     holding = QUICK_TEACHER.model_copy(update={"corrects_by": "hold", "hold_s": 0.2})
     task = taught_by(short(each_phase_s=2.0), holding)
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
             await robot.hears(PhaseRequest, 2)
@@ -309,7 +310,7 @@ async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInR
 async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandInRobot, client: TeacherClient) -> None:
     robot.mind = Mind(robot)
     task = taught_by(short(each_phase_s=2.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
             await robot.hears(PhaseRequest, 2)
@@ -327,7 +328,7 @@ async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandI
 async def test_teach_by_script_rewind_does_not_lift_a_person_s_stop(robot: StandInRobot, client: TeacherClient) -> None:
     robot.mind = Mind(robot)
     task = taught_by(short(each_phase_s=4.0), QUICK_TEACHER.model_copy(update={"corrects_by": "rewind"}))
-    with anyio.fail_after(10.0):
+    with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
             await robot.hears(PhaseRequest, 2)
