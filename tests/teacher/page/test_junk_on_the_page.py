@@ -14,6 +14,8 @@ import anyio
 import pytest
 from websockets.exceptions import ConnectionClosed
 
+from kurt2rt.teacher.page.server import REQUEST_WITHIN_S
+from tests.channel.jumping_loop import run_jumping
 from tests.patience import PATIENCE_S
 from tests.teacher.page.test_served_page import Served, hear, see, served
 
@@ -145,17 +147,20 @@ async def test_junk_frames_of_a_page_close_it_without_a_traceback(said: Callable
     assert said() == ""
 
 
-async def test_junk_handshakes_leave_no_traceback(said: Callable[[], str]) -> None:
-    async with served(request_within_s=0.1) as page:
-        for what, junk in HANDSHAKES.items():
-            async with line_to(page) as line:
-                await line.send(junk(page))
-                with anyio.move_on_after(0.02):
-                    await line.over()
-            assert said() == "", what
-        await anyio.sleep(0.15)  # those that are not complete are ended
-        await still_serves(page)
-    assert said() == ""
+def test_junk_handshakes_leave_no_traceback(said: Callable[[], str]) -> None:
+    async def story() -> None:
+        async with served() as page:
+            for what, junk in HANDSHAKES.items():
+                async with line_to(page) as line:
+                    await line.send(junk(page))
+                    with anyio.move_on_after(0.02):
+                        await line.over()
+                assert said() == "", what
+            await anyio.sleep(2 * REQUEST_WITHIN_S)  # those that are not complete are ended
+            await still_serves(page)
+        assert said() == ""
+
+    run_jumping(story)
 
 
 async def test_bytes_at_random_leave_no_traceback(said: Callable[[], str]) -> None:

@@ -1,7 +1,9 @@
 """The page's server: access, headers, WebSocket, files, limits."""
 
+import asyncio
 import contextlib
 import http.client
+import io
 import json
 import socket
 from collections.abc import AsyncIterator
@@ -11,7 +13,6 @@ from functools import partial
 from typing import Any
 
 import anyio
-import anyio.to_thread
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import InvalidStatus
@@ -20,8 +21,8 @@ from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import STATIC
 from kurt2rt.teacher.page.public_address import PageError, PublicAddress
 from kurt2rt.teacher.page.server import listen, run_page
+from tests.channel.jumping_loop import run_jumping
 from tests.channel.missing_family import remove_family
-from tests.patience import PATIENCE_S
 from tests.teacher.page.fake_robot import FakeRobot
 
 TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
@@ -52,16 +53,19 @@ class Served:
     async def get(
         self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET", body: bytes | None = None
     ) -> Got:
-        def ask() -> Got:
-            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
-            try:
-                connection.request(method, path, body, headers or {})
-                response = connection.getresponse()
-                return Got(response.status, response.headers, response.read())
-            finally:
-                connection.close()
-
-        return await anyio.to_thread.run_sync(ask)
+        """Ask without a thread, so that the time of a JumpingLoop stands meanwhile."""
+        reader, writer = await asyncio.open_connection("127.0.0.1", self.port)
+        given = {"Host": f"127.0.0.1:{self.port}", "Connection": "close", **(headers or {})}
+        if body is not None:
+            given["Content-Length"] = str(len(body))
+        lines = [f"{method} {path} HTTP/1.1", *(f"{name}: {value}" for name, value in given.items())]
+        writer.write("".join(f"{line}\r\n" for line in (*lines, "")).encode() + (body or b""))
+        status, *head = (await reader.readuntil(b"\r\n\r\n")).split(b"\r\n")
+        content = await reader.read()
+        writer.close()
+        with contextlib.suppress(ConnectionError):
+            await writer.wait_closed()
+        return Got(int(status.split()[1]), http.client.parse_headers(io.BytesIO(b"\r\n".join(head))), content)
 
     def websocket(self, *, origin: str | None = "same", cookie: bool = True, host: str | None = None) -> connect:
         at = f"127.0.0.1:{self.port}"
@@ -246,27 +250,36 @@ async def test_silent_connections_do_not_keep_the_teacher_out() -> None:
 @pytest.mark.parametrize(
     "said", [b"", b"GET / HTTP/1.1\r\nHost: ", b"POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nhalf"]
 )
-async def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None:
-    async with served(request_within_s=0.1) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
-        await connection.send(said)
-        with anyio.fail_after(PATIENCE_S), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
-            while True:
-                await connection.receive()
+def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None:
+    async def story() -> None:
+        async with served(request_within_s=3.0) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+            await connection.send(said)
+            with anyio.fail_after(4.0), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
+                while True:
+                    await connection.receive()
+
+    run_jumping(story)
 
 
-async def test_half_a_request_does_not_buy_more_time() -> None:
-    async with served(request_within_s=0.3) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
-        with anyio.fail_after(PATIENCE_S), contextlib.suppress(anyio.BrokenResourceError):
-            while True:
-                await connection.send(b"X")
-                await anyio.sleep(0.02)
+def test_half_a_request_does_not_buy_more_time() -> None:
+    async def story() -> None:
+        async with served(request_within_s=3.0) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+            with anyio.fail_after(4.0), contextlib.suppress(anyio.BrokenResourceError):
+                while True:
+                    await connection.send(b"X")
+                    await anyio.sleep(0.2)
+
+    run_jumping(story)
 
 
-async def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
-    async with served(request_within_s=0.1) as page, page.websocket() as socket:
-        await hear(socket, "page")
-        await anyio.sleep(0.3)
-        await see(page, socket)
+def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
+    async def story() -> None:
+        async with served(request_within_s=3.0) as page, page.websocket() as socket:
+            await hear(socket, "page")
+            await anyio.sleep(9.0)
+            await see(page, socket)
+
+    run_jumping(story)
 
 
 async def test_public_address_is_served_for_a_tls_proxy() -> None:
