@@ -89,8 +89,10 @@ wheelhouse:
 		&& wheelhouse/venv/bin/pip download --quiet --dest wheelhouse/$$machine --constraint constraints.txt \
 			--only-binary :all: --python-version $(ROBOT_PYTHON) --implementation cp $(ABIS:%=--abi %) \
 			$(foreach glibc,2_17 2_28 2_34,--platform manylinux_$(glibc)_$$machine) --platform manylinux2014_$$machine \
-			'.[$(EXTRAS)]' || exit 1; \
-		echo "wheelhouse/$$machine: $$(ls wheelhouse/$$machine | wc -l) wheels"; \
+			'.[$(EXTRAS)]' \
+		&& (cd wheelhouse/$$machine && sha256sum *.whl | sed -E \
+			's/^([0-9a-f]+)  ([^-]+)-([^-]+)-.*/\2==\3 --hash=sha256:\1/' > requirements.txt) || exit 1; \
+		echo "wheelhouse/$$machine: $$(wc -l < wheelhouse/$$machine/requirements.txt) wheels"; \
 	done
 	rm -rf wheelhouse/venv build
 

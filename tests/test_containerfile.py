@@ -25,6 +25,11 @@ def test_image_runs_without_rights_of_root() -> None:
     assert f"--uid {value_of('USER')}" in FINAL[made][1]
 
 
+def test_both_stages_are_of_one_image_by_its_digest() -> None:
+    assert re.search(r"^ARG BASE=debian:12-slim@sha256:[0-9a-f]{64}$", TEXT, re.MULTILINE)
+    assert re.findall(r"^FROM (\S+)", TEXT, re.MULTILINE) == ["${BASE}", "${BASE}"]
+
+
 def test_image_starts_the_program_of_the_project() -> None:
     (program,) = json.loads(value_of("ENTRYPOINT"))
     assert program.rpartition("/")[2] in PROJECT["project"]["scripts"]

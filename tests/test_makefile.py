@@ -1,6 +1,8 @@
 """The first `make run` says that it installs, and how long that takes; it starts the page for phones as well."""
 
+import hashlib
 import os
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -41,6 +43,18 @@ def test_make_wheelhouse_takes_wheels_alone_for_both_processors(tmp_path: Path) 
     assert "--only-binary :all:" in said
     assert "--abi cp311 --abi abi3 --abi none" in said
     assert "'.[page,recording]'" in said
+
+
+def test_wheelhouse_requirements_hold_a_hash_of_each_wheel(tmp_path: Path) -> None:
+    command = re.search(r"sha256sum .*?> requirements\.txt", dry(tmp_path, "wheelhouse"), re.DOTALL)
+    assert command is not None
+    names = ("python_can-4.6.1-py3-none-any.whl", "cffi-2.1.1-cp311-cp311-manylinux2014_x86_64.manylinux_2_17.whl")
+    for name in names:
+        (tmp_path / name).write_bytes(name.encode())
+    subprocess.run(["sh", "-c", command[0]], cwd=tmp_path, check=True)
+    cffi, can = (hashlib.sha256(name.encode()).hexdigest() for name in sorted(names))
+    lines = (tmp_path / "requirements.txt").read_text().splitlines()
+    assert lines == [f"cffi==2.1.1 --hash=sha256:{cffi}", f"python_can==4.6.1 --hash=sha256:{can}"]
 
 
 def test_first_make_run_says_that_it_installs_before_it_does(dry_run: str) -> None:

@@ -1,12 +1,10 @@
 """Shutdown of the robot program on a signal: the wheels first, over within a second."""
 
-import math
 import os
 import select
 import signal
 import socket
 import threading
-import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from enum import StrEnum
@@ -15,13 +13,15 @@ from typing import Final, Self
 
 from hal.errors import ExitCode
 from kurt2rt.platform.signal_handlers import SignalHandlers
+from kurt2rt.service.shutdown_clock import ShutdownClock
 
 SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z, too: a program that is stopped or killed on the spot does not brake."""
 
 LONGEST_S = 1.0
-"""Longest time from the signal to the end of the process, in s."""
+"""Longest time from the signal to the end of the process, in s that the process is not kept from a processor."""
 _GIVES_UP_S = 0.9
+_LOOK_EVERY_S = 0.1
 _KEPT_BACK_S = 0.2
 """Reserve for the stages after a wait, in s."""
 _LAST_WORD_S = 0.05
@@ -58,7 +58,8 @@ _STAGES: Final = {
 class ShutdownHandler:
     """Thread that receives the signals, also while the loop or a disk hangs; a context manager of the main thread.
 
-    At the first signal that ends the program it runs the callbacks of `on_shutdown`. The rest then has 0.9 s.
+    At the first signal that ends the program it runs the callbacks of `on_shutdown`. The rest then has 0.9 s, and more
+    on a machine too busy to give it a processor.
     """
 
     def __init__(
@@ -77,7 +78,7 @@ class ShutdownHandler:
         self._on_timeout = on_timeout
         self._callbacks: list[Callback] = []
         self._failures: list[Exception] = []
-        self._deadline_s = math.inf
+        self._clock = ShutdownClock()
         self._lock = threading.Lock()
         self._handlers = SignalHandlers(dict.fromkeys((*SHUTDOWN_SIGNALS, *map(signal.Signals, self._others)), _ignore))
         self._wakeup_before = -1
@@ -95,11 +96,11 @@ class ShutdownHandler:
     @property
     def requested(self) -> bool:
         """Return whether a signal has asked the program to end."""
-        return self._deadline_s < math.inf
+        return self._clock.started
 
     def remaining_s(self, wanted_s: float) -> float:
         """Return the seconds that a wait of `wanted_s` may last: less after a signal has asked the program to end."""
-        return max(0.0, min(wanted_s, self._deadline_s - _KEPT_BACK_S - time.monotonic()))
+        return self._clock.left_s(_GIVES_UP_S - _KEPT_BACK_S, wanted_s)
 
     @contextmanager
     def on_shutdown(self, *callbacks: Callback) -> Iterator[None]:
@@ -139,11 +140,14 @@ class ShutdownHandler:
 
     def _listen(self) -> None:
         while True:
-            left_s = self._deadline_s - time.monotonic()
-            if left_s <= 0 and self._on_timeout is not None:
-                self._on_timeout(self.stage)
-                return
-            self._wakeup_recv.settimeout(left_s if 0 < left_s < math.inf else None)
+            if self.requested and self._on_timeout is not None:
+                left_s = self._clock.left_s(_GIVES_UP_S)
+                if left_s == 0:
+                    self._on_timeout(self.stage)
+                    return
+                # The kernel's own deadline, if the interpreter hangs as a whole.
+                signal.setitimer(signal.ITIMER_REAL, self._clock.left_s(LONGEST_S))
+                self._wakeup_recv.settimeout(min(left_s, _LOOK_EVERY_S))
             try:
                 numbers = self._wakeup_recv.recv(64)
             except TimeoutError:
@@ -159,10 +163,9 @@ class ShutdownHandler:
             self._run_callbacks((other,))
         elif number in SHUTDOWN_SIGNALS and not self.requested:
             with self._lock:
-                self._deadline_s = time.monotonic() + _GIVES_UP_S
+                self._clock.start()
                 callbacks = tuple(self._callbacks)
             if self._on_timeout is not None:
-                # The kernel's own deadline, if the interpreter hangs as a whole.
                 signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
             self._run_callbacks(callbacks)
 
@@ -180,11 +183,14 @@ def timeout_message(stage: ShutdownStage) -> str:
 
 
 def force_exit(stage: ShutdownStage) -> None:
-    """End this process at once with a last line and exit code 2; acknowledged lessons are on the disk."""
+    """End this process at once with a last line and exit code 2; acknowledged lessons are on the disk.
+
+    A program that had not yet begun leaves nothing undone, and its exit code is 0.
+    """
     # A terminal may hang, too; one that is writable takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
         os.write(_STDERR, f"{timeout_message(stage)}\n".encode())
-    os._exit(ExitCode.REFUSED)
+    os._exit(ExitCode.DONE if stage is ShutdownStage.START else ExitCode.REFUSED)
 
 
 def _ignore(_number: int, _frame: FrameType | None) -> None:

@@ -19,7 +19,7 @@ def test_error_lasts_until_its_name_is_known_to_be_well(level: int, text: str) -
     assert told(errors, level, "motors") == text
 
 
-def test_errors_of_many_names_are_held_as_64_and_one() -> None:
+def test_errors_of_endless_names_are_held_as_64_and_one_more() -> None:
     errors, names = DiagnosticErrors(["motor"]), [f"motor {number}" for number in range(2000)]
     assert told(errors, 2, *names) == "motor 0: hot"
     assert len(errors._errors) == 65

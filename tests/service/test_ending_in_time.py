@@ -1,7 +1,12 @@
 """SIGTERM brakes the wheels and ends the program, also where disk, recorder, network or the loop hang for ever."""
 
+import os
 import signal
+import subprocess
+import sys
+import time
 import uuid
+from contextlib import ExitStack
 from pathlib import Path
 
 import anyio.to_thread
@@ -46,3 +51,19 @@ async def test_the_wheels_are_braked_and_the_program_ends(thing: str, tmp_path: 
     assert brakes([frame for frame in ear.frames if is_control(frame)][-1])
     assert SAYS[thing] in said
     assert "Traceback" not in said
+
+
+@pytest.mark.deep
+def test_the_program_ends_with_0_on_a_machine_that_is_too_busy(tmp_path: Path) -> None:
+    words = ("run", "--port", "0", "--knowledge", "mine.knowledge")
+    with ExitStack() as stack:
+        for _ in range(4 * (os.cpu_count() or 1)):
+            stack.callback(subprocess.Popen([sys.executable, "-c", "while True: pass"]).kill)
+        for waits_s in (0.0, 1.0, 2.0, 4.0, 8.0):
+            with started("kurt2rt.cli.main", *words, folder=tmp_path, fresh=True) as program:
+                assert program.stdout is not None
+                program.stdout.readline()
+                time.sleep(waits_s)  # any moment of the start and of the drive
+                program.send_signal(signal.SIGTERM)
+                said = program.communicate()[0]
+            assert program.returncode == 0, said
