@@ -107,12 +107,13 @@ class RobotProgram:
         service, options = self._service, self._options
         pin_mmap_threshold()
         end = "" if options.as_service else "; Ctrl-C ends"
-        self._screen.print_line(f"task {self._task.name}, robot {options.bus}, knowledge {service.knowledge}{end}")
         with self._program_stack as stack:
             notifier = stack.enter_context(Notifier())
             reloader = ConfigReloader(self._read, service, notifier, self._log) if options.as_service else None
             others = {} if reloader is None else {signal.SIGHUP: reloader.request}
             shutdown = stack.enter_context(ShutdownHandler(others=others, on_timeout=self._environment.on_timeout))
+            # Not before: a reader of the line may send a signal at once.
+            self._screen.print_line(f"task {self._task.name}, robot {options.bus}, knowledge {service.knowledge}{end}")
             self._context = ProcessContext(
                 shutdown, notifier, reloader, self._liveness(), self._guard_threads, self._log
             )

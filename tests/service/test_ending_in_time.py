@@ -58,7 +58,8 @@ def test_the_program_ends_with_0_on_a_machine_that_is_too_busy(tmp_path: Path) -
     words = ("run", "--port", "0", "--knowledge", "mine.knowledge")
     with ExitStack() as stack:
         for _ in range(4 * (os.cpu_count() or 1)):
-            stack.callback(subprocess.Popen([sys.executable, "-c", "while True: pass"]).kill)
+            busy = stack.enter_context(subprocess.Popen([sys.executable, "-c", "while True: pass"]))
+            stack.callback(busy.kill)
         for waits_s in (0.0, 1.0, 2.0, 4.0, 8.0):
             with started("kurt2rt.cli.main", *words, folder=tmp_path, fresh=True) as program:
                 assert program.stdout is not None
