@@ -10,6 +10,7 @@ the descriptor of a pipe from the process that started it; it ends with that pro
 import atexit
 import contextlib
 import gc
+import io
 import json
 import os
 import runpy
@@ -118,6 +119,7 @@ def _become(order: Order, descriptors: list[int]) -> None:
         os.dup2(each, number)
     for each in descriptors:
         os.close(each)
+    _open_streams()
     signal.signal(signal.SIGINT, signal.default_int_handler)
     os.environ.clear()
     os.environ.update(order.environment)
@@ -125,6 +127,16 @@ def _become(order: Order, descriptors: list[int]) -> None:
     sys.path[0] = order.folder
     sys.argv = [order.module, *order.words]
     sys.modules.pop(order.module, None)  # it is run as the main module
+
+
+def _open_streams() -> None:
+    """Open Python's streams again: those of the fork server remember whether its own could be sought in."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        before: io.TextIOWrapper = getattr(sys, name)
+        raw = open(number, "wb" if number else "rb", buffering=0 if number else -1, closefd=False)  # noqa: SIM115
+        stream = io.TextIOWrapper(raw, before.encoding, before.errors, write_through=True)  # type: ignore[arg-type]
+        setattr(sys, name, stream)
+        setattr(sys, f"__{name}__", stream)
 
 
 def serve(address: str, parent: int) -> Order | None:

@@ -1,4 +1,4 @@
-"""Runs of the default tests one after the other, some of them next to busy processors: are they to be trusted?
+"""Runs of the default tests one after the other, some of them next to busy processors, to see whether to trust them.
 
 `python -m tests.many_runs --runs 20 --busy 10` prints a table in Markdown, and ends with 1 if any test failed. The last
 runs are those next to busy loops. Words after `--` go to pytest: `-- tests/teacher/page`.

@@ -29,6 +29,13 @@ def test_forked_program_has_arguments_folder_variables_and_stdin(tmp_path: Path)
     assert complaints == "a complaint\n"
 
 
+def test_forked_program_knows_that_its_streams_are_pipes(tmp_path: Path) -> None:
+    told = "import sys; print([each.seekable() for each in (sys.stdin, sys.stdout, sys.stderr)])"
+    (tmp_path / "tells.py").write_text(told, encoding="utf-8")
+    with started("tells", folder=tmp_path) as program:
+        assert program.communicate() == ("[False, False, False]\n", "")
+
+
 def test_it_can_be_killed_and_others_live_on(tmp_path: Path) -> None:
     (tmp_path / "waits.py").write_text("input()", encoding="utf-8")
     with started("waits", folder=tmp_path) as one, started("waits", folder=tmp_path) as other:

@@ -67,6 +67,7 @@ class JumpingLoop(asyncio.SelectorEventLoop):
     """Time begins at 0 and is the same in every run. Threads would race against it: what uses one works in place."""
 
     def __init__(self) -> None:
+        self._scheduled: list[asyncio.TimerHandle]  # asyncio's heap of timers
         self._jumping = _JumpingSelector(lambda: self._scheduled[0].when() if self._scheduled else math.inf)
         super().__init__(self._jumping)
         self._clock_resolution = _ROUNDING_S  # asyncio's

@@ -14,6 +14,7 @@ from kurt2rt.checks.commission.progress import load_progress
 from tests.checks.commission.typed import PROGRESS, Type, Typed, commission_the_rest, earlier, live, typing
 from tests.checks.commission.workshop import BASE, Workshop
 from tests.cli.helpers import CommandLine, running
+from tests.patience import PATIENCE_S
 
 
 @pytest.fixture
@@ -52,7 +53,7 @@ def test_ctrl_c_brakes_while_the_wheels_turn(tmp_path: Path, key: signal.Signals
 
 
 def next_control(onlooker: SharedBus) -> Control:
-    message = onlooker.recv(10.0)
+    message = onlooker.recv(PATIENCE_S)
     assert message is not None, "no CONTROL is sent"
     return decode_control(message.data)
 

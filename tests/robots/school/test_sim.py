@@ -5,8 +5,8 @@ from pathlib import Path
 
 from kurt2rt.robots.school.kind import SCHOOL
 from tests.cli.helpers import started
+from tests.patience import PATIENCE_S
 from tests.robots.school.rig import FORWARD, SETTINGS
-from tests.robots.school.test_serial import PATIENCE_S
 
 
 def test_sim_is_a_school_robot_for_another_program(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ import anyio
 import anyio.from_thread
 import pytest
 
+from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.pairing import Device, local_pairing
@@ -103,6 +104,7 @@ class _SteppedClock(LoopClock):
 async def _robot(folder: Path, name: str) -> AsyncIterator[tuple[int, Device]]:
     """Serve the simulated robot as `kurt2rt run` does, without threads; return its port and its teacher."""
     settings, task = load_robot(), load_task(name)
+    assert isinstance(settings, Kurt2Settings)
     world = load_world(task.teaching.world, settings)
     service = service_settings(folder).model_copy(update={"task": name, "world": task.teaching.world})
     device = local_pairing(Path(service.teachers), Path(service.devices)).device

@@ -4,7 +4,6 @@
 """
 
 import tempfile
-import time
 from pathlib import Path
 
 from PIL import Image
@@ -32,7 +31,7 @@ def picture(target: Path = PICTURE) -> None:
     """Teach a robot in a folder of its own, and write the picture of its page."""
     with tempfile.TemporaryDirectory() as folder:
         shots = Path(folder) / "shots"
-        with phone(shots) as opened, classroom(Path(folder)) as room:
+        with phone(shots) as opened, classroom(Path(folder), opened) as room:
             _teach(opened, room)
         _join([shots / f"{number}.png" for number in range(1, 6)], target)
 
@@ -46,29 +45,29 @@ def _teach(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: phone.text("#phase-name") == "slow, 60 %", "lessons are slow")
     phone.touch("[data-action=along_left_wall]")
     phone.wait(lambda: phone.text("#sentence").startswith("RLA 1 "), "it drives")
-    time.sleep(0.5)
+    phone.pass_time(0.5)
     phone.wait(lambda: phone.has("#why.asks"), "it asks")
     phone.show("1")
     phone.finger_down(*phone.middle("[data-action=spin_right]"))
     phone.wait(lambda: "lessons: 1" in phone.text("#said"), "the hold has taught")
-    time.sleep(0.5)
+    phone.pass_time(0.5)
     phone.show("2")
     phone.finger_up()
-    time.sleep(3.0)
+    phone.pass_time(3.0)
     phone.touch("#rewind")
     phone.touch("#rewind-go")
     phone.run(_LOOK_BACK, -2.4)
-    time.sleep(0.5)
+    phone.pass_time(0.5)
     phone.show("3")
     phone.touch("#rewind-close")
     phone.touch("#tab-drive")
     _drive(phone)
     phone.wait(lambda: phone.shows("#shown"), "the drive is shown")
-    time.sleep(0.5)
+    phone.pass_time(0.5)
     phone.show("4")
     with phone.in_the_dark():
         phone.touch("#tab-more")
-        time.sleep(0.5)
+        phone.pass_time(0.5)
         phone.show("5")
 
 
@@ -78,7 +77,7 @@ def _drive(phone: Phone) -> None:
     phone.finger_down(x, y)
     for dx, dy, seconds in ((0, -70, 1.0), (70, 0, 0.8), (0, -70, 0.8)):
         phone.finger_to(x + dx, y + dy)
-        time.sleep(seconds)
+        phone.pass_time(seconds)
     phone.finger_up()
 
 

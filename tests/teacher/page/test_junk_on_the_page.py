@@ -14,7 +14,7 @@ import anyio
 import pytest
 from websockets.exceptions import ConnectionClosed
 
-from kurt2rt.teacher.page.server import REQUEST_WITHIN_S
+from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S
 from tests.channel.jumping_loop import run_jumping
 from tests.patience import PATIENCE_S
 from tests.teacher.page.test_served_page import Served, hear, see, served
