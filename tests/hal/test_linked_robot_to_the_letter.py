@@ -9,6 +9,7 @@ from hal.robot import STANDSTILL, SensorReadings, readings_before_the_first
 from hal.robot_link import BumperReport, ForeignCommandReport, RangeReport, Report, WheelReport
 from tests.hal.helpers import ROBOT, SENSORS, TICK_S, robot_with
 from tests.hal.linked_scene import SLOW, Scene
+from tests.patience import PATIENCE_S
 
 EVERYTHING = RangeReport(50.0, 0, (200,) * len(SENSORS))
 
@@ -138,7 +139,7 @@ def test_thread_of_the_watchdog_brakes_without_a_tick(scene: Scene) -> None:
     with scene.robot.watchdog:
         scene.drive()
         scene.now_s += 1.0
-        assert scene.link.braked.wait(10.0)
+        assert scene.link.braked.wait(PATIENCE_S)
     assert scene.robot.health.latched is GuardReason.TICKS_CEASED
 
 

@@ -66,7 +66,7 @@ class Listener:
 
     def take(self) -> int:
         """Wait for the next frame and return its sender."""
-        frame = self._bus.recv(20.0)
+        frame = self._bus.recv(PATIENCE_S)
         assert frame is not None
         number, turned = NUMBERED.unpack(frame.data)
         assert turned == number ^ 0xFFFF_FFFF
@@ -237,7 +237,7 @@ def test_the_bus_is_gone_with_its_last_end_and_stays_until_then(name: str) -> No
 def test_shutdown_removes_files_of_killed_processes(name: str) -> None:
     with writing(name, 0x10) as last:
         listener = SharedBus(name)
-        assert listener.recv(20.0) is not None
+        assert listener.recv(PATIENCE_S) is not None
         listener.shutdown()
         last.kill()
         last.wait()

@@ -7,6 +7,7 @@ import pytest
 
 from hal.bus import BusError
 from simbridge.realtime import RealtimeSimulation
+from tests.patience import PATIENCE_S
 from tests.simbridge.rig import Rig
 
 
@@ -37,7 +38,7 @@ def fail() -> None:
 def test_thread_steps_and_stops(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> None:
     steps = StepCounter(rig, monkeypatch, 5)
     with RealtimeSimulation(rig.robot) as simulation:
-        assert steps.enough.wait(30.0)
+        assert steps.enough.wait(PATIENCE_S)
     assert rig.robot.time_s == pytest.approx(len(steps.threads) * 0.01)
     assert simulation.error is None
     assert rig.heard["ENCODER"] == (0, 0)
@@ -47,7 +48,7 @@ def test_thread_error_is_raised_by_stop(rig: Rig) -> None:
     simulation = RealtimeSimulation(rig.robot)
     rig.robot_end.shutdown()
     simulation.start()
-    simulation.wait(30.0)
+    simulation.wait(PATIENCE_S)
     assert isinstance(simulation.error, BusError)
     with pytest.raises(BusError):
         simulation.stop()
@@ -60,7 +61,7 @@ def test_stop_without_start_returns(rig: Rig) -> None:
 def test_thread_too_slow_counts_missed_cycles(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> None:
     steps = StepCounter(rig, monkeypatch, 3)
     with RealtimeSimulation(rig.robot, cycle_s=1e-6) as simulation:  # no processor keeps this pace
-        assert steps.enough.wait(30.0)
+        assert steps.enough.wait(PATIENCE_S)
     assert simulation.missed_cycles > 0
 
 
@@ -68,7 +69,7 @@ def test_thread_too_slow_counts_missed_cycles(monkeypatch: pytest.MonkeyPatch, r
 def test_context_raises_the_bodys_error_first(body_error: ValueError | None, rig: Rig) -> None:
     def run() -> None:
         with RealtimeSimulation(rig.robot) as simulation:
-            assert simulation.wait(30.0)
+            assert simulation.wait(PATIENCE_S)
             if body_error is not None:
                 raise body_error
 
@@ -89,7 +90,7 @@ def test_submit_runs_jobs_in_order_before_the_next_step(rig: Rig) -> None:
         simulation.submit(functools.partial(job, name))
     simulation.submit(finished.set)
     with simulation:
-        assert finished.wait(30.0)
+        assert finished.wait(PATIENCE_S)
     assert done == [("first", "simulated-robot", 0.0), ("second", "simulated-robot", 0.0)]
 
 
@@ -99,8 +100,8 @@ def test_submit_to_a_running_thread_runs_a_job_once(monkeypatch: pytest.MonkeyPa
     with RealtimeSimulation(rig.robot) as simulation:
         simulation.submit(lambda: times.append(rig.robot.time_s))
         simulation.submit(done.set)
-        assert done.wait(30.0)
-        assert StepCounter(rig, monkeypatch, 3).enough.wait(30.0)
+        assert done.wait(PATIENCE_S)
+        assert StepCounter(rig, monkeypatch, 3).enough.wait(PATIENCE_S)
     assert len(times) == 1
 
 
@@ -108,7 +109,7 @@ def test_submit_failing_job_ends_the_thread(rig: Rig) -> None:
     simulation = RealtimeSimulation(rig.robot)
     simulation.submit(fail)
     simulation.start()
-    assert simulation.wait(30.0)
+    assert simulation.wait(PATIENCE_S)
     with pytest.raises(ValueError, match="from a job"):
         simulation.stop()
     assert rig.robot.time_s == 0.0
@@ -127,5 +128,5 @@ def test_hold_leaves_steps_and_jobs_to_the_caller(monkeypatch: pytest.MonkeyPatc
         assert steps.threads == [threading.current_thread()] * 3
         assert jobs == [0]
         simulation.go_on()
-        assert steps.enough.wait(30.0)
+        assert steps.enough.wait(PATIENCE_S)
     assert threading.current_thread() not in steps.threads[3:]

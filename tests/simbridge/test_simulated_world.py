@@ -11,6 +11,7 @@ from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from tests.patience import PATIENCE_S
 from tests.simbridge.rig import ROBOT, Rig, facing_wall, room
 
 BOARD = WallSettings(name="board", from_m=(0.5, 3.0), to_m=(1.5, 3.0), thickness_m=0.05)
@@ -33,7 +34,7 @@ class Yard:
         """Wait until the thread has run all submitted calls."""
         done = threading.Event()
         self.simulation.submit(done.set)
-        assert done.wait(30.0)
+        assert done.wait(PATIENCE_S)
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from hal.robot import WheelSpeeds
 from simbridge.robot_end import CanRobotEnd
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
+from tests.patience import PATIENCE_S
 from tests.simbridge.rig import CODEC, ROBOT
 
 WORLD = load_world("a")
@@ -77,7 +78,7 @@ def test_standalone_second_robot_is_refused(name: str) -> None:
         stepped = threading.Event()
         end = open_bus(name)
         first.simulation.submit(stepped.set)
-        assert stepped.wait(30.0)
+        assert stepped.wait(PATIENCE_S)
         with pytest.raises(BusError, match=name):
             StandaloneRobot(WORLD, CanRobotEnd(ROBOT, end), seed=2)
         with pytest.raises(BusError):

@@ -13,6 +13,7 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.kurt2_simulation import Kurt2Simulation
+from tests.patience import PATIENCE_S
 from tests.simbridge.rig import ROBOT
 from tests.simbridge.wires import changed
 
@@ -153,7 +154,7 @@ def test_wire_in_real_time_follows_the_clock() -> None:
         for _ in range(3):  # the frames of one cycle are out when the next one begins
             stepped = threading.Event()
             realtime.submit(stepped.set)
-            assert stepped.wait(5.0)
+            assert stepped.wait(PATIENCE_S)
         readings = simulation.robot.sense(0.0)
         assert 0.0 <= readings.encoder_age_s < 5.0
         assert len(set(readings.infrared_counts)) > 1
