@@ -134,7 +134,7 @@ def _open_streams() -> None:
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         before: io.TextIOWrapper = getattr(sys, name)
         raw = open(number, "wb" if number else "rb", buffering=0 if number else -1, closefd=False)  # noqa: SIM115
-        stream = io.TextIOWrapper(raw, before.encoding, before.errors, write_through=True)  # type: ignore[arg-type]
+        stream = io.TextIOWrapper(raw, before.encoding, before.errors, write_through=True)
         setattr(sys, name, stream)
         setattr(sys, f"__{name}__", stream)
 
