@@ -17,7 +17,7 @@ from hal.tap import Tap
 CONTROL_ID = 0x01
 """Identifier of the only frame that moves the robot (docs/the-robot.md#messages)."""
 
-_DRAIN_FRAMES = 4096
+DRAIN_FRAMES = 4096
 """Most frames of one drain. A full bus carries about 200 in 10 ms, so one drain takes all that waited at its start."""
 
 _CAN_INTERFACE = "280"
@@ -86,7 +86,7 @@ class CanBus:
         interface = self._usable()
         try:
             if self._in_process is not None:
-                messages = self._in_process.recv_all(_DRAIN_FRAMES)  # an end that confirms no frames and loses none
+                messages = self._in_process.recv_all(DRAIN_FRAMES)  # an end that confirms no frames and loses none
             else:
                 messages = self._receive(interface)
         except (can.CanError, OSError, ValueError) as error:
@@ -140,7 +140,7 @@ class CanBus:
     def _receive(self, interface: CanInterface) -> list[can.Message]:
         """Return the waiting frames of other senders, and count own CONTROL frames that come back."""
         messages: list[can.Message] = []
-        for _ in range(_DRAIN_FRAMES):
+        for _ in range(DRAIN_FRAMES):
             message = interface.recv(0)
             if message is None:
                 break

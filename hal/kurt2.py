@@ -6,7 +6,7 @@ from typing import Final
 
 import can
 
-from hal.bus import CONTROL_ID, BusError, CanBus
+from hal.bus import CONTROL_ID, DRAIN_FRAMES, BusError, CanBus
 from hal.bus_state import BusState
 from hal.can_wheel_port import CanWheelPort
 from hal.codec import InvalidFrameError, load_codec
@@ -34,13 +34,17 @@ class Kurt2(GuardedRobot):
         super().__init__(settings, CanWheelPort(settings, bus), watch, watchdog_clock)
         self._controller = self._bus_state
         codec = load_codec(settings.can.database)
-        analog = infrared_frames(channels, codec, watch, InfraredCounts(self._counts, self._times_s))
+        self._frames_of: Final[list[int]] = []
+        """How often each frame came so far: those with distance sensors, then ENCODER, then BUMPERC."""
+        newest = InfraredCounts(self._counts, self._times_s, self._frames_of)
+        analog = infrared_frames(channels, codec, watch, newest)
         self._encoder = codec.message("ENCODER", ("LEFT", "RIGHT"))
         self._bumperc = codec.message("BUMPERC", ("BUMPERS", "REMOTE_CONTROL"))
         self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
         self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
-        names = {frame_id: f"0x{frame_id:02X} ({codec.by_id[frame_id].name})" for frame_id in self._readers}
-        self._sender_watch: Final = SenderWatch(names, settings.cycle_s)
+        self._frames_of.extend((0, 0))
+        names = [f"0x{frame_id:02X} ({codec.by_id[frame_id].name})" for frame_id in self._readers]
+        self._sender_watch: Final = SenderWatch(names, self._frames_of, settings.cycle_s)
         self._bumper_payload: bytes | bytearray = b""
         self._cycle_s: Final = settings.cycle_s
         self._encoder_frames = 0
@@ -52,6 +56,8 @@ class Kurt2(GuardedRobot):
         messages, bus_now_s = self._drain(now_s)
         self._encoder_frames = 0
         self._read(messages, bus_now_s, now_s, arrivals)
+        self._sender_watch.update(now_s, bus_now_s, more_wait=len(messages) >= DRAIN_FRAMES)
+        self._second_sender = self._sender_watch.surplus
         # Time goes by the controller's cycles: a frame that was lost takes its ticks along, and leaves the band wider.
         arrivals.turned_s = arrivals.responded_s = self._encoder_frames * self._cycle_s
         arrivals.bus_off = arrivals.bus_off or self._bus_state.off
@@ -64,8 +70,7 @@ class Kurt2(GuardedRobot):
 
     def _read(self, messages: list[can.Message], bus_now_s: float | None, now_s: float, arrivals: Arrivals) -> None:
         """Read waiting frames in order; `bus_now_s`: the present on the clock of their time stamps, None without."""
-        error_frames, readers, senders = 0, self._readers, self._sender_watch
-        since_s = senders.begin(now_s, bus_now_s)
+        error_frames, readers = 0, self._readers
         for message in messages:
             if message.is_error_frame:
                 error_frames += 1
@@ -86,17 +91,16 @@ class Kurt2(GuardedRobot):
             reader = readers.get(frame_id)
             try:
                 if reader is not None:
-                    senders.count(frame_id, message.timestamp if since_s is None else since_s)
                     reader(message.data, at_s, arrivals)
                 elif frame_id == CONTROL_ID:
                     arrivals.foreign_control += 1
             except InvalidFrameError:
                 self._junk += 1
-        self._second_sender = senders.surplus
         if len(messages) > error_frames and not arrivals.bus_off:
             self._bus_state.note_traffic()
 
     def _read_encoder(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
+        self._frames_of[-2] += 1
         left, right = self._encoder.unpack(data)
         arrivals.left_ticks += left
         arrivals.right_ticks += right
@@ -104,6 +108,7 @@ class Kurt2(GuardedRobot):
         self._encoder_at_s = at_s
 
     def _read_bumpers(self, data: bytes | bytearray, at_s: float, arrivals: Arrivals) -> None:
+        self._frames_of[-1] += 1
         if data != self._bumper_payload:
             self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
             self._bumper_payload = data

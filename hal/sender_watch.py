@@ -1,64 +1,75 @@
 """Detection of a second sender of an identifier: its frames come more often than one controller can send them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
+_LOOK_TICKS = 25
+"""Ticks between two looks: looking in each tick would take 5 % of it."""
+_PUT_OFF_TICKS = 4
+"""Ticks by which a look is put off at most, while the bus holds more than a program takes at once."""
 _LEAST_SHARE = 0.95
 """Shortest time between two frames, as a share of the period: no quartz is wrong by 5 %."""
-_AHEAD_S = 0.4
-"""Time by which frames may come before they are due, because an adapter delivers in bursts.
-
-A second sender needs 0.45 s for it, and 0.95 s if it sends half as often."""
+_AHEAD_S = 0.2
+"""Time by which frames may come before they are due, because an adapter delivers in bursts."""
 _LASTS_S = 1.0
 """Time for which a second sender counts as present after its last surplus frame."""
-_SET_BACK_S = 0.1
-"""Time that the clock of the stamps may lose in one tick before it counts as set back: a tick may be preempted between
-its two clock readings."""
 
 
 class SenderWatch:
-    """Detector of identifiers with more than one sender.
+    """Detector of identifiers with more than one sender, by frames and the time in which they may have been sent.
 
-    It reckons on the clock of the time stamps: each frame is due one period after the frame before it, or after its own
-    stamp if that is later. So frames that waited raise no alarm, however many come at once.
+    A frame is due one period after the frame before, or after the last look that found the identifier if that is later.
+    So frames that waited raise no alarm: not in this program, nor in an adapter or a controller that was silent.
 
     Source: virtual scheduling of the generic cell rate algorithm, ITU-T I.371, A.1.
     """
 
-    def __init__(self, names: Mapping[int, str], period_s: float) -> None:
-        """Watch identifiers with these names, each of which one controller sends every `period_s` seconds at most."""
+    def __init__(self, names: Sequence[str], frames: Sequence[int], period_s: float) -> None:
+        """Watch identifiers with these names, each of which one controller sends every `period_s` seconds at most.
+
+        `frames`: number of frames of each so far, which their readers go on counting.
+        """
         self._names = names
+        self._frames = frames
+        self._counted = list(frames)
         self._least_s = _LEAST_SHARE * period_s
-        self._due_s = dict.fromkeys(names, -math.inf)
-        self._now_s = self._clock_s = self._latest_s = -math.inf
+        self._due_s = [-math.inf] * len(names)
+        self._heard_s = [-math.inf] * len(names)
+        self._ticks = 0
+        self._now_s = self._bus_now_s = math.inf
+        # Own clock, which goes as far as the faster one of both: either may be set back or be slow.
+        self._time_s = 0.0
         self._surplus_at_s = -math.inf
         self.surplus = ""
-        """Name of the identifier that a second node sends; empty without one, and 1 s after its last surplus frame."""
+        """Name of an identifier that a second node sends; empty without one, and 1 s after its last surplus frame."""
 
-    def begin(self, now_s: float, bus_now_s: float | None) -> float | None:
-        """Begin a tick at `now_s`; return None, or without stamps the time in s since which the tick's frames came.
+    def update(self, now_s: float, bus_now_s: float | None, *, more_wait: bool) -> None:
+        """Look at the frames counted so far, in every 25th tick. Call it in each tick, after its frames.
 
         Args:
             now_s: time of the tick in s on the runtime's clock.
-            bus_now_s: the present in s on the clock of the stamps; None without stamps.
+            bus_now_s: the present in s on the clock of the bus; None without one.
+            more_wait: whether the bus may hold more frames that waited.
         """
-        clock_s = now_s if bus_now_s is None else bus_now_s
-        since_s = self._clock_s
-        if clock_s - since_s < max(0.0, now_s - self._now_s) - _SET_BACK_S:
-            # Stamps of before are in the future of the new ones.
-            since_s = -math.inf
-            self._due_s = dict.fromkeys(self._due_s, -math.inf)
-        self._now_s, self._clock_s, self._latest_s = now_s, clock_s, clock_s + _AHEAD_S
-        if now_s - self._surplus_at_s >= _LASTS_S:
+        self._ticks += 1
+        if self._ticks < _LOOK_TICKS or (more_wait and self._ticks < _LOOK_TICKS + _PUT_OFF_TICKS):
+            return
+        self._ticks = 0
+        bus_now_s = now_s if bus_now_s is None else bus_now_s
+        self._time_s += max(0.0, now_s - self._now_s, bus_now_s - self._bus_now_s)
+        self._now_s, self._bus_now_s = now_s, bus_now_s
+        if self.surplus and self._time_s - self._surplus_at_s >= _LASTS_S:
             self.surplus = ""
-        return since_s if bus_now_s is None else None
+            self._due_s = [-math.inf] * len(self._names)
+        for place, frames in enumerate(self._frames):
+            came, self._counted[place] = frames - self._counted[place], frames
+            if came:
+                self._count(place, came)
 
-    def count(self, frame_id: int, came_s: float) -> None:
-        """Count a frame of a watched identifier that came at `came_s`, in s, at the earliest."""
-        due_s = self._due_s[frame_id]
-        due_s = (came_s if came_s > due_s else due_s) + self._least_s
-        if due_s > self._latest_s:
-            due_s = self._latest_s
-            self.surplus = self._names[frame_id]
-            self._surplus_at_s = self._now_s
-        self._due_s[frame_id] = due_s
+    def _count(self, place: int, came: int) -> None:
+        latest_s = self._time_s + _AHEAD_S
+        due_s = max(self._due_s[place], self._heard_s[place]) + came * self._least_s
+        if due_s > latest_s:
+            self.surplus, self._surplus_at_s = self._names[place], self._time_s
+        self._due_s[place] = min(due_s, latest_s)
+        self._heard_s[place] = self._time_s

@@ -16,8 +16,6 @@ from tests.hal.helpers import CODEC, INFRARED_FRAMES, ROBOT, TICK_S, cycle, send
 
 NAMES = (*INFRARED_FRAMES, "ENCODER", "BUMPERC")
 FREE = CODEC.message("BUMPERC").pack(0, 0)
-TOO_MANY = 43
-"""Frames at once that no controller sends: 0.4 s worth of them, at 0.95 of its period."""
 
 
 def ticks_to_stop(ride: Ride, foreign: Iterable[list[can.Message]]) -> int:
@@ -78,16 +76,15 @@ def test_go_is_refused_while_it_lasts_and_for_1_s_more(ride: Ride) -> None:
     for _ in range(100):
         ride.kurt2.release()
         assert ride.tick().reasons == (GuardReason.FOREIGN_TELEMETRY,)
-    ride.tick()
+    ride.drive_for(0.25)  # until the next look
     ride.kurt2.release()
     assert not ride.drive_for(20.0).latched
 
 
 def test_second_sender_is_named_after_another_stop_is_released(ride: Ride) -> None:
     ride.kurt2.emergency_stop(GuardReason.SERVICE_ENDS)
-    ticks_to_stop(ride, [[FREE]])
-    ride.desk.arrive(*TOO_MANY * [FREE])
-    assert ride.tick().reasons == (GuardReason.SERVICE_ENDS,)
+    ride.desk.arrive(*100 * [FREE])
+    assert ride.drive_for(0.5).reasons == (GuardReason.SERVICE_ENDS,)
     ride.kurt2.release()
     assert ride.tick().reasons == (GuardReason.FOREIGN_TELEMETRY,)
 
@@ -152,69 +149,73 @@ def test_controller_that_is_4_percent_fast_is_no_second_sender(ride: Ride) -> No
 # The small print
 
 
+class Counted:
+    """Two identifiers whose frames a test counts, each of which is due every 9.5 s."""
+
+    def __init__(self) -> None:
+        self.frames = [100, 100]
+        self.watch = SenderWatch(("five", "six"), self.frames, 10.0)
+        self.look(50.0, 0.0, 9999, 9999)
+
+    def look(self, now_s: float, bus_now_s: float | None, *came: int, more_wait: bool = False, ticks: int = 25) -> str:
+        """Return the surplus after so many ticks, in which these frames came."""
+        for place, frames in enumerate(came):
+            self.frames[place] += frames
+        for _ in range(ticks):
+            self.watch.update(now_s, bus_now_s, more_wait=more_wait)
+        return self.watch.surplus
+
+
 @pytest.fixture
-def watch() -> SenderWatch:
-    watch = SenderWatch({5: "five", 6: "six"}, TICK_S)
-    watch.begin(50.0, 1000.0)
-    return watch
+def counted() -> Counted:
+    return Counted()
 
 
-def test_surplus_begins_with_the_43rd_frame_at_once(watch: SenderWatch) -> None:
-    for _ in range(TOO_MANY - 1):
-        watch.count(5, 1000.0)
-        watch.count(6, 1000.0)
-    assert watch.surplus == ""
-    watch.count(6, 1000.0)
-    assert watch.surplus == "six"
+def test_surplus_of_the_first_look_is_none(counted: Counted) -> None:
+    assert counted.watch.surplus == ""
 
 
-def test_surplus_at_the_very_limit_is_none(watch: SenderWatch) -> None:
-    watch.count(5, 1000.4 - 0.95 * TICK_S)
-    assert watch.surplus == ""
+@pytest.mark.parametrize(("elapsed_s", "surplus"), [(18.81, ""), (18.8, ""), (18.79, "six")])
+def test_two_frames_of_19_s_come_0_2_s_early_at_most(counted: Counted, elapsed_s: float, surplus: str) -> None:
+    assert counted.look(50.0, elapsed_s, 1, 2) == surplus
 
 
-def test_surplus_lasts_1_s_of_the_runtimes_clock(watch: SenderWatch) -> None:
-    watch.count(5, 1001.0)
-    watch.begin(50.999, 1001.0)
-    assert watch.surplus == "five"
-    watch.begin(51.0, 1001.0)
-    assert watch.surplus == ""
+def test_frames_are_due_after_the_look_that_found_some(counted: Counted) -> None:
+    assert counted.look(60.0, 10.0, 1) == ""
+    assert counted.look(80.0, 30.0, 0) == ""
+    assert counted.look(86.0, 36.0, 2) == ""  # 26 s after the last ones
+    assert counted.look(94.0, 44.0, 1) == "five"  # 9.5 s later was soon enough
 
 
-@pytest.mark.parametrize(("set_to_s", "surplus"), [(999.91, "five"), (999.89, "")])
-def test_clock_counts_as_set_back_from_0_1_s_on(watch: SenderWatch, set_to_s: float, surplus: str) -> None:
-    for _ in range(TOO_MANY - 10):
-        watch.count(5, 1000.0)
-    watch.begin(49.0, set_to_s)  # the runtime's clock was set back, too; that does not count
-    for _ in range(10):
-        watch.count(5, set_to_s)
-    assert watch.surplus == surplus
+def test_frames_too_many_are_not_held_against_later_ones(counted: Counted) -> None:
+    assert counted.look(50.0, 0.0, 1000) == "five"
+    assert counted.look(51.0, 1.0) == ""
+    assert counted.look(59.6, 9.6, 1) == ""
 
 
-def test_stamps_slower_than_the_runtime_count_as_set_back(watch: SenderWatch) -> None:
-    for _ in range(TOO_MANY - 1):
-        watch.count(5, 1000.0)
-    watch.begin(50.2, 1000.05)
-    for _ in range(TOO_MANY - 1):
-        watch.count(5, 1000.05)
-    assert watch.surplus == ""
+def test_surplus_lasts_1_s(counted: Counted) -> None:
+    assert counted.look(50.0, 0.0, 9) == "five"
+    assert counted.look(50.99, 0.99) == "five"
+    assert counted.look(51.0, 1.0) == ""
 
 
-def test_frames_without_stamps_came_since_the_tick_before() -> None:
-    watch = SenderWatch({5: "five"}, TICK_S)
-    for now_s, frames, surplus in ((1.0, 9999, ""), (2.0, 147, ""), (3.0, 148, "five")):
-        since_s = watch.begin(now_s, None)
-        assert since_s is not None
-        for _ in range(frames):
-            watch.count(5, since_s)
-        assert watch.surplus == surplus
+@pytest.mark.parametrize(
+    ("now_s", "bus_now_s"), [(69.0, 0.0), (50.0, 19.0), (69.0, -100.0), (10.0, 19.0), (69.0, None)]
+)
+def test_time_goes_by_the_faster_clock(counted: Counted, now_s: float, bus_now_s: float | None) -> None:
+    assert counted.look(now_s, bus_now_s, 2) == ""
 
 
-def test_clock_set_back_without_stamps_forgives_what_waited() -> None:
-    watch = SenderWatch({5: "five"}, TICK_S)
-    for now_s in (10.0, 9.0):
-        since_s = watch.begin(now_s, None)
-        assert since_s is not None
-        for _ in range(TOO_MANY):
-            watch.count(5, since_s)
-    assert watch.surplus == ""
+@pytest.mark.parametrize(("now_s", "bus_now_s"), [(50.0, 0.0), (10.0, -100.0)])
+def test_time_never_goes_back(counted: Counted, now_s: float, bus_now_s: float) -> None:
+    assert counted.look(now_s, bus_now_s, 0, 2) == "six"
+
+
+def test_looks_are_25_ticks_apart(counted: Counted) -> None:
+    assert counted.look(50.0, 0.0, 9, ticks=24) == ""
+    assert counted.look(50.0, 0.0, ticks=1) == "five"
+
+
+def test_look_is_put_off_4_ticks_while_more_frames_wait(counted: Counted) -> None:
+    assert counted.look(50.0, 0.0, 9, more_wait=True, ticks=28) == ""
+    assert counted.look(50.0, 0.0, more_wait=True, ticks=1) == "five"
