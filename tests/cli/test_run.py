@@ -76,7 +76,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
             ("lessons", "RLA 1 corrected: back instead of stand, undone"),
             ("save before lunch", "before-lunch.knowledge"),
             ("export", ".csv"),
-            ("dance", "an action                answers"),
+            ("dance", "not done, dance: no such command or action"),
             ("end", "session 'monday' is over"),
         ):
             person.type(line)
