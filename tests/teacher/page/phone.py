@@ -119,6 +119,8 @@ class Phone:
         screen = {"width": size[0], "height": size[1], "deviceScaleFactor": fine, "mobile": touch}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
         self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": touch})
+        if (self._at or "").startswith("http"):
+            self.wait(lambda: self.run("return [innerWidth, innerHeight];") == list(size), "the screen is turned")
 
     def open(self, address: str) -> None:
         """Go to an address."""
