@@ -24,7 +24,7 @@ class InfraredCounts(NamedTuple):
     times_s: list[float]
     """One per frame, in s; minus infinity before its first."""
     frames: list[int]
-    """How often each frame came so far."""
+    """Number of each frame so far."""
 
 
 FrameReader = Callable[[bytes | bytearray, float, Arrivals], None]

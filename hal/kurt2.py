@@ -35,7 +35,7 @@ class Kurt2(GuardedRobot):
         self._controller = self._bus_state
         codec = load_codec(settings.can.database)
         self._frames_of: Final[list[int]] = []
-        """How often each frame came so far: those with distance sensors, then ENCODER, then BUMPERC."""
+        """Number of each frame so far: those with distance sensors, then ENCODER, then BUMPERC."""
         newest = InfraredCounts(self._counts, self._times_s, self._frames_of)
         analog = infrared_frames(channels, codec, watch, newest)
         self._encoder = codec.message("ENCODER", ("LEFT", "RIGHT"))

@@ -1,8 +1,8 @@
 """Dead reckoning from the wheel encoders."""
 
-import math
 from typing import NamedTuple
 
+from hal.numerics import cos_sin
 from hal.robot_settings import GeometrySettings
 
 
@@ -25,9 +25,10 @@ class PlanePose(NamedTuple):
     def moved(self, forward_m: float, turn_rad: float) -> "PlanePose":
         """Return the pose after an arc of `forward_m`, taken along its middle heading, which counts whole turns."""
         middle_rad = self.heading_rad + turn_rad / 2
+        cos, sin = cos_sin(middle_rad)
         return PlanePose(
-            x_m=self.x_m + forward_m * math.cos(middle_rad),
-            y_m=self.y_m + forward_m * math.sin(middle_rad),
+            x_m=self.x_m + forward_m * cos,
+            y_m=self.y_m + forward_m * sin,
             heading_rad=self.heading_rad + turn_rad,
         )
 

@@ -4,6 +4,7 @@ import math
 from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
+from hal.numerics import cos_sin
 from hal.robot_settings import InfraredSettings, SensorSettings
 
 
@@ -49,8 +50,8 @@ def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
 
 def _ring_key(sensor: SensorSettings) -> tuple[float, float]:
     """Return the sorting key of a sensor: its heading, then its place to the left of that heading, in m."""
-    heading_rad = math.radians(sensor.heading_deg)
-    return sensor.heading_deg % 360.0, sensor.y_m * math.cos(heading_rad) - sensor.x_m * math.sin(heading_rad)
+    cos, sin = cos_sin(math.radians(sensor.heading_deg))
+    return sensor.heading_deg % 360.0, sensor.y_m * cos - sensor.x_m * sin
 
 
 class SubstituteReadings:

@@ -1,5 +1,6 @@
 """A simulated robot in one world, with the runtime's driver at the other end of its link."""
 
+import math
 import random
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -109,10 +110,10 @@ class RobotSimulation:
         """Start pose that is nearest to the robot, in m and rad."""
         here = self.simulated_robot.pose
 
-        def squared_distance(pose: Pose) -> float:
-            return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
+        def distance_m(pose: Pose) -> float:
+            return math.dist((pose.x_m, pose.y_m), (here.x_m, here.y_m))
 
-        return min(self._starts, key=squared_distance)
+        return min(self._starts, key=distance_m)
 
     def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Put the robot, standing, at a random start pose, or at any free pose `in_sight` of an obstacle.

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from hal.numerics import round_portable
 from hal.simulation import Pose
 
 
@@ -29,14 +30,14 @@ class AngleAbout:
 
     def update(self, pose: Pose) -> None:
         """Add the angle to this pose; the step must be less than half a round."""
-        angle_rad = math.atan2(pose.y_m - self._y_m, pose.x_m - self._x_m)
+        angle_rad = round_portable(math.atan2(pose.y_m - self._y_m, pose.x_m - self._x_m))
         if self._angle_rad is not None:
             self.rounds += math.remainder(angle_rad - self._angle_rad, math.tau) / math.tau
         self._angle_rad = angle_rad
 
     def update_all(self, poses: Sequence[Pose]) -> None:
         """Add the angles to poses in a row, as so many calls of `update` would."""
-        angles_rad = [math.atan2(y_m - self._y_m, x_m - self._x_m) for x_m, y_m, _ in poses]
+        angles_rad = [round_portable(math.atan2(y_m - self._y_m, x_m - self._x_m)) for x_m, y_m, _ in poses]
         if not angles_rad:
             return
         rounds, before_rad = self.rounds, angles_rad[0] if self._angle_rad is None else self._angle_rad

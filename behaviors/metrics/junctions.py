@@ -9,6 +9,7 @@ from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
 from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Metrics, MetricSettings, TaskMetric
 from hal.areas import Borders
+from hal.numerics import cos_sin
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
@@ -93,7 +94,7 @@ class Junctions:
     def reset(self, pose: Pose) -> None:
         """Start here: the next junction is ahead of the robot."""
         self.needs_reset = False
-        way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        way = side_towards(*cos_sin(pose.heading_rad))
         self._asked = self._ahead = None
         self._inside = self._streets.junction_at(pose)
         if self._inside is None:
@@ -112,7 +113,7 @@ class Junctions:
         if not looks:
             return
         for deviation_m in self._streets.deviations_m(looks[-self._looks % _MEASURE_LOOKS :: _MEASURE_LOOKS]):
-            self._deviation2_m2.add(deviation_m**2)
+            self._deviation2_m2.add(deviation_m * deviation_m)
         self._looks += len(looks)
         for pose, junction in zip(looks, self._streets.junctions_at(looks), strict=True):
             self._look(pose, junction)

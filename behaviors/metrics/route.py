@@ -156,7 +156,7 @@ class FixedRoute:
         if self._looks % (MEASURE_EVERY // _LOOK_EVERY) == 0:
             deviation_m = self._streets.deviation_m(pose)
             if deviation_m is not None:
-                self._deviation2_m2.add(deviation_m**2)
+                self._deviation2_m2.add(deviation_m * deviation_m)
         self._looks += 1
         junction = self._at(0).junction
         if self._inside:

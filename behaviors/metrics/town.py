@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap, side_towards
+from hal.numerics import cos_sin
 from hal.simulation import Pose
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ class Town:
         """Return the street that a pose lies in and looks along; None within a junction and off the streets."""
         if any(each.holds(pose) for each in self._map.junctions):
             return None
-        way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        way = side_towards(*cos_sin(pose.heading_rad))
         ahead = self._map.next_junction(pose, way)
         return None if ahead is None else self._of.get((way, ahead))
 
@@ -111,4 +112,4 @@ def length_m(way: Sequence[Street], start: Pose | None = None, end: Pose | None 
     start, end = start or way[0].middle, end or way[-1].middle
     corners = [(each.ahead.x_m, each.ahead.y_m) for each in way[:-1]]
     points = [(start.x_m, start.y_m), *corners, (end.x_m, end.y_m)]
-    return sum(math.hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(points))
+    return math.fsum(math.hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(points))

@@ -14,6 +14,7 @@ from behaviors.policies.distances import (
     Distances,
 )
 from behaviors.policies.policy import PolicySettings, ReferencePolicy
+from hal.numerics import cos_sin
 from hal.robot_settings import InfraredSettings
 
 Tolerance = Annotated[float, Field(gt=0, le=0.2)]
@@ -180,7 +181,7 @@ class Streets:
             **given,
             askew_m=settings.askew_m or 0.0,
             straight_m=settings.straight_m or math.inf,
-            half_across=0.5 * math.sin(math.radians(edge.heading_deg)),
+            half_across=0.5 * cos_sin(math.radians(edge.heading_deg))[1],
         )
         self.left_rays = _rays(infrared, LEFT_WITH_EDGES, 1.0)
         self.right_rays = _rays(infrared, RIGHT_WITH_EDGES, -1.0)
@@ -205,12 +206,8 @@ def _side(distances_m: tuple[float, ...]) -> Side:
 def _rays(infrared: InfraredSettings, names: tuple[str, ...], outward: float) -> Rays:
     """Return the rays of one side's sensors from front to back; `outward` is 1 for the left side, -1 for the right."""
     first, second, third, fourth, fifth, sixth = (
-        (
-            sensor.x_m,
-            outward * sensor.y_m,
-            math.cos(math.radians(sensor.heading_deg)),
-            outward * math.sin(math.radians(sensor.heading_deg)),
-        )
+        (sensor.x_m, outward * sensor.y_m, cos, outward * sin)
         for sensor in (infrared.sensors[infrared.names.index(name)] for name in names)
+        for cos, sin in [cos_sin(math.radians(sensor.heading_deg))]
     )
     return first, second, third, fourth, fifth, sixth

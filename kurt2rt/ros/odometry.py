@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hal.numerics import cos_sin, round_portable
 from hal.odometry import PlanePose
 from hal.robot_settings import GeometrySettings
 from kurt2rt.ros.messages import (
@@ -62,6 +63,7 @@ class TurnedWheels:
         stamp_s = to_seconds(odometry.header.stamp)
         if not all(map(math.isfinite, pose)):
             raise InvalidMessageError("Odometry: the pose is not a number")
+        pose = pose._replace(heading_rad=round_portable(pose.heading_rad))
         last, elapsed_s = self._last, stamp_s - self._last_s
         if last is not None and elapsed_s <= 0:
             raise InvalidMessageError("Odometry: the stamp is not newer than the one before")
@@ -70,7 +72,8 @@ class TurnedWheels:
             return _NOTHING_KNOWN
         turn_rad = math.remainder(pose.heading_rad - last.heading_rad, math.tau)
         middle_rad = last.heading_rad + turn_rad / 2
-        forward_m = (pose.x_m - last.x_m) * math.cos(middle_rad) + (pose.y_m - last.y_m) * math.sin(middle_rad)
+        cos, sin = cos_sin(middle_rad)
+        forward_m = (pose.x_m - last.x_m) * cos + (pose.y_m - last.y_m) * sin
         half_m, tick_m = turn_rad * self._geometry.effective_track_m / 2, self._geometry.metres_per_tick
         left = (forward_m - half_m) / tick_m + self._left_carry
         right = (forward_m + half_m) / tick_m + self._right_carry
@@ -80,8 +83,8 @@ class TurnedWheels:
 
 def odometry_message(pose: PlanePose, forward_m_s: float, turn_rad_s: float, stamp_s: float) -> Odometry:
     """Return the message of a pose in the frame `odom` and of speeds in m/s and rad/s, at a time in s."""
-    half_rad = pose.heading_rad / 2
-    place = Pose(Point(pose.x_m, pose.y_m, 0.0), Quaternion(0.0, 0.0, math.sin(half_rad), math.cos(half_rad)))
+    cos, sin = cos_sin(pose.heading_rad / 2)
+    place = Pose(Point(pose.x_m, pose.y_m, 0.0), Quaternion(0.0, 0.0, sin, cos))
     twist = Twist(Vector3(forward_m_s, 0.0, 0.0), Vector3(0.0, 0.0, turn_rad_s))
     return Odometry(
         Header(to_time(stamp_s), "odom"),

@@ -22,7 +22,10 @@ _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 _ROOT = Path(__file__).parents[2]
-_SOURCES_OF_HAL = ("areas", "batch", "batch_lesson", "infrared_law", "open_question", "sensor_signs", "slow_way")
+_SOURCES_OF_HAL = (
+    *("areas", "batch", "batch_lesson", "infrared_law"),
+    *("numerics", "open_question", "sensor_signs", "slow_way"),
+)
 _SOURCES = (
     *sorted(_ROOT.glob("simbridge/batch/*.py")),
     *sorted(_ROOT.glob("behaviors/policies/*.py")),

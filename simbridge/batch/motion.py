@@ -2,12 +2,14 @@
 
 import math
 
+from hal.numerics import cos_sin
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import BodyLaw, Laws
 from simbridge.batch.record import Robot
 from simbridge.robot.wheels import next_speed
 
 _next_speed = compiled(next_speed)
+_cos_sin = compiled(cos_sin)
 
 
 @compiled
@@ -38,8 +40,9 @@ def move(robot: Robot, law: BodyLaw) -> bool:
     cycle_s, turning_rad_s = law.cycle_s, robot.yaw_rad_s
     vx_m_s, vy_m_s = robot.vx_m_s, robot.vy_m_s
     aim_rad = robot.heading_rad + (turning_rad_s + yaw_rad_s / 2) * cycle_s
-    force_x = (forward_m_s * math.cos(aim_rad) - vx_m_s) * law.mass_kg / cycle_s
-    force_y = (forward_m_s * math.sin(aim_rad) - vy_m_s) * law.mass_kg / cycle_s
+    cos, sin = _cos_sin(aim_rad)
+    force_x = (forward_m_s * cos - vx_m_s) * law.mass_kg / cycle_s
+    force_y = (forward_m_s * sin - vy_m_s) * law.mass_kg / cycle_s
     torque = (yaw_rad_s - turning_rad_s) * law.inertia_kg_m2 / cycle_s
     # The engine moves the body by its old velocity, and changes the velocity then.
     robot.x_m += vx_m_s * cycle_s

@@ -1,8 +1,7 @@
 """Infra-red sensors of a batch: each measures in its own turn, with its own gain and noise."""
 
-import math
-
 from hal.infrared_law import counts_at
+from hal.numerics import cos_sin
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import SensorLaw
 from simbridge.batch.record import Robot
@@ -10,6 +9,7 @@ from simbridge.batch.sight import cast
 
 _HIGHEST_COUNTS = 1023
 _counts_at = compiled(counts_at)
+_cos_sin = compiled(cos_sin)
 
 
 @compiled
@@ -18,7 +18,7 @@ def measure(robot: Robot, law: SensorLaw) -> None:
     cycle = robot.tick - 1
     slot = cycle % robot.slots
     due = robot.calendar_count[slot]
-    turn = (math.cos(robot.heading_rad), math.sin(robot.heading_rad))
+    turn = _cos_sin(robot.heading_rad)
     for k in range(due):
         i = robot.calendar[slot, k]
         read = _read(robot, i, _look(robot, i, turn, law.ray_m), law)
@@ -39,7 +39,7 @@ def measure(robot: Robot, law: SensorLaw) -> None:
 @compiled
 def measure_all(robot: Robot, law: SensorLaw) -> None:
     """Let all sensors of a robot that was put elsewhere measure at once, out of turn."""
-    turn = (math.cos(robot.heading_rad), math.sin(robot.heading_rad))
+    turn = _cos_sin(robot.heading_rad)
     for i in range(robot.counts.shape[0]):
         read = _read(robot, i, _look(robot, i, turn, law.ray_m), law)
         if read != robot.counts[i]:

@@ -243,7 +243,9 @@ def _world(simulated: Sequence[SimulatedKurt2]) -> tuple[World, list[int]]:
         of.append(place)
     faces = [faces_of(settings) for _, settings in worlds.values()]
     posts = [
-        np.array([(post.x_m, post.y_m, post.radius_m, post.radius_m**2) for post in settings.round_obstacles])
+        np.array(
+            [(post.x_m, post.y_m, post.radius_m, post.radius_m * post.radius_m) for post in settings.round_obstacles]
+        )
         for _, settings in worlds.values()
     ]
     return World(

@@ -2,6 +2,7 @@
 
 import math
 
+from hal.numerics import cos_sin
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import BodyLaw, World
 from simbridge.batch.record import NEAR_FACES, NEAR_POSTS, Robot
@@ -12,6 +13,7 @@ _CORNER = 1e-9
 """Tolerance that keeps a ray from slipping between the two faces of a corner (simbridge.robot.ray_caster)."""
 _TOUCH_M = 1e-5
 """A body that is nearer to a wall than this may touch it."""
+_cos_sin = compiled(cos_sin)
 
 
 @compiled
@@ -91,7 +93,7 @@ def may_touch(robot: Robot, reach_m: float, law: BodyLaw) -> bool:
     dx, dy = x_m - robot.free_x_m, y_m - robot.free_y_m
     if dx * dx + dy * dy < robot.free_m * robot.free_m:
         return False
-    round_m = math.sqrt(law.half_length_m**2 + law.half_width_m**2) + 2 * _TOUCH_M
+    round_m = math.sqrt(law.half_length_m * law.half_length_m + law.half_width_m * law.half_width_m) + 2 * _TOUCH_M
     least_m = MARGIN_M + reach_m
     for i in range(robot.near_count):
         dx, dy = x_m - robot.near[i, 0], y_m - robot.near[i, 1]
@@ -108,7 +110,7 @@ def may_touch(robot: Robot, reach_m: float, law: BodyLaw) -> bool:
 @compiled
 def _box_meets(robot: Robot, law: BodyLaw) -> bool:
     """Return whether the box of a robot, a little enlarged, meets a near face or post."""
-    cos, sin = math.cos(robot.heading_rad), math.sin(robot.heading_rad)
+    cos, sin = _cos_sin(robot.heading_rad)
     half_x_m, half_y_m = law.half_length_m + _TOUCH_M, law.half_width_m + _TOUCH_M
     for i in range(robot.near_count):
         dx, dy = robot.near[i, 0] - robot.x_m, robot.near[i, 1] - robot.y_m

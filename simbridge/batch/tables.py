@@ -156,7 +156,7 @@ def build_conditions(values: Floats, first: Integers, steps: Sequence[float]) ->
     apart = np.full((len(values), most), np.inf)
     for begin, end in pairwise(first.tolist()):
         for row in range(begin, end):
-            away = np.sqrt(((values[begin:end] - values[row]) ** 2).sum(axis=1))
+            away = np.sqrt(np.square(values[begin:end] - values[row]).sum(axis=1))
             away[row - begin] = -1.0  # before its equals
             order = np.argsort(away, kind="stable")[:most]
             neighbours[row, : len(order)] = order + begin

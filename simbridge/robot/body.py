@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import pymunk
 
+from hal.numerics import cos_sin, round_portable
 from hal.robot_settings import GeometrySettings
 from hal.simulation import Pose
 from simbridge.robot.noise import Noise
@@ -68,8 +69,8 @@ class Body:
         self._inertia_kg_m2 = geometry.yaw_inertia_kg_m2
         self.force_limit_n = geometry.mass_kg * _TRACTION_M_S2
         self.torque_limit_n_m = self.force_limit_n * geometry.outline_length_m / 2
-        self.slip_keep = math.exp(-cycle_s / SLIP_TIME_S)
-        self.slip_gain = SLIP_FRACTION * math.sqrt(1.0 - self.slip_keep**2)
+        self.slip_keep = round_portable(math.exp(-cycle_s / SLIP_TIME_S))
+        self.slip_gain = SLIP_FRACTION * math.sqrt(1.0 - self.slip_keep * self.slip_keep)
         self._left_slip = 0.0
         self._right_slip = 0.0
         self._points: list[pymunk.ContactPointSet] = []
@@ -97,8 +98,9 @@ class Body:
         # The force acts during the next cycle: aim along the heading at its middle.
         heading_rad = self.pose.heading_rad + (turning_rad_s + yaw_rad_s / 2) * cycle_s
         velocity_x, velocity_y = body.velocity
-        force_x = (forward_m_s * math.cos(heading_rad) - velocity_x) * self._mass_kg / cycle_s
-        force_y = (forward_m_s * math.sin(heading_rad) - velocity_y) * self._mass_kg / cycle_s
+        cos, sin = cos_sin(heading_rad)
+        force_x = (forward_m_s * cos - velocity_x) * self._mass_kg / cycle_s
+        force_y = (forward_m_s * sin - velocity_y) * self._mass_kg / cycle_s
         force_n = math.hypot(force_x, force_y)
         if force_n > self.force_limit_n:
             force_x *= self.force_limit_n / force_n
@@ -164,7 +166,7 @@ class Body:
     def contacts(self) -> list[Contact]:
         """Return the contact points of the body with walls and obstacles in this cycle."""
         x_m, y_m, heading_rad = self.pose
-        cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+        cos, sin = cos_sin(heading_rad)
         found = []
         for touching in self._points:
             toward_x, toward_y = touching.normal

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 
 from hal.infrared_law import counts_at
+from hal.numerics import cos_sin
 from hal.robot_settings import InfraredSettings
 from hal.simulation import Pose
 from simbridge.robot.noise import Noise
@@ -66,7 +67,7 @@ class InfraredSensors:
         # The most expensive part of a cycle: names are looked up once.
         readings, gains, all_rays, ray_m, law = self.counts, self.gains, self.rays, self.ray_m, self._law
         noise_ratio, noise_least = self._noise_ratio, self._noise_least
-        turn = (math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        turn = cos_sin(pose.heading_rad)
         self._sight.set_origin(pose.x_m, pose.y_m)
         least_distance_m = self._sight.least_distance_m
         for i, noise in zip(sensors, self._noise.next_normals(len(sensors)), strict=True):
@@ -87,6 +88,6 @@ def _rays_of(settings: InfraredSettings, sensor: int, rays: int) -> list[tuple[f
     found = []
     for offset_rad in (0.0,) if rays == 1 else (0.0, half_rad, -half_rad):
         direction_rad = math.radians(place.heading_deg) + offset_rad
-        cos, sin = math.cos(direction_rad), math.sin(direction_rad)
+        cos, sin = cos_sin(direction_rad)
         found.append((place.x_m - RECESS_M * cos, place.y_m - RECESS_M * sin, cos, sin))
     return found

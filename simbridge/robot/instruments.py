@@ -6,6 +6,7 @@ choice unless docs/the-robot.md gives them.
 
 import math
 
+from hal.numerics import cos_sin, round_portable
 from hal.odometry import PlanePose
 from hal.robot_settings import RobotSettings
 from simbridge.robot.body import Body
@@ -102,7 +103,7 @@ class Instruments:
         left, right = self._wheels.left_m_s, self._wheels.right_m_s
         self._wheels_before = (self.cycles, left, right)
         elapsed_s = max(1, self.cycles - before_cycle) * self._cycle_s
-        warm = 1.0 - math.exp(-self.cycles * self._cycle_s / _BOARD_TIME_S)
+        warm = 1.0 - round_portable(math.exp(-self.cycles * self._cycle_s / _BOARD_TIME_S))
         return (
             _current_ma(right, (right - right_before) / elapsed_s),
             _current_ma(left, (left - left_before) / elapsed_s),
@@ -112,8 +113,8 @@ class Instruments:
 
     def _forward_m_s(self) -> float:
         x_m_s, y_m_s, _ = self._body.velocity
-        heading_rad = self._body.pose.heading_rad
-        return x_m_s * math.cos(heading_rad) + y_m_s * math.sin(heading_rad)
+        cos, sin = cos_sin(self._body.pose.heading_rad)
+        return x_m_s * cos + y_m_s * sin
 
 
 def _current_ma(speed_m_s: float, acceleration_m_s2: float) -> int:

@@ -85,12 +85,13 @@ class RayCaster:
         # Vectorised: a map may have thousands of faces, and this cycle has no extra time.
         corner_x, corner_y, edge_x, edge_y = self._every_face.T
         dx, dy = centre[0] - corner_x, centre[1] - corner_y
-        along = np.clip((dx * edge_x + dy * edge_y) / (edge_x**2 + edge_y**2), 0.0, 1.0)
-        away_m = np.hypot(dx - along * edge_x, dy - along * edge_y)
-        near: list[list[float]] = self._every_face[away_m <= self._keep_m].tolist()
+        along = np.clip((dx * edge_x + dy * edge_y) / (edge_x * edge_x + edge_y * edge_y), 0.0, 1.0)
+        away_x, away_y = dx - along * edge_x, dy - along * edge_y
+        near_enough = away_x * away_x + away_y * away_y <= self._keep_m * self._keep_m
+        near: list[list[float]] = self._every_face[near_enough].tolist()
         self._faces = [(x, y, along_x, along_y) for x, y, along_x, along_y in near]
         self._posts = [
-            (post.x_m, post.y_m, post.radius_m**2)
+            (post.x_m, post.y_m, post.radius_m * post.radius_m)
             for post in world.round_obstacles
             if math.dist(centre, (post.x_m, post.y_m)) - post.radius_m <= self._keep_m
         ]

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from hal.numerics import round_portable
 from hal.robot_settings import RobotSettings
 
 REVERSAL_SPEED_M_S = 0.02
@@ -42,7 +43,7 @@ class Wheels:
     def __init__(self, robot: RobotSettings) -> None:
         motors, cycle_s = robot.motors, robot.cycle_s
         self.law = SideLaw(
-            loop_gain=1.0 - math.exp(-cycle_s / motors.speed_loop_time_s),
+            loop_gain=1.0 - round_portable(math.exp(-cycle_s / motors.speed_loop_time_s)),
             speed_up_m_s=motors.acceleration_m_s2 * cycle_s,
             brake_m_s=motors.braking_m_s2 * cycle_s,
             maximum_m_s=motors.maximum_speed_m_s,

@@ -3,6 +3,7 @@
 import math
 import random
 
+from hal.numerics import cos_sin
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Pose
@@ -53,14 +54,14 @@ class FreePoses:
         )
 
     def _sees(self, pose: Pose) -> bool:
-        cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+        cos, sin = cos_sin(pose.heading_rad)
         posts = self._world.settings.round_obstacles
         self._sight.set_origin(pose.x_m, pose.y_m)
         for sensor in self._sensors:
             x_m = pose.x_m + sensor.x_m * cos - sensor.y_m * sin
             y_m = pose.y_m + sensor.x_m * sin + sensor.y_m * cos
             direction_rad = pose.heading_rad + math.radians(sensor.heading_deg)
-            along_x, along_y = math.cos(direction_rad), math.sin(direction_rad)
+            along_x, along_y = cos_sin(direction_rad)
             away_m = self._sight.distance_m(x_m, y_m, along_x, along_y, self._in_sight_m)
             at = (x_m + away_m * along_x, y_m + away_m * along_y)
             if away_m < self._in_sight_m and (

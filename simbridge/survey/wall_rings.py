@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from shapely import affinity
 
+from hal.numerics import cos_sin
 from simbridge.worlds.geometry import Point, polygons_of
 from simbridge.worlds.world_settings import WorldSettings
 
@@ -57,7 +58,7 @@ class WallRings:
         shapely.prepare(self.room)
         corners = [shapely.get_coordinates(ring) for ring in self.rings]
         steps = [np.diff(each, axis=0) for each in corners]
-        steps_m = [np.hypot(each[:, 0], each[:, 1]) for each in steps]
+        steps_m = [np.sqrt(np.square(each).sum(axis=1)) for each in steps]
         self._faces = np.concatenate(
             [
                 np.column_stack(
@@ -84,7 +85,7 @@ class WallRings:
         gathered_at = self._gathered_at
         if gathered_at is None or math.dist((x_m, y_m), gathered_at) > _MARGIN_M:
             self._gather(x_m, y_m)
-        ahead_x, ahead_y = math.cos(heading_rad), math.sin(heading_rad)
+        ahead_x, ahead_y = cos_sin(heading_rad)
         best, least_m = None, math.inf
         followed_ring, followed_m = (-1, 0.0) if followed is None else followed
         for corner_x, corner_y, along_x, along_y, face_m, before_m, ring in self._near:

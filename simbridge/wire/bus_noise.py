@@ -4,6 +4,7 @@ import math
 
 import can
 
+from hal.numerics import round_portable
 from simbridge.robot.noise import Noise
 from simbridge.wire.settings import LossSettings, NoiseSettings
 
@@ -39,7 +40,7 @@ class BusNoise:
         return begin_ns, begin_ns + self._exponential(self._length_ns)
 
     def _exponential(self, mean_ns: int) -> int:
-        return int(-mean_ns * math.log(1.0 - self._bursts.fraction()))
+        return int(-mean_ns * round_portable(math.log(1.0 - self._bursts.fraction())))
 
 
 class FrameLoss:

@@ -27,7 +27,12 @@ def polygons_of(shape: shapely.Geometry) -> list[shapely.Polygon]:
 
 def rectangle(centre: Point, length_m: float, width_m: float, heading_rad: float) -> tuple[Point, Point, Point, Point]:
     """Return the corners counter-clockwise from front left; the length in m lies along the heading."""
-    cos, sin = math.cos(heading_rad), math.sin(heading_rad)
+    return rectangle_along(centre, length_m, width_m, (math.cos(heading_rad), math.sin(heading_rad)))
+
+
+def rectangle_along(centre: Point, length_m: float, width_m: float, along: Point) -> tuple[Point, Point, Point, Point]:
+    """Return the corners counter-clockwise from front left; the length in m lies along the unit vector `along`."""
+    cos, sin = along
     x, y = centre
     half_length, half_width = length_m / 2, width_m / 2
 

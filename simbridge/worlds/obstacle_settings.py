@@ -7,7 +7,7 @@ import shapely
 from pydantic import Field, field_validator, model_validator
 
 from hal.settings import Settings
-from simbridge.worlds.geometry import Point, rectangle
+from simbridge.worlds.geometry import Point, rectangle_along
 
 Coordinate = Annotated[float, Field(ge=-200, le=200)]
 Corner = tuple[Coordinate, Coordinate]
@@ -31,10 +31,9 @@ class WallSettings(Settings):
     def corners(self) -> tuple[Point, ...]:
         """Corners seen from above, in m, counter-clockwise."""
         (ax, ay), (bx, by) = self.from_m, self.to_m
-        heading_rad = math.atan2(by - ay, bx - ax)
-        return rectangle(
-            ((ax + bx) / 2, (ay + by) / 2), math.dist(self.from_m, self.to_m), self.thickness_m, heading_rad
-        )
+        length_m = math.dist(self.from_m, self.to_m)
+        along = (bx - ax) / length_m, (by - ay) / length_m
+        return rectangle_along(((ax + bx) / 2, (ay + by) / 2), length_m, self.thickness_m, along)
 
     def moved(self, dx_m: float, dy_m: float) -> Self:
         """Return a copy shifted by this many metres."""

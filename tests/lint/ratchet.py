@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
+from tests.lint.last_bits import last_bits_findings
 from tests.lint.rules import RUFF_RULES, Finding, python_findings, text_findings
 
 ROOT = Path(__file__).parents[2]
@@ -33,6 +34,7 @@ def findings(root: Path) -> Iterator[Finding]:
         yield from text_findings(name, text)
         if path.suffix == ".py":
             yield from python_findings(name, text)
+            yield from last_bits_findings(name, text)
     yield from ruff_findings(root)
 
 

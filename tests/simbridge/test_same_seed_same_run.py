@@ -1,7 +1,9 @@
 import pytest
 
 from tests.cli.helpers import ROOT, started
+from tests.simbridge import turning_run
 from tests.simbridge.same_run import SEED, hashes
+from tests.without_fma import WITHOUT_FMA
 
 
 @pytest.fixture(scope="module")
@@ -23,3 +25,10 @@ def test_run_in_another_process_is_equal(first: list[str]) -> None:
     with started("tests.simbridge.same_run", folder=ROOT) as other:
         said, complaints = other.communicate()
     assert (said.split(), complaints) == (first, "")
+
+
+@pytest.mark.deep
+def test_run_without_fused_multiply_add_is_equal() -> None:
+    with started("tests.simbridge.turning_run", folder=ROOT, environment=WITHOUT_FMA, fresh=True) as other:
+        said, complaints = other.communicate()
+    assert (said.split(), complaints) == (turning_run.hashes(), "")

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, model_validator
 
+from hal.numerics import cos_sin, round_portable
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
 from hal.settings import Settings
-from kurt2rt.core.numerics import round_portable
 
 _STEP_S = 0.1
 """Time between two poses of the outline that are compared with the obstacles: 3 cm at 0.3 m/s."""
@@ -252,6 +252,6 @@ def _motion(speeds: WheelSpeeds, steps: int, track_m: float) -> _Motion:
     pose, rows = PlanePose(), []
     for _ in range(steps):
         pose = pose.moved(forward_m, turn_rad)
-        rows.append([round_portable(each) for each in (math.cos(pose.heading_rad), math.sin(pose.heading_rad), *pose)])
+        rows.append([*cos_sin(pose.heading_rad), *map(round_portable, pose)])
     columns = np.array(rows).T[:, :, np.newaxis]
     return _Motion(columns[0], columns[1], columns[2], columns[3])

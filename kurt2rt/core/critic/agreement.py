@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterable, Mapping
+from fractions import Fraction
 
 from kurt2rt.core.critic.settings import AgreementSettings
 from kurt2rt.core.rla.events import (
@@ -114,5 +115,6 @@ class Agreement:
     def _update_share(self) -> None:
         """Compute the share once per event, because each tick reads it."""
         enough = [value for value in (-1, 0, 1) if self.count_for(value) >= self._settings.least]
-        shares = [share for share in map(self.share_for, enough) if share is not None]
-        self.share = sum(shares) / len(shares) if {-1, 1} <= set(enough) else None
+        # Exact: at the bound a rounded sum decides, and Python 3.12 rounds it otherwise than Python 3.11.
+        shares = [Fraction(sum(right for _, right in self._signals[value]), self.count_for(value)) for value in enough]
+        self.share = float(sum(shares) / len(shares)) if {-1, 1} <= set(enough) else None

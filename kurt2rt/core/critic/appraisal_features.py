@@ -5,6 +5,7 @@ from collections.abc import Callable
 from operator import itemgetter
 
 from behaviors.judges.judge import AppraisalFeatures
+from hal.numerics import round_portable
 from hal.odometry import WheelMotion, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
@@ -12,7 +13,6 @@ from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.critic.turn_memory import TurnMemory
-from kurt2rt.core.numerics import round_portable
 
 
 class AppraisalPerception:
@@ -43,7 +43,7 @@ class AppraisalPerception:
         self._left_baseline_m = _baseline_m(infrared, sensors.left, critic.name)
         self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
         self._wall_m = want.wall_m
-        self._no_progress_m2 = want.no_progress_m**2
+        self._no_progress_m2 = want.no_progress_m * want.no_progress_m
         self._odometry = WheelOdometry(robot.geometry)
         self._period_s = period_s
         self._share_of_new = 1.0 - round_portable(math.exp(-period_s / want.smoothing_s))

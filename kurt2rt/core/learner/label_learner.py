@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.packing import pack, unpack
+from kurt2rt.core.rla.matching import exact_distances
 
 Points = NDArray[np.float64]
 
@@ -71,9 +72,7 @@ class LabelLearner(ABC):
 
     def distances(self, point: Points) -> Points:
         """Return the distances (n,) in counts of all labels from a point (d,)."""
-        away = self._points - point
-        distances: Points = np.sqrt(np.einsum("ij,ij->i", away, away))
-        return distances
+        return exact_distances(self._points, point)
 
     def is_near(self, point: Points, *, taught: bool) -> bool:
         """Return whether a label lies within R of a point (d,), or within the fraction of R while it is taught."""

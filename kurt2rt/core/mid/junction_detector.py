@@ -5,12 +5,12 @@ from typing import Annotated
 
 from pydantic import Field
 
+from hal.numerics import round_portable
 from hal.odometry import WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
 from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.numerics import round_portable
 
 Metres = Annotated[float, Field(gt=0, le=10)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=2)]

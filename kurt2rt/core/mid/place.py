@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from hal.numerics import round_portable
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import Decision
@@ -15,7 +16,6 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
 from kurt2rt.core.mid.symbols.source import Transitions
-from kurt2rt.core.numerics import round_portable
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.space import Metric
 
@@ -120,7 +120,7 @@ class PlaceSituation:
     def _begin(self, place: Condition) -> None:
         self.vector: NDArray[np.float64] = np.array(place, dtype=np.float64)
         self._x_m, self._y_m = place[X], place[Y]
-        self._quarters = round(math.atan2(place[NORTH], place[EAST]) / _QUARTER_RAD) % 4
+        self._quarters = round(round_portable(math.atan2(place[NORTH], place[EAST])) / _QUARTER_RAD) % 4
         self._begin_leg()
 
     def _begin_leg(self) -> None:

@@ -1,6 +1,7 @@
 """Plan: the chain of edges from a place to a goal."""
 
 import heapq
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 
@@ -16,7 +17,7 @@ class Plan:
     @property
     def ticks(self) -> float:
         """Expected duration in ticks."""
-        return sum(edge.ticks for edge in self.edges)
+        return math.fsum(edge.ticks for edge in self.edges)
 
     @property
     def next(self) -> Edge | None:

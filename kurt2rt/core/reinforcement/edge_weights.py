@@ -5,6 +5,7 @@ tick by 0.9, 0.95 and 0.97, newest first; -1 divides by them. The value of an RL
 Weights stay between 10 and 1000, equally many rewards from 100 in both directions.
 """
 
+import math
 from collections.abc import Collection, Iterable, Mapping
 
 from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
@@ -142,4 +143,4 @@ def _bounded(weight: float) -> float:
 
 def _value(edges: _Edges | None) -> float:
     """Return the value without limits."""
-    return (FIRST_WEIGHT - sum(edges.values()) / len(edges)) / FIRST_WEIGHT if edges else 0.0
+    return (FIRST_WEIGHT - math.fsum(edges.values()) / len(edges)) / FIRST_WEIGHT if edges else 0.0

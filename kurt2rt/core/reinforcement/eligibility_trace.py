@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.numerics import round_portable
+from hal.numerics import round_portable
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
 LEAST_SHARE = 0.001

@@ -10,7 +10,7 @@ autonomous phases, which have separate values.
 import math
 from collections.abc import Collection, Iterable, Mapping
 
-from kurt2rt.core.numerics import power, round_portable
+from hal.numerics import power, round_portable
 from kurt2rt.core.reinforcement.eligibility_trace import LEAST_SHARE, EligibilityTrace
 from kurt2rt.core.reinforcement.rule import CreditUpdate
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings

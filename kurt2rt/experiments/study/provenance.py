@@ -1,11 +1,9 @@
 """Fingerprints of what decides a result, so that results of other settings are never mixed in."""
 
-import ast
 import hashlib
 import json
 import platform
 from collections.abc import Collection, Iterable
-from functools import lru_cache
 from importlib.metadata import version
 
 from behaviors.repertoire_settings import RepertoireSettings
@@ -17,7 +15,6 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.import_graph import modules_needed
 
-_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
 
@@ -48,7 +45,9 @@ def versions() -> str:
 
 
 def source_hash(*deciding: type) -> str:
-    """Return the hash of all code that these classes need; comments, docstrings and layout are left out.
+    """Return the hash of the files of all modules that these classes need, byte for byte.
+
+    A hash of the syntax tree would leave comments out, but Python 3.12 has other trees than Python 3.11.
 
     Args:
         deciding: classes that do a job and open its simulation. Code that they do not import decides no result.
@@ -56,7 +55,7 @@ def source_hash(*deciding: type) -> str:
     digest = hashlib.sha256()
     for name, path in modules_needed(base.__module__ for each in deciding for base in each.__mro__).items():
         digest.update(f"{name}\n".encode())
-        digest.update(_hash_of(path.read_text(encoding="utf-8")))
+        digest.update(hashlib.sha256(path.read_bytes()).digest())
     return digest.hexdigest()[:16]
 
 
@@ -132,42 +131,3 @@ def _plugin_sources(task: TaskSettings) -> list[str]:
     actions = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
     hashes = map(source_hash_of, (task.policy, task.course, task.judge, *actions))
     return [each for each in dict.fromkeys(hashes) if each]
-
-
-@lru_cache(maxsize=1024)
-def _hash_of(text: str) -> bytes:
-    """Return the cached hash of a module's code; all modules take 0.5 s."""
-    return hashlib.sha256(code_of(text).encode()).digest()
-
-
-def code_of(text: str) -> str:
-    """Return the code of a module as a text without comments, docstrings and layout."""
-    words: list[str] = []
-    _tell(ast.parse(text), words)
-    return "\n".join(words)
-
-
-def _tell(node: ast.AST, words: list[str]) -> None:
-    """Add a node and what is below it. As ast.dump would, in half the time and without docstrings."""
-    words.append(type(node).__name__)
-    for name in node._fields:
-        value = getattr(node, name, None)
-        if isinstance(value, ast.AST):
-            _tell(value, words)
-        elif isinstance(value, list):
-            words.append("[")
-            for each in value[_begins_with_docstring(node, name) :]:
-                if isinstance(each, ast.AST):
-                    _tell(each, words)
-                else:
-                    words.append(repr(each))
-            words.append("]")
-        else:
-            words.append(repr(value))
-
-
-def _begins_with_docstring(node: ast.AST, field: str) -> bool:
-    if field != "body" or not isinstance(node, _DOCUMENTED) or not node.body:
-        return False
-    first = node.body[0]
-    return isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hal.numerics import cos_sin
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
 from kurt2rt.robots.turtlebot.sectors import Sectors
@@ -72,7 +73,8 @@ def distances_m(world: WorldSettings, pose: Pose, headings_rad: NDArray[np.float
 
     All rays at once: one by one they took a third of a simulation (simbridge.robot.ray_caster).
     """
-    ray_x, ray_y = np.cos(headings_rad)[:, None], np.sin(headings_rad)[:, None]
+    rays = np.array([cos_sin(each) for each in headings_rad.tolist()])
+    ray_x, ray_y = rays[:, :1], rays[:, 1:]
     corner_x, corner_y, edge_x, edge_y = faces_of(world).T
     dx, dy = corner_x - pose.x_m, corner_y - pose.y_m
     with np.errstate(divide="ignore", invalid="ignore"):  # of a ray along a face: it hits the adjacent ones
@@ -84,7 +86,7 @@ def distances_m(world: WorldSettings, pose: Pose, headings_rad: NDArray[np.float
     for post in world.round_obstacles:
         dx_m, dy_m = post.x_m - pose.x_m, post.y_m - pose.y_m
         along_m = dx_m * ray_x[:, 0] + dy_m * ray_y[:, 0]
-        half_chord2 = post.radius_m**2 - (dx_m**2 + dy_m**2 - along_m**2)
+        half_chord2 = post.radius_m * post.radius_m - (dx_m * dx_m + dy_m * dy_m - along_m * along_m)
         seen = (along_m > 0.0) & (half_chord2 >= 0.0)
         nearest_m[seen] = np.minimum(nearest_m, along_m - np.sqrt(np.maximum(half_chord2, 0.0)))[seen]
     return nearest_m

@@ -21,4 +21,4 @@ def is_drivable(free: shapely.Geometry, radius_m: float = TURNING_M) -> bool:
     if len(centres) != 1:
         return False
     left_out = shapely.difference(free, centres[0].buffer(radius_m + 0.001, quad_segs=4))
-    return all(part.area <= _DEEPEST_CORNER * radius_m**2 for part in polygons_of(left_out))
+    return all(part.area <= _DEEPEST_CORNER * radius_m * radius_m for part in polygons_of(left_out))

@@ -75,12 +75,18 @@ def _see_their_wall(walls: shapely.Geometry, positions: Points, headings_rad: Po
 
 def _spread(candidates: Points) -> list[int]:
     """Return indices of candidates far from each other, the one closest to the middle of all first."""
-    chosen = [int(np.argmin(np.hypot(*(candidates - candidates.mean(axis=0)).T)))]
+    chosen = [int(np.argmin(_distances_m(candidates, candidates.mean(axis=0))))]
     apart_m = np.full(len(candidates), np.inf)
     while len(chosen) < _STARTS:
-        apart_m = np.minimum(apart_m, np.hypot(*(candidates - candidates[chosen[-1]]).T))
+        apart_m = np.minimum(apart_m, _distances_m(candidates, candidates[chosen[-1]]))
         next_one = int(np.argmax(apart_m))
         if apart_m[next_one] < _APART_M:
             break
         chosen.append(next_one)
     return chosen
+
+
+def _distances_m(positions: Points, place: Points) -> Points:
+    """Return the distance in m of each position (n, 2) from a place (2,), shape (n,), equal on every processor."""
+    distances_m: Points = np.sqrt(np.square(positions - place).sum(axis=1))
+    return distances_m

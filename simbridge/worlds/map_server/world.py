@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 from shapely.affinity import scale, translate
 
+from hal.numerics import cos_sin
 from hal.robot_settings import GeometrySettings
 from hal.settings import SettingsError, load_settings
 from hal.simulation import Pose
@@ -107,7 +108,7 @@ def _on_grid(start: Pose, settings: MapSettings) -> Pose:
     """Return the pose relative to the lower left corner of the image, along its edges."""
     x_m, y_m, turned_rad = settings.origin
     dx, dy = start.x_m - x_m, start.y_m - y_m
-    cos, sin = math.cos(turned_rad), math.sin(turned_rad)
+    cos, sin = cos_sin(turned_rad)
     return Pose(dx * cos + dy * sin, dy * cos - dx * sin, start.heading_rad - turned_rad)
 
 
@@ -141,7 +142,7 @@ def world_of_floor(
                 StartPoseSettings(
                     x_m=start.x_m - west_m,
                     y_m=start.y_m - south_m,
-                    heading_deg=math.degrees(math.remainder(start.heading_rad, 2 * math.pi)),
+                    heading_deg=round(math.degrees(math.remainder(start.heading_rad, 2 * math.pi)), 9),
                 )
                 for start in starts
             ),

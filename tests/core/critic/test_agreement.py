@@ -1,5 +1,7 @@
 """Agreement of critic and teacher, from journal events."""
 
+import pytest
+
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import AgreementSettings
 from kurt2rt.core.rla.events import (
@@ -52,6 +54,14 @@ def test_agreement_values_have_equal_weight() -> None:
     one.on_event(rewarded(-1, said=1))
     assert one.share == (1 / 3 + 1.0) / 2
     assert not one.trusted
+
+
+@pytest.mark.parametrize("right", [(6, 8, 10), (5, 9, 10), (7, 8, 9)])
+def test_agreement_at_the_very_bound_is_trusted(right: tuple[int, int, int]) -> None:
+    one = agreement(bound=0.8, window=10, least=10)
+    for value, times in zip((-1, 0, 1), right, strict=True):
+        one.replay([*agreed(value, times), *(appraisal(each, NAMES[value]) for each in range(10 - times))])
+    assert (one.share, one.trusted) == (0.8, True)
 
 
 def test_agreement_window_keeps_the_newest() -> None:

@@ -11,8 +11,9 @@ from kurt2rt.core.tick import Tick
 from kurt2rt.experiments.lockstep.exam import examine
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.plan import DECIDING
+from kurt2rt.experiments.study import provenance
 from kurt2rt.experiments.study.import_graph import modules_needed
-from kurt2rt.experiments.study.provenance import Fingerprints, code_of, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.runtime import Runtime
 from simbridge.survey.free_poses import FreePoses
@@ -89,10 +90,13 @@ def test_source_hash_names_outside_the_program_change_nothing() -> None:
     assert source_hash(*DECIDING) != source_hash(*DECIDING, type(STAGE))
 
 
-def test_comments_docstrings_and_layout_are_no_source() -> None:
-    plain = code_of("def speed(m, s):\n    return m / s\n")
-    assert code_of('"""What."""\n\ndef speed(m, s):  # fast\n    """Metres."""\n    return (m / s)\n') == plain
-    assert code_of("def speed(m, s):\n    return s / m\n") != plain
+def test_source_hash_is_that_of_the_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "speeds.py"
+    monkeypatch.setattr(provenance, "modules_needed", lambda _: {"speeds": path})
+    path.write_text("def speed(m, s):\n    return m / s\n", encoding="utf-8")
+    assert source_hash(Tick) == "f62b1b2aa32c9a5d"  # on every Python
+    path.write_text("def speed(m, s):\n    return m / s  # fast\n", encoding="utf-8")
+    assert source_hash(Tick) != "f62b1b2aa32c9a5d"
 
 
 def test_change_in_the_source_of_a_plugin_shows(plugin_folder: Path) -> None:

@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 
+from hal.numerics import cos_sin
 from hal.simulation import Pose
 from kurt2rt.robots.turtlebot.lidar import Lidar, distances_m
 from simbridge.robot.noise import Noise
@@ -23,7 +24,7 @@ def test_distances_are_those_of_the_ray_caster(name: str) -> None:
         pose = start.pose
         headings = [chance.uniform(-math.pi, math.pi) for _ in range(40)]
         caster.set_origin(pose.x_m, pose.y_m)
-        expected = [caster.distance_m(pose.x_m, pose.y_m, math.cos(each), math.sin(each), 10.0) for each in headings]
+        expected = [caster.distance_m(pose.x_m, pose.y_m, *cos_sin(each), 10.0) for each in headings]
         assert distances_m(settings, pose, np.array(headings)) == pytest.approx(expected, abs=1e-9)
 
 

@@ -14,6 +14,14 @@ def round_portable(value: float) -> float:
     return math.floor(value * _GRID + 0.5) / _GRID
 
 
+def cos_sin(angle_rad: float) -> tuple[float, float]:
+    """Return cosine and sine of an angle in rad as `round_portable` rounds them; the batch compiles this, too."""
+    return (
+        math.floor(math.cos(angle_rad) * _GRID + 0.5) / _GRID,
+        math.floor(math.sin(angle_rad) * _GRID + 0.5) / _GRID,
+    )
+
+
 def power(base: float, exponent: int) -> float:
     """Return a dimensionless number to a whole power by multiplication alone; small results keep their digits."""
     if exponent < 0:
