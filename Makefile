@@ -2,6 +2,7 @@
 # make demo   a scripted teacher teaches it in simulated time, then it is examined: a minute
 # make test   lint, types, and the tests that need nothing but Python
 # make trust  those tests twenty times, ten of them next to busy processors: two hours; RUNS=4 BUSY=2 does fewer
+# make size   token lines of each room, next to its budget and to the last commit
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
@@ -17,7 +18,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies rivals wheelhouse hil bench lint types clean
+.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies rivals wheelhouse hil bench lint types size clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -28,7 +29,7 @@ demo: $(INSTALLED)
 # Types take one processor; the other one compiles the tests meanwhile, once for all that run them. More workers than
 # processors: stories wait for programs, browsers and real time; with four hands in browsers lose their robots.
 test: $(INSTALLED)
-	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types $(COMPILED)
+	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types size $(COMPILED)
 	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
 
 # A test that fails only on a busy machine is a fault of the test, or worse.
@@ -114,6 +115,10 @@ lint: $(INSTALLED)
 
 types: $(INSTALLED)
 	$(BIN)/mypy
+
+# A room above its budget in pyproject.toml is a failure.
+size: $(INSTALLED)
+	$(BIN)/python -m tests.size
 
 # What cannot be collected is told by the tests themselves.
 $(COMPILED): $(INSTALLED) $(shell find tests -name '*.py')
