@@ -69,6 +69,7 @@ class _Drive:
     def left_alone(self, seconds: float) -> None:
         """Let the robot go on without a runtime."""
         for _ in range(round(seconds / self._cycle_s)):
+            self.now_s += self._cycle_s
             self.simulation.step()
 
     @property
