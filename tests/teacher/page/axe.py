@@ -11,13 +11,12 @@ _BUNDLED = "axe_core_python.base"
 STATE_S = 0.2
 """Time in which the page has got a new state."""
 _RUN = """
-const [done] = [...arguments].slice(-1);
 const rules = {"label-content-name-mismatch": {enabled: true}};
 const told = ({id, nodes}) => `${id}: ${nodes.map((each) => each.target.join(" ")).join(", ")}`;
 const pages = realTime();
-axe.run({resultTypes: ["violations"], rules}).then(
-  ({violations}) => done(violations.map(told)),
-  (error) => done([String(error)]),
+return axe.run({resultTypes: ["violations"], rules}).then(
+  ({violations}) => violations.map(told),
+  (error) => [String(error)],
 ).finally(() => Object.assign(window, pages));
 """
 
@@ -32,5 +31,5 @@ def violations(phone: Phone) -> list[str]:
     if phone.run("return typeof axe === 'undefined';"):
         phone.run(bundled.AXE_SCRIPT)
     phone.pass_time(STATE_S)  # a page without a new state is pale on purpose
-    found: list[str] = phone.driver.execute_async_script(_RUN)
+    found: list[str] = phone.run(_RUN)
     return found

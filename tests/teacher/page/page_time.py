@@ -62,12 +62,16 @@ if (!window.passTime) {
       super.send(message);
     }
   };
-  // Null while messages of the server are under way; else the number of messages to the server, -1 without a link.
-  window.passTime = (ms, told) => {
+  const underWay = (socket, told) =>
+    socket?.readyState === Socket.CONNECTING || (socket?.readyState === Socket.OPEN && came.get(socket) < told);
+  // Null if messages of the server stay under way; else the number of messages to the server, -1 without a link.
+  window.passTime = async (ms, told) => {
+    for (let look = 0; underWay(sockets.at(-1), told); look++) {
+      if (look === 10) return null;
+      await new Promise((done) => setTimeout(done, 1));
+    }
     const socket = sockets.at(-1);
-    if (socket?.readyState === Socket.CONNECTING) return null;
     const open = socket?.readyState === Socket.OPEN;
-    if (open && came.get(socket) < told) return null;
     const end = now + ms;
     for (let next; (next = due(end)); ) {
       const [each, {run, at, again}] = next;

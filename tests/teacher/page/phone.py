@@ -3,17 +3,17 @@
 import os
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 from selenium import webdriver
-from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 
 from tests.teacher.page import page_time
+from tests.teacher.page.dev_tools import DevTools, dev_tools
 from tests.teacher.page.page_time import PageTime, pass_page_time
 
 BROWSER, DRIVER = Path("/usr/bin/chromium"), Path("/usr/bin/chromedriver")
@@ -44,10 +44,11 @@ _FLAGS = (
 )
 
 # What WebDriver's own questions come to, each in one short command.
-_TEXT = """
-const e = document.querySelector(arguments[0]);
-return e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) ? e.innerText.trim() : "";
+_TEXT_OF = """
+const text = (e) => e?.checkVisibility({visibilityProperty: true, opacityProperty: true}) ? e.innerText.trim() : "";
 """
+_TEXT = f"{_TEXT_OF} return text(document.querySelector(arguments[0]));"
+_TEXTS = f"{_TEXT_OF} return [...document.querySelectorAll(arguments[0])].map(text);"
 _SHOWN = """
 const e = document.querySelector(arguments[0]);
 const box = e?.getBoundingClientRect();
@@ -83,8 +84,10 @@ _HAS_BEEN_HERE = "try { localStorage.setItem('kurt2rt.bubbles', 'seen'); } catch
 class Phone:
     """The page in its browser, whose teacher has been there before unless told otherwise."""
 
-    def __init__(self, driver: webdriver.Chrome, screenshots: Path | None) -> None:
+    def __init__(self, driver: webdriver.Chrome, tools: DevTools, screenshots: Path | None) -> None:
         self.driver = driver
+        self.tools = tools
+        self._screen: object = None
         self._screenshots = screenshots
         self._at: str | None = None
         self.time: PageTime | None = None
@@ -107,25 +110,29 @@ class Phone:
     def in_the_dark(self) -> Iterator[None]:
         """Prefer the dark theme meanwhile."""
         scheme = "prefers-color-scheme"
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": scheme, "value": "dark"}]})
+        self.tools.call("Emulation.setEmulatedMedia", features=[{"name": scheme, "value": "dark"}])
         try:
             yield
         finally:
-            self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+            self.tools.call("Emulation.setEmulatedMedia", features=[])
 
     def turn(self, size: tuple[int, int], *, touch: bool = True) -> None:
         """Give the screen another size."""
+        if self._screen == (size, touch):
+            return
         fine = 2 if self._screenshots else 1  # without screenshots, painted in a quarter of the time
         screen = {"width": size[0], "height": size[1], "deviceScaleFactor": fine, "mobile": touch}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
-        self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": touch})
+        self.tools.call("Emulation.setDeviceMetricsOverride", **screen)
+        self.tools.call("Emulation.setTouchEmulationEnabled", enabled=touch)
         if (self._at or "").startswith("http"):
             self.wait(lambda: self.run("return [innerWidth, innerHeight];") == list(size), "the screen is turned")
+        self._screen = (size, touch)
 
     def open(self, address: str) -> None:
         """Go to an address."""
         self._at = None
         self.driver.get(address)
+        self.driver.execute_script("")  # waits for the page to which that page goes on
         self._at = address
 
     def come_to(self, address: str) -> None:
@@ -134,6 +141,10 @@ class Phone:
             self.open(address)
         else:
             self.run(_TIDY)
+
+    def reload(self) -> None:
+        """Load the page again."""
+        self.driver.refresh()
 
     def leave(self) -> None:
         """Go where there is nothing, and no server."""
@@ -145,7 +156,7 @@ class Phone:
 
     def texts(self, selector: str) -> list[str]:
         """Return the text of each visible element."""
-        return [each.text for each in self.driver.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
+        return [text for text in self.run(_TEXTS, selector) if text]
 
     def shows(self, selector: str) -> bool:
         """Return whether the first element is visible."""
@@ -161,14 +172,13 @@ class Phone:
 
     def run(self, script: str, *arguments: object) -> Any:
         """Run a script in the page and return its result."""
-        return self.driver.execute_script(script, *arguments)
+        return self.tools.run(script, *arguments)
 
     def wait(self, until: Callable[[], object], what: str) -> None:
         """Let time pass until something is so. The failure tells the last sentences of the page, which it clears."""
         for _ in range(round(PATIENCE_S / STEP_S)):
-            with suppress(StaleElementReferenceException):
-                if until():
-                    return
+            if until():
+                return
             self.pass_time(STEP_S)
         raise AssertionError(f"never: {what}; the page said {self.run('return window.saidBefore?.slice(-4);')}")
 
@@ -213,7 +223,7 @@ class Phone:
         event: dict[str, object] = {"type": kind, "code": code, "key": key}
         if code == "Enter" and kind == "keyDown":
             event |= {"text": "\r", "windowsVirtualKeyCode": 13}  # else no button feels it
-        self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", event)
+        self.tools.call("Input.dispatchKeyEvent", **event)
 
     @contextmanager
     def before_scripts(self, script: str) -> Iterator[None]:
@@ -227,8 +237,8 @@ class Phone:
     def forget(self) -> None:
         """Leave the page, and be as one that was never there: no cookies, nothing stored, nothing said."""
         self.leave()
-        self.driver.execute_cdp_cmd("Network.clearBrowserCookies", {})
-        self.driver.execute_cdp_cmd("Storage.clearDataForOrigin", {"origin": "*", "storageTypes": "all"})
+        self.tools.call("Network.clearBrowserCookies")
+        self.tools.call("Storage.clearDataForOrigin", origin="*", storageTypes="all")
         self.turn(PORTRAIT)
         self.complaints()
 
@@ -250,7 +260,7 @@ class Phone:
         self.driver.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", added)
 
     def _finger(self, kind: str, points: list[dict[str, float]]) -> None:
-        self.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+        self.tools.call("Input.dispatchTouchEvent", type=kind, touchPoints=points)
 
 
 @contextmanager
@@ -269,8 +279,9 @@ def phone(screenshots: Path | None) -> Iterator[Phone]:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         driver = webdriver.Chrome(options, Service(str(DRIVER)))
         try:
-            opened = Phone(driver, screenshots)
-            opened.turn(PORTRAIT)
-            yield opened
+            with dev_tools(driver) as tools:
+                opened = Phone(driver, tools, screenshots)
+                opened.turn(PORTRAIT)
+                yield opened
         finally:
             driver.quit()

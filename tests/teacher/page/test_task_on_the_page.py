@@ -122,8 +122,8 @@ def stay(phone: Phone) -> None:
 
 
 def reload(phone: Phone) -> None:
-    phone.run("window.before = true; location.reload()")
-    phone.wait(lambda: phone.run("return !window.before") and phone.text("#claim") == "", "another page")
+    phone.reload()
+    phone.wait(lambda: phone.text("#claim") == "", "the page has control")
     phone.wait(lambda: phone.text("h1").startswith("Teach it"), "the page is there again")
 
 
