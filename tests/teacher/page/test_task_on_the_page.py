@@ -132,6 +132,16 @@ def xs(phone: Phone) -> set[float]:
     return {x for _, x, _ in phone.run("return JSON.parse(sessionStorage.getItem('kurt2rt.trail')).points;")}
 
 
+def test_view_changed_before_the_first_frame_complains_of_nothing(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    phone.complaints()
+    phone.reload()
+    phone.run("setTimeout(() => { for (const _ of '12') document.querySelector('#view').click(); });")
+    phone.pass_time(0.1)  # timers run before frames
+    assert phone.complaints() == []
+
+
 def test_important_sentences_are_never_cut(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare)
     phone = a_lesson.phone

@@ -14,7 +14,7 @@ function colour(metres) {
 // Draws the robot; sensors that differ in the question of the state `asked` are marked as in the picture of `kurt2rt why`.
 export function drawRobot(canvas, hello, state, asked) {
   const drawn = sheet(canvas);
-  if (!drawn || !hello || !state) return;
+  if (!drawn || !hello || !state || !asked) return; // nothing is worded before the first frame
   const { paint, width, height } = drawn;
   const [length, breadth] = hello.outline;
   const margin = 58; // for the wheel speeds
