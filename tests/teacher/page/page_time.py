@@ -62,15 +62,17 @@ if (!window.passTime) {
       super.send(message);
     }
   };
-  const underWay = (socket, told) =>
-    socket?.readyState === Socket.CONNECTING || (socket?.readyState === Socket.OPEN && came.get(socket) < told);
-  // Null if messages of the server stay under way; else the number of messages to the server, -1 without a link.
+  const arrival = (socket) => new Promise((done) => {
+    for (const kind of ["message", "open", "close"]) socket.addEventListener(kind, done, {once: true});
+    setTimeout(done, 20);
+  });
+  // Null while messages of the server are under way; else the number of messages to the server, -1 without a link.
   window.passTime = async (ms, told) => {
-    for (let look = 0; underWay(sockets.at(-1), told); look++) {
-      if (look === 10) return null;
-      await new Promise((done) => setTimeout(done, 1));
-    }
     const socket = sockets.at(-1);
+    const underWay = () => socket?.readyState === Socket.OPEN && came.get(socket) < told;
+    if (socket?.readyState === Socket.CONNECTING) return await arrival(socket), null;
+    for (let look = 0; underWay() && look < 5; look++) await arrival(socket);
+    if (underWay() || socket !== sockets.at(-1)) return null;
     const open = socket?.readyState === Socket.OPEN;
     const end = now + ms;
     for (let next; (next = due(end)); ) {

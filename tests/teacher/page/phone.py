@@ -21,6 +21,7 @@ PORTRAIT, SMALL, LANDSCAPE, LAPTOP = (390, 844), (360, 600), (844, 390), (1280, 
 PATIENCE_S = 60.0
 """Seconds of the page in which an event has to come."""
 STEP_S = 0.05
+_NOWHERE = "about:blank"
 
 # Each page gets a process of its own, and the next one has its process already, unless it is told not to: starting
 # them was most of what the stories took. A transition is painted many times. Optimising the page's scripts takes
@@ -148,7 +149,8 @@ class Phone:
 
     def leave(self) -> None:
         """Go where there is nothing, and no server."""
-        self.open("about:blank")
+        if self._at != _NOWHERE:
+            self.open(_NOWHERE)
 
     def text(self, selector: str) -> str:
         """Return the text of the first element of a CSS selector; empty if it is hidden."""
