@@ -6,9 +6,11 @@ from dataclasses import replace
 from functools import partial
 
 import anyio
+import pytest
 from anyio.from_thread import BlockingPortal
 
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.teacher.page.cached_resource import CachedResource
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 from tests.teacher.page.page_time import PageTime, stepped_portal
 from tests.teacher.page.phone import PORTRAIT, Phone
@@ -19,6 +21,8 @@ _SHOWN = """
 const [clock, claim] = ['#clock', '#claim'].map((each) => document.querySelector(each));
 return [clock.textContent, claim.hidden];
 """
+_PAUSE_S = 0.01
+"""Between two requests of the server for one resource: each lesson begins with several of another robot."""
 
 
 class Lesson:
@@ -79,11 +83,14 @@ async def show_on(robot: FakeRobot) -> None:
 @contextmanager
 def lessons(phone: Phone) -> Iterator[Lesson]:
     """Serve a page and a robot, for one lesson after another."""
-    with (
-        stepped_portal() as (portal, time),
-        portal.wrap_async_context_manager(served()) as page,
-        time.shown_on(phone),
-    ):
-        pictures = portal.start_task_soon(show_on, page.robot)
-        yield Lesson(phone, portal, time, page)
-        pictures.cancel()
+    quick = partial(CachedResource, pause_s=_PAUSE_S)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("kurt2rt.teacher.page.slow_state.CachedResource", quick)
+        with (
+            stepped_portal() as (portal, time),
+            portal.wrap_async_context_manager(served()) as page,
+            time.shown_on(phone),
+        ):
+            pictures = portal.start_task_soon(show_on, page.robot)
+            yield Lesson(phone, portal, time, page)
+            pictures.cancel()

@@ -133,7 +133,8 @@ class Phone:
         """Go to an address."""
         self._at = None
         self.driver.get(address)
-        self.driver.execute_script("")  # waits for the page to which that page goes on
+        if address != _NOWHERE:
+            self.driver.execute_script("")  # waits for the page to which that page goes on
         self._at = address
 
     def come_to(self, address: str) -> None:

@@ -42,11 +42,24 @@ def enter(lesson: Lesson) -> None:
 
 
 def test_rewind_stops_the_robot_and_shows_the_past(lesson: Lesson) -> None:
+    phone = lesson.phone
+    assert phone.shows("#robot-view")
     enter(lesson)
     assert lesson.robot.told_of("stop")
-    assert not lesson.phone.shows("#why")
-    lesson.phone.run(_PICK, -3)
+    assert not phone.shows("#why")
+    assert phone.shows("#world-view"), "the path is shown"
+    assert not phone.shows("#robot-view")
+    phone.run(_PICK, -3)
     lesson.reads("#rewind-says", "3.0 s before it stood: RLA 13 ")
+    for size in SIZES:
+        phone.turn(size, touch=size != LAPTOP)
+        phone.show(f"17-rewind-{size[0]}x{size[1]}")
+        assert_handy(phone, size, "teach")
+    phone.turn(PORTRAIT)
+    phone.touch("#rewind-close")
+    phone.wait(lambda: phone.shows("#robot-view"), "the view of before is back")
+    assert not phone.shows("#world-view")
+    phone.wait(lambda: phone.shows("#why"), "the present is shown")
 
 
 def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> None:
@@ -100,22 +113,11 @@ def test_then_go_does_not_lift_a_stop_after_the_touch(lesson: Lesson) -> None:
     assert not any("resume" in str(message) for message in lesson.phone.run("return window.sent;"))
 
 
-def test_rewind_shows_the_path_and_then_the_robot(lesson: Lesson) -> None:
-    assert lesson.phone.shows("#robot-view")
+def test_go_leaves_the_past(lesson: Lesson) -> None:
     enter(lesson)
-    assert lesson.phone.shows("#world-view")
-    assert not lesson.phone.shows("#robot-view")
-    lesson.phone.touch("#rewind-close")
-    lesson.phone.wait(lambda: lesson.phone.shows("#robot-view"), "the view of before is back")
-    assert not lesson.phone.shows("#world-view")
-
-
-@pytest.mark.parametrize("button", ["#rewind-close", "#go"])
-def test_leaving_the_past_corrects_the_present_again(lesson: Lesson, button: str) -> None:
-    enter(lesson)
-    lesson.show(standing=Standing(needs_resume=True)) if button == "#go" else None
-    lesson.phone.wait(lambda: not lesson.phone.has(f"{button}:disabled"), "it can be touched")
-    lesson.phone.touch(button)
+    lesson.show(standing=Standing(needs_resume=True))
+    lesson.phone.wait(lambda: lesson.phone.has("#go:enabled"), "it can be touched")
+    lesson.phone.touch("#go")
     lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
 
 
@@ -131,13 +133,3 @@ def test_space_stops_while_the_slider_has_the_focus(lesson: Lesson) -> None:
     lesson.phone.key("keyDown", "Space")
     lesson.phone.key("keyUp", "Space")
     lesson.phone.wait(lambda: len(lesson.robot.told_of("stop")) > before, "STOP is sent")
-
-
-def test_rewind_fits_every_screen(lesson: Lesson) -> None:
-    enter(lesson)
-    lesson.phone.run(_PICK, -2)
-    for size in SIZES:
-        lesson.phone.turn(size, touch=size != LAPTOP)
-        lesson.phone.show(f"17-rewind-{size[0]}x{size[1]}")
-        assert_handy(lesson.phone, size, "teach")
-    lesson.phone.turn(PORTRAIT)
