@@ -22,7 +22,7 @@ const [clock, claim] = ['#clock', '#claim'].map((each) => document.querySelector
 return [clock.textContent, claim.hidden];
 """
 _PAUSE_S = 0.01
-"""Between two requests of the server for one resource: each lesson begins with several of another robot."""
+"""Pause of the server after a request for a resource: each lesson begins with those of another robot."""
 
 
 class Lesson:

@@ -132,7 +132,7 @@ def xs(phone: Phone) -> set[float]:
     return {x for _, x, _ in phone.run("return JSON.parse(sessionStorage.getItem('kurt2rt.trail')).points;")}
 
 
-def test_view_changed_before_the_first_frame_complains_of_nothing(a_lesson: Lesson) -> None:
+def test_view_changed_before_the_first_frame_throws_nothing(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare)
     phone = a_lesson.phone
     phone.complaints()
