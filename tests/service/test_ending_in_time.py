@@ -18,13 +18,20 @@ from tests.cli.helpers import started
 from tests.cli.three_programs import brakes, is_control, onlooker
 
 SAYS = {
-    "start": timeout_message(ShutdownStage.DISK),
-    "disk": "disk does not answer; look at its health; closed with 0 lessons not written",
-    "recorder": "recording: the disk does not answer; the end is missing",
-    "keys": timeout_message(ShutdownStage.DISK),
-    "network": timeout_message(ShutdownStage.CHANNEL),
-    "loop": timeout_message(ShutdownStage.LOOP),
+    "start": (timeout_message(ShutdownStage.DISK),),
+    "disk": (
+        "disk does not answer; look at its health; closed with 0 lessons not written",
+        timeout_message(ShutdownStage.LESSONS),
+    ),
+    "recorder": (
+        "recording: the disk does not answer; the end is missing",
+        timeout_message(ShutdownStage.RECORDING),
+    ),
+    "keys": (timeout_message(ShutdownStage.DISK),),
+    "network": (timeout_message(ShutdownStage.CHANNEL),),
+    "loop": (timeout_message(ShutdownStage.LOOP),),
 }
+"""Last words by what hangs. Of two, a busy machine has the second: its time is over before the wait for the disk is."""
 RARE = {"start", "recorder", "keys"}
 
 
@@ -49,7 +56,7 @@ async def test_the_wheels_are_braked_and_the_program_ends(thing: str, tmp_path: 
             program.kill()
         ear.look()
     assert brakes([frame for frame in ear.frames if is_control(frame)][-1])
-    assert SAYS[thing] in said
+    assert any(each in said for each in SAYS[thing])
     assert "Traceback" not in said
 
 
