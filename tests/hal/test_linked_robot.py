@@ -161,6 +161,7 @@ def test_fault_of_the_robot_stops_it_until_over_and_released(scene: Scene) -> No
     assert alarm == f"link of a test: the robot tells a fault: motor hot {190 * '!'}; mend it"
     assert scene.link.sent[-1] == "brake"
     scene.robot.release()
+    assert scene.robot.health.latched is GuardReason.ROBOT_FAULT  # before the drive of that tick
     assert scene.tick().reasons == (GuardReason.ROBOT_FAULT,)
     assert scene.robot.health.alarm == alarm
     scene.link.reports = [AlarmReport(scene.now_s, "")]

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from hal.numerics import cos_sin, power, round_portable
-from tests.without_fma import WITHOUT_FMA
+from tests.processors import OF_2004
 
 _ANGLES = range(20_000)
 
@@ -53,5 +53,5 @@ def test_cos_sin_is_the_rounded_cosine_and_sine() -> None:
 
 def test_sines_without_fused_multiply_add_are_equal() -> None:
     command = [sys.executable, "-c", "from tests.hal.test_numerics import hash_of_sines as h; print(h())"]
-    done = subprocess.run(command, env={**os.environ, **WITHOUT_FMA}, capture_output=True, text=True, check=True)
+    done = subprocess.run(command, env={**os.environ, **OF_2004}, capture_output=True, text=True, check=True)
     assert done.stdout.split() == [hash_of_sines()]

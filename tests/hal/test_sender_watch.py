@@ -71,6 +71,7 @@ def test_go_is_refused_while_it_lasts_and_for_1_s_more(ride: Ride) -> None:
     alarm = ride.kurt2.health.alarm
     for _ in range(300):
         ride.kurt2.release()
+        assert ride.kurt2.health.latched is GuardReason.FOREIGN_TELEMETRY  # before the drive of that tick
         assert ticks_to_stop(ride, [[FREE]]) == 1
         assert ride.kurt2.health.alarm == alarm
     for _ in range(100):

@@ -1,9 +1,9 @@
 import pytest
 
 from tests.cli.helpers import ROOT, started
+from tests.processors import OF_2004
 from tests.simbridge import turning_run
 from tests.simbridge.same_run import SEED, hashes
-from tests.without_fma import WITHOUT_FMA
 
 
 @pytest.fixture(scope="module")
@@ -29,6 +29,6 @@ def test_run_in_another_process_is_equal(first: list[str]) -> None:
 
 @pytest.mark.deep
 def test_run_without_fused_multiply_add_is_equal() -> None:
-    with started("tests.simbridge.turning_run", folder=ROOT, environment=WITHOUT_FMA, fresh=True) as other:
+    with started("tests.simbridge.turning_run", folder=ROOT, environment=OF_2004, fresh=True) as other:
         said, complaints = other.communicate()
     assert (said.split(), complaints) == (turning_run.hashes(), "")

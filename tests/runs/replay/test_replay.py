@@ -27,6 +27,7 @@ from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until
 from kurt2rt.runs.replay.run import Run, RunSource
 from tests.core.basic.helpers import keep, with_repertoire
+from tests.processors import OF_2004, OF_2013
 from tests.runs.replay.stored_runs import NAMES, STORED, stored
 from tests.runs.replay.stories import NAME, STORIES, Scene, record_story
 
@@ -47,14 +48,6 @@ def test_a_stored_run_is_decided_again_as_it_was(name: str) -> None:
     run = read_run(STORED / f"{name}.mcap")
     assert differences(run) == (round(STORIES[name].seconds * 100), [])
     assert not run.trouble
-
-
-OF_2004 = {
-    "OPENBLAS_CORETYPE": "Prescott",
-    "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
-    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
-}
-OF_2013 = {"OPENBLAS_CORETYPE": "Haswell"}
 
 
 @pytest.mark.parametrize(
