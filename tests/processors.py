@@ -5,5 +5,5 @@ OF_2004 = {
     "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
 }
-"""Without fused multiply-add."""
+"""Processor that has no fused multiply-add."""
 OF_2013 = {"OPENBLAS_CORETYPE": "Haswell"}
