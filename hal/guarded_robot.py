@@ -105,7 +105,7 @@ class GuardedRobot(ABC):
         self._link_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._foreign_control = self._receive_failures = 0
-        self._receive_trouble = self._alarm = self._fault = self._second_sender = ""
+        self._receive_trouble = self._alarm = self._fault = self._second_sender = self._notice = ""
 
     @abstractmethod
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
@@ -188,6 +188,7 @@ class GuardedRobot(ABC):
             controller_trouble=controller.trouble,
             alarm=self._alarm,
             latched=self._guard.latched,
+            notice=f"{self._link_name}: {self._notice}" if self._notice else "",
         )
 
     def _sound_alarms(self, arrivals: Arrivals, *, paused: bool) -> None:

@@ -3,12 +3,10 @@
 import math
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Final
 
 from hal.bus import BusError
 from hal.guarded_robot import Arrivals, GuardedRobot
-from hal.health import Health
 from hal.infrared_watch import InfraredWatch
 from hal.robot import HIGHEST_COUNTS, WheelSpeeds
 from hal.robot_link import AlarmReport, BumperReport, NoticeReport, RangeReport, Report, RobotLink, WheelReport
@@ -73,7 +71,6 @@ class LinkedRobot(GuardedRobot):
         self._times_s.extend([-math.inf] * len(self._counts))
         self._cycle_s = settings.cycle_s
         self._rejected = 0
-        self._notice = ""
 
     def _receive(self, now_s: float, arrivals: Arrivals) -> None:
         reports: tuple[Report, ...] = ()
@@ -125,12 +122,6 @@ class LinkedRobot(GuardedRobot):
             arrivals.infrared_changed = True
         self._times_s[first:end] = [at_s] * len(counts)
         return True
-
-    @property
-    def health(self) -> Health:
-        """Counters as they stand now."""
-        notice = f"{self._link_name}: {self._notice}" if self._notice else ""
-        return replace(super().health, notice=notice)
 
     def _reopen_link(self) -> None:
         self._link.reopen()
