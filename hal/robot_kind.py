@@ -30,8 +30,8 @@ class RobotKind(Protocol):
         """
         ...
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        """Return what opens simulations of such a robot. Raises SettingsError for a wire that its link cannot have."""
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        """Return what opens simulations of such a robot."""
         ...
 
     def serve(self, settings: RobotSettings, address: str) -> object:
@@ -47,13 +47,9 @@ def kind_of(settings: RobotSettings) -> RobotKind:
     return cast("RobotKind", find_robot_kind(settings.kind))
 
 
-NO_WIRE = "none"
-"""Name of ideal transport: messages arrive at once, none is lost."""
-
-
-def simulations_of(settings: RobotSettings, wire: str = NO_WIRE) -> SimulationFactory:
-    """Return what opens simulations of a robot, over a wire that its link knows. Raises SettingsError.
+def simulations_of(settings: RobotSettings) -> SimulationFactory:
+    """Return what opens simulations of a robot. Raises SettingsError.
 
     Raises ModuleNotFoundError where the simulator, which is an extra, is not installed.
     """
-    return kind_of(settings).simulations(settings, wire)
+    return kind_of(settings).simulations(settings)

@@ -1,15 +1,14 @@
 """The simulated KURT2 in one world, on a CAN bus of its own."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
-from hal.robot_kind import NO_WIRE
 from hal.simulation import Pose
 from hal.tap import Tap
+from simbridge.can_line import CanLine
 from simbridge.robot_simulation import RobotSimulation, chance_of
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.wire.line import open_line
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 
@@ -26,21 +25,19 @@ class Kurt2Simulation(RobotSimulation):
         world: str,
         seed: int,
         purpose: str,
-        wire: str = NO_WIRE,
         driver: type[Kurt2] = Kurt2,
         loaded: WorldSettings | None = None,
-        bus: str | None = None,
+        open_line: Callable[[], CanLine] = CanLine,
     ) -> None:
         """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
 
-        `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
         `driver`: drives the simulated robot over its bus. `loaded`: settings of the world; None: they are loaded.
-        `bus`: that carries the frames of a robot without a wire (hal.bus.open_bus); None: one of its own.
+        `open_line`: opens the bus that carries the frames. Raises BusError.
         """
         loaded = loaded or load_world(world, settings)
         chance = chance_of(world, seed, purpose)
         noise_seed = chance.getrandbits(32)
-        line = open_line(wire, settings.cycle_s, noise_seed, bus)
+        line = open_line()
         simulated = SimulatedKurt2(settings, loaded, line.robot_end, noise_seed, robot_seed=seed)
         self._notebook_end = line.notebook_end
         super().__init__(settings, simulated, driver(settings, line.notebook_end), line, chance)

@@ -6,10 +6,8 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from hal.linked_robot import LinkedRobot
-from hal.robot_kind import NO_WIRE
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from hal.simulation import LiveSimulation
 from hal.tap import Tap, refuse_tap
 from simbridge.controller.controller import Controller
@@ -55,28 +53,22 @@ class LinkSimulationFactory(RobotWorlds):
     def open(self, world: str, seed: int, purpose: str) -> RobotSimulation:
         """Open the simulated robot in a world; `seed` and `purpose` make its sensors, start pose and noise.
 
-        Raises SettingsError for an unknown world, or for a wire.
+        Raises SettingsError for an unknown world.
         """
         return self._open(world, seed, purpose, LinkedRobot)[0]
 
     def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
         """Return a context in which a robot runs in real time.
 
-        Raises SettingsError for an unknown world, for a wire, or for a tap, which sees CAN frames.
+        Raises SettingsError for an unknown world, or for a tap, which sees CAN frames.
         """
         refuse_tap(tap, self.settings.name)
         simulation, driver = self._open(world, seed, "run", StallTolerantLinkedRobot)
         return run_live(simulation, driver, simulation.simulated_robot.world.settings)
 
-    def require_worlds(self, *worlds: str) -> None:
-        """Check each world, and that no wire is asked for. Raises SettingsError."""
-        self._require_no_wire()
-        super(LinkSimulationFactory, self).require_worlds(*worlds)
-
     def _open(
         self, world: str, seed: int, purpose: str, driver_class: type[LinkedRobot]
     ) -> tuple[RobotSimulation, LinkedRobot]:
-        self._require_no_wire()
         loaded = load_world(world, self.settings)
         chance = chance_of(world, seed, purpose)
         noise_seed = chance.getrandbits(32)
@@ -86,11 +78,3 @@ class LinkSimulationFactory(RobotWorlds):
         )
         driver = driver_class(self.settings, link.runtime_end)
         return RobotSimulation(self.settings, simulated, driver, link, chance), driver
-
-    def _require_no_wire(self) -> None:
-        if self.wire != NO_WIRE:
-            raise SettingsError(
-                f"has no CAN bus, so no wire (got {self.wire}, allowed {NO_WIRE})",
-                where=f"robot {self.settings.name}",
-                do="leave --wire out",
-            )

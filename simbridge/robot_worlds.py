@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from hal.robot_kind import NO_WIRE
 from hal.robot_settings import RobotSettings
 from hal.simulation import WorldPlan
 from simbridge.simulated_world import plan_of
 from simbridge.survey.drawing import draw_robot, draw_world
-from simbridge.wire.line import require_wire
 from simbridge.worlds.world_loading import load_world
 
 if TYPE_CHECKING:
@@ -20,11 +18,9 @@ class RobotWorlds:
     """Part of a factory of simulations (hal.simulation.SimulationFactory) that opens none."""
 
     settings: RobotSettings
-    wire: str = NO_WIRE
 
     def require_worlds(self, *worlds: str) -> None:
-        """Check the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
-        require_wire(self.wire)
+        """Check each world, so that a long job does not fail at its last one. Raises SettingsError."""
         for world in worlds:
             load_world(world, self.settings)
 
@@ -44,8 +40,5 @@ class RobotWorlds:
         draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
 
     def settings_of(self, world: str) -> str:
-        """Return all settings of a world, and the wire, as a text.
-
-        Raises hal.settings.SettingsError for an unknown world.
-        """
-        return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
+        """Return all settings of a world as a text. Raises hal.settings.SettingsError for an unknown world."""
+        return load_world(world, self.settings).model_dump_json(serialize_as_any=True)

@@ -22,7 +22,7 @@ class SimulatedLink(Protocol):
 
 
 class InstantLink:
-    """Link without a time of its own; base of the links of plug-ins (SimulatedLink)."""
+    """Link without a time of its own (SimulatedLink)."""
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
         """Step the robot."""

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
 from hal.batch_lesson import LessonDriveSettings, LessonRobot
-from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
-from hal.robot_kind import NO_WIRE
 from hal.simulation import LiveSimulation
 from hal.tap import Tap
+from simbridge.can_line import CanLine
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.live_simulation import run_live
 from simbridge.robot_worlds import RobotWorlds
@@ -23,27 +22,26 @@ class Kurt2SimulationFactory(RobotWorlds):
     """Opens simulations of KURT2 (hal.simulation.SimulationFactory); can be sent to another process."""
 
     settings: Kurt2Settings
-    wire: str = NO_WIRE
     bus: str | None = None
-    """Bus that carries the frames of a robot without a wire, for one simulation at a time; None: one of its own."""
+    """Bus that carries the frames, for one simulation at a time; None: one of its own."""
 
     def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
         """Open the simulated robot in a world; `seed` and `purpose` make its sensors, start pose and noise.
 
-        Raises BusError for a bus that cannot be opened, SettingsError for an unknown world or wire.
+        Raises BusError for a bus that cannot be opened, SettingsError for an unknown world.
         """
-        return Kurt2Simulation(self.settings, world, seed, purpose, self.wire, bus=self.bus)
+        return Kurt2Simulation(self.settings, world, seed, purpose, open_line=self._open_line)
 
     def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:
         """Open a simulation for each start; a world that several share is loaded once (hal.batch.BatchFactory).
 
-        Raises SettingsError for an unknown world or wire.
+        Raises SettingsError for an unknown world.
         """
         worlds = {world: load_world(world, self.settings) for world in dict.fromkeys(start.world for start in starts)}
         opened: list[FollowedSimulation] = []
         try:
             for world, seed in starts:
-                opened.append(Kurt2Simulation(self.settings, world, seed, purpose, self.wire, loaded=worlds[world]))
+                opened.append(Kurt2Simulation(self.settings, world, seed, purpose, loaded=worlds[world]))
         except BaseException:
             for each in opened:
                 each.close()
@@ -60,8 +58,6 @@ class Kurt2SimulationFactory(RobotWorlds):
         # Late import: the compiler takes a third of a second.
         from simbridge.batch.batch import RobotBatch
 
-        if self.wire != NO_WIRE:
-            raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
         robots = [each.simulated_robot for each in simulations if isinstance(each, Kurt2Simulation)]
         return RobotBatch(self.settings, robots, minds, settings)
 
@@ -72,18 +68,19 @@ class Kurt2SimulationFactory(RobotWorlds):
         """
         from simbridge.lesson_simulation import LessonSimulation
 
-        if self.wire != NO_WIRE:
-            raise BatchRefusedError(f"wire {self.wire}: a batch has no wire", do="leave --wire out")
         return LessonSimulation(self.settings, world, seed, purpose, settings)
 
     def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
         """Return a context in which a robot runs in real time (hal.simulation.SimulationFactory).
 
-        `tap`: sees the frames at the notebook's end of its bus. Raises SettingsError for an unknown world or wire.
+        `tap`: sees the frames at the notebook's end of its bus. Raises SettingsError for an unknown world.
         """
         loaded = load_world(world, self.settings)
         simulation = Kurt2Simulation(
-            self.settings, world, seed, "run", self.wire, StallTolerantKurt2, loaded=loaded, bus=self.bus
+            self.settings, world, seed, "run", StallTolerantKurt2, loaded=loaded, open_line=self._open_line
         )
         simulation.attach_tap(tap)
         return run_live(simulation, simulation.robot, loaded)
+
+    def _open_line(self) -> CanLine:
+        return CanLine(self.bus)

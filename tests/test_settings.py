@@ -28,7 +28,6 @@ from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teacher_settings import TeacherProfile
 from kurt2rt.experiments.search.settings import SearchSettings
-from simbridge.wire.settings import WireSettings
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 
@@ -39,7 +38,6 @@ SCHEMAS: dict[str, type[Settings]] = {
     "situations": SituationDefinition,
     "repertoires": RepertoireSettings,
     "worlds": WorldSettings,
-    "wires": WireSettings,
     "faults": FaultTable,
     "critics": CriticSettings,
     "mid_levels": MidSettings,

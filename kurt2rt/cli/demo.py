@@ -16,7 +16,6 @@ from kurt2rt.cli.options import (
     Plain,
     RobotName,
     Seed,
-    WireName,
     changes_of,
     task_option,
     teacher_option,
@@ -44,7 +43,6 @@ class _Options:
     seed: Seed = 0
     out: OutFolder = Path("results/demo")
     robot_settings: RobotName = None
-    wire: WireName = "none"
     as_json: AsJson = False
 
 
@@ -73,7 +71,7 @@ def demo(options: _Options) -> None:
         options.task, options.robot_settings, plain=options.plain, changes=changes_of(options.changes)
     )
     taught = taught_by_named(task, options.teacher)
-    stage = simulations_of(settings, options.wire)
+    stage = simulations_of(settings)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)

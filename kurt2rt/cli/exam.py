@@ -12,7 +12,7 @@ from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
+from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, changes_of, world_option
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import require_robot_of
@@ -49,7 +49,6 @@ class _Options:
         ),
     ] = None
     robot_settings: RobotName = None
-    wire: WireName = "none"
     as_json: AsJson = False
 
 
@@ -78,7 +77,7 @@ def exam(options: _Options) -> None:
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
         taught = with_route(taught, options.seed)
     worlds = tuple(options.world) if options.world else taught.exam.worlds
-    stage = simulations_of(settings, options.wire)
+    stage = simulations_of(settings)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
     events = read_lessons(options.knowledge, settings, taught)

@@ -117,7 +117,7 @@ def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
     )
     taught = taught_by(task, load_teacher(options.teacher))
     command = typed_command("lesson", options, {"task": task_name, "task_word": None})
-    return LessonSetup(simulations_of(robot, options.wire), robot, taught, command)
+    return LessonSetup(simulations_of(robot), robot, taught, command)
 
 
 def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
@@ -156,8 +156,8 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     tasks = _taught_tasks(setup.task, options)
     results = Results(out)
     parts = JobParts(factory=setup.factory, robot=setup.robot, results=results)
-    loops = requested_loops(options.lessons, options.exams, wire=options.wire)
-    plan = make_plan(tasks, options.all_seeds, parts, wire=options.wire, loops=loops)
+    loops = requested_loops(options.lessons, options.exams)
+    plan = make_plan(tasks, options.all_seeds, parts, loops=loops)
     forget_lost_robots(plan, results)
     if options.shard is not None:
         run_shard(

@@ -19,7 +19,6 @@ from kurt2rt.cli.options import (
     Plain,
     RobotName,
     Seed,
-    WireName,
     parse_seeds,
     task_option,
     teacher_option,
@@ -71,7 +70,6 @@ class LessonOptions:
         ),
     ] = None
     robot_settings: RobotName = None
-    wire: WireName = "none"
     decisions: Annotated[
         list[int] | None,
         typer.Option(

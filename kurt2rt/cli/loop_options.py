@@ -18,22 +18,14 @@ LessonsOption = Annotated[
 ExamsOption = Annotated[LoopRequest, typer.Option(help="What drives the exams, as --lessons.", show_default=True)]
 
 
-def requested_loops(lessons: LoopRequest, exams: LoopRequest, *, wire: str | None = None) -> RequestedLoops:
-    """Return the requests of both options; say on standard error that an explicit batch is not compiled.
-
-    `wire`: name of the simulated wire; None: none. Raises typer.BadParameter for an explicit batch with a wire.
-    """
+def requested_loops(lessons: LoopRequest, exams: LoopRequest) -> RequestedLoops:
+    """Return the requests of both options; say on standard error that an explicit batch is not compiled."""
     # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
-    from hal.robot_kind import NO_WIRE
     from simbridge.batch.compiled import IS_COMPILED
 
-    has_wire = wire not in (None, NO_WIRE)
-    for hint, asked in (("--lessons", lessons), ("--exams", exams)):
-        if asked is LoopRequest.BATCH and has_wire:
-            raise typer.BadParameter(f"a batch has no wire: leave --wire out, or give {hint} bus", param_hint=hint)
     if LoopRequest.BATCH in (lessons, exams):
         say_if_interpreted()
-    return RequestedLoops(lessons, exams, compiled=IS_COMPILED and not has_wire)
+    return RequestedLoops(lessons, exams, compiled=IS_COMPILED)
 
 
 def say_choice(choice: LoopChoice) -> None:

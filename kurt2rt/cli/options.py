@@ -97,15 +97,6 @@ Seed = Annotated[
         min=0, metavar="N", help="Seed of start poses and noise; the same seed gives the same run, bit for bit."
     ),
 ]
-WireName = Annotated[
-    str,
-    typer.Option(
-        "--wire",
-        metavar=_NAME_OR_PATH,
-        help="Simulated CAN wire: a name in config/wires, or the path of a YAML file; it delays, loses and corrupts "
-        "frames. none: frames arrive at once.",
-    ),
-]
 OutFolder = Annotated[Path, typer.Option("--out", help="Folder for the results; made if it is missing.")]
 Jobs = Annotated[
     int, typer.Option("--jobs", min=1, metavar="N", help="Number of processes for many robots; 1: this process alone.")

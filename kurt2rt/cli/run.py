@@ -9,9 +9,9 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import EarlierBus, PageAddressName, RobotName, WireName, bus_of, task_option, world_option
+from kurt2rt.cli.options import EarlierBus, PageAddressName, RobotName, bus_of, task_option, world_option
 from kurt2rt.platform.extras import extra_for
-from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
+from kurt2rt.service.bus_names import SIMULATED
 
 if TYPE_CHECKING:
     from kurt2rt.core.task_settings import TaskSettings
@@ -141,7 +141,6 @@ class _Options:
         float | None, typer.Option(metavar="SECONDS", min=0.1, help="End after so long; default: run until Ctrl-C.")
     ] = None
     seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the simulated robot's start and noise.")] = 1
-    wire: WireName = NO_WIRE
 
 
 @takes_options(_Options)
@@ -223,11 +222,6 @@ def _require_consistent(options: _Options) -> None:
             "--seconds",
         ),
         (options.auto and not simulated, "a scripted teacher teaches the simulated robot only", "--auto"),
-        (
-            options.wire != NO_WIRE and not simulated,
-            "only the simulated robot in this program has a simulated wire",
-            "--wire",
-        ),
         (
             (options.page or options.phone or options.auto) and options.teacher == _NO_TEACHER,
             "a page and a scripted teacher come over the channel",
@@ -315,7 +309,6 @@ def _run_options(
         live_view=live_view,
         seconds=options.seconds,
         seed=options.seed,
-        wire=options.wire,
     )
 
 

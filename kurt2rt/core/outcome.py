@@ -155,8 +155,6 @@ class RefusalCode(StrEnum):
     DOES_NOT_FIT = "does not fit"
     # Files, exams and the simulated world.
     NOT_SIMULATED = "not simulated"
-    OWN_TIME = "own time"
-    """A simulated wire has its own time."""
     NO_WALL = "no wall"
     WALL_ON_ROBOT = "wall on robot"
     NO_ROOM = "no room"

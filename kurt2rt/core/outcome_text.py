@@ -150,7 +150,6 @@ _TEXTS: dict[Code, str] = {
     "undo it with the task that it was taught with",
     RefusalCode.DOES_NOT_FIT: "{says}",
     RefusalCode.NOT_SIMULATED: "this robot is not simulated",
-    RefusalCode.OWN_TIME: "a simulated wire has a time of its own; start kurt2rt run without --wire",
     RefusalCode.NO_WALL: WorldRefusal.NO_WALL.text,
     RefusalCode.WALL_ON_ROBOT: WorldRefusal.WALL_ON_ROBOT.text,
     RefusalCode.NO_ROOM: WorldRefusal.NO_ROOM.text,

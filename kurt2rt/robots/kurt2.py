@@ -26,11 +26,11 @@ class Kurt2Kind:
         bus.tap = tap
         return Kurt2(checked, bus)
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        """Return what opens simulations; `wire`: one of config/wires, or `none`. Raises SettingsError."""
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        """Return what opens simulations. Raises SettingsError."""
         from simbridge.simulation import Kurt2SimulationFactory
 
-        return Kurt2SimulationFactory(require_kurt2(settings, "this simulation"), wire)
+        return Kurt2SimulationFactory(require_kurt2(settings, "this simulation"))
 
     def serve(self, settings: RobotSettings, address: str) -> object:
         """Return the robot's end of a bus, for a simulated robot that other programs drive. Raises BusError."""

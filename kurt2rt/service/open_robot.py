@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld, Simulation
 from hal.tap import Tap
 from kurt2rt.platform.simulated_clock import HeldWorld
-from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
+from kurt2rt.service.bus_names import SIMULATED
 
 
 class OpenedRobot(NamedTuple):
@@ -32,7 +32,7 @@ class RobotOpener(Protocol):
     """Opener of a robot; `open_robot` is one."""
 
     def __call__(
-        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
+        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None
     ) -> AbstractContextManager[OpenedRobot]:
         """Return a context manager that opens the robot on a bus. Raises BusError, SettingsError."""
         ...
@@ -40,24 +40,23 @@ class RobotOpener(Protocol):
 
 @contextmanager
 def open_robot(
-    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
+    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None
 ) -> Iterator[OpenedRobot]:
     """Open the robot for a run in real time, with its watchdog: the simulated robot for `sim`, else the one on `bus`.
 
-    `world`, `seed` and `wire` (config/wires) are the simulated robot's. `tap` sees each frame at the runtime's end of
-    the bus. Raises BusError, CodecError and SettingsError, and at the end the error that ended the simulation.
+    `world` and `seed` are the simulated robot's. `tap` sees each frame at the runtime's end of the bus.
+
+    Raises BusError, CodecError and SettingsError, and at the end the error that ended the simulation.
     """
     kind = kind_of(settings)
     if bus == SIMULATED:
-        simulations = kind.simulations(settings, wire)
+        simulations = kind.simulations(settings)
         with simulations.live(world, seed, tap) as live:
-            # A wire has a time of its own, in real time.
-            held_world = live.world.held_world if wire == NO_WIRE else None
             yield OpenedRobot(
                 live.robot,
                 live.world,
                 lambda: live.world.lives,
-                held_world,
+                live.world.held_world,
                 live.simulation,
                 simulations.require_worlds,
             )

@@ -124,7 +124,7 @@ class ProgramStartup:
     def _claim_robot(self) -> None:
         options = self._options
         opening = self._environment.open_robot(
-            self._settings.robot, options.bus, self._service.world, options.seed, self._open_tap(), options.wire
+            self._settings.robot, options.bus, self._service.world, options.seed, self._open_tap()
         )
         self.opened = self._run_stack.enter_context(opening)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
+from kurt2rt.service.bus_names import SIMULATED
 from kurt2rt.service.open_robot import RobotOpener, open_robot
 from kurt2rt.service.shutdown import ShutdownStage, force_exit
 from kurt2rt.service.startup import RETRY_S
@@ -45,7 +45,6 @@ class RunOptions:
     seconds: float | None = None
     """Length of the program's run in s; None: until a signal ends it."""
     seed: int = 1
-    wire: str = NO_WIRE
 
 
 @dataclass(frozen=True, slots=True)

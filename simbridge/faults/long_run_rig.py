@@ -13,21 +13,20 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
-from hal.robot_kind import NO_WIRE
 from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S
-from simbridge.faults.cable import Cable
+from simbridge.faults.cable import SOUND, Cable, CableFaults
 from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
 from simbridge.faults.switchable_interface import Links, NumberedFrame, SwitchableInterface
 from simbridge.faults.timed_fault import Kind, TimedFault
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from simbridge.wire.settings import load_wire
-from simbridge.wire.wire import Wire
-from simbridge.wire.wire_interface import WireInterface
 from simbridge.worlds.world_loading import load_world
+
+_CABLES = {"none": SOUND, "slow": CableFaults(delay_s=0.002), "lossy": CableFaults(lost=0.1)}
+"""Faults of the cable by the name of a wire."""
 
 
 class LongRunRig:
@@ -54,8 +53,7 @@ class LongRunRig:
         self._cycle_s = settings.cycle_s
         self._numbers = 0
         self._robots_links, self._notebooks_links = Links(), Links()
-        self._join: Callable[[str], CanInterface]
-        self._open_bus(NO_WIRE)
+        self._open_bus("none")
         self._robots_bus = CanBus("soak", self._open_robots_end)
         self._robots_bus.set_id_filter({CONTROL_ID})
         world_settings = load_world(world, settings)
@@ -76,7 +74,7 @@ class LongRunRig:
         self.time.every(POLL_S, self._chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
     def start_driver(self, wire: str) -> Kurt2:
-        """Start a new driver over a wire given by name, or `none`; return it. Raises SettingsError."""
+        """Start a new driver over a wire given by name and return it."""
         self.end_driver()
         self._open_bus(wire)
         self._robots_bus.reopen()
@@ -163,22 +161,13 @@ class LongRunRig:
 
     def _open_bus(self, wire: str) -> None:
         """Select the wire that later opened interfaces join."""
-        if wire == NO_WIRE:
-            cable = Cable(self.time.now_s)
-            self._join = lambda _end: cable.open()
-            return
-        settings = load_wire(wire)
-        carrier = Wire(settings, self._chance.getrandbits(32))
-        carrier.advance(self.time.now_s())
-        carrier.follow(self.time.now_s)
-        nodes = {"robot": settings.robot, "notebook": settings.notebook}
-        self._join = lambda end: WireInterface(carrier, nodes[end])
+        self._cable = Cable(self.time.now_s, _CABLES[wire], self._chance)
 
     def _open_robots_end(self, _: str) -> CanInterface:
-        return SwitchableInterface(self._join("robot"), self._robots_links, self.time.now_s, on_heard=self._on_arrival)
+        return SwitchableInterface(self._cable.open(), self._robots_links, self.time.now_s, on_heard=self._on_arrival)
 
     def _open_notebooks_end(self, _: str) -> CanInterface:
-        return SwitchableInterface(self._join("notebook"), self._notebooks_links, self.time.now_s, on_send=self._number)
+        return SwitchableInterface(self._cable.open(), self._notebooks_links, self.time.now_s, on_send=self._number)
 
     def _number(self, frame: can.Message) -> can.Message:
         self._numbers += 1

@@ -108,9 +108,9 @@ class World:
 
     @contextmanager
     def open_robot(
-        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = ""
+        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None
     ) -> Iterator[OpenedRobot]:
-        del settings, world, seed, tap, wire
+        del settings, world, seed, tap
         if not self._bus_is_there.is_set():
             raise BusError(f"bus {bus!r}: no such network interface")
         yield OpenedRobot(self._here.robot, None, lambda: self._here.simulation.error is None)

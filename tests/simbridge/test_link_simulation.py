@@ -111,14 +111,6 @@ def test_link_factory_pickles_and_has_no_batch() -> None:
     assert isinstance(Kurt2SimulationFactory(ROBOT), BatchFactory)
 
 
-def test_link_factory_wire_is_refused() -> None:
-    wired = LinkSimulationFactory(ROBOT, "lossy", open_link=DirectLink)
-    with pytest.raises(SettingsError, match=r"no CAN bus.*lossy.*leave --wire out"):
-        wired.require_worlds("a")
-    with pytest.raises(SettingsError, match="no CAN bus"):
-        wired.open("a", 1, "exam")
-
-
 def test_link_factory_tap_is_refused() -> None:
     class Silent:
         def on_rx(self, *_: object) -> None: ...

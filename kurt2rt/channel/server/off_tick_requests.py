@@ -158,10 +158,8 @@ class OffTickRequests:
         return done(self._tick(), size=size)
 
     def _change_speed(self, device: str, command_id: str, times: int) -> Reply | None:
-        if self._parts.run_control is None:
+        if self._parts.run_control is None or self._parts.speed is None:
             return not_simulated()
-        if self._parts.speed is None:
-            return self._refused(Outcome(RefusalCode.OWN_TIME))
         refused = self._not_in_charge(device)
         if refused is None:
             self._parts.speed.set(times)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from hal.guard_reason import GuardReason
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_kind import NO_WIRE, RobotKind
+from hal.robot_kind import RobotKind
 from hal.robot_settings import BumperEnd, RobotSettings
 from hal.settings import SettingsError, content_of, settings_of
 from hal.settings_files import shipped_names
@@ -109,7 +109,7 @@ def _world_of(kind: RobotKind) -> str:
 
 
 def _promises_of(kind: RobotKind, settings: RobotSettings, world: str) -> list[Promise]:
-    factory = kind.simulations(settings, NO_WIRE)
+    factory = kind.simulations(settings)
     fastest_m_s = settings.guard.maximum_speed_m_s
     slow_m_s = _SLOW * fastest_m_s
     ahead, to_left = WheelSpeeds(slow_m_s, slow_m_s), WheelSpeeds(-slow_m_s / 2, slow_m_s / 2)

@@ -137,7 +137,7 @@ class SoakFaults:
             complaints.append(complaint(ComplaintCode.DROVE_ALL_THE_WHILE))
         old_frames = observer.envelope.old_frames - self._old_frames
         allowed = case.must.old_frames * (1 + observer.resumes - self._resumes)
-        if old_frames > allowed and self.program is self._faulty_program and not self.lossy:
+        if old_frames > allowed and self.program is self._faulty_program:
             complaints.append(complaint(ComplaintCode.OLD_FRAMES, frames=old_frames, allowed=allowed))
         self._newest = FaultResult(
             at_s=begin_s,
@@ -148,11 +148,6 @@ class SoakFaults:
             latched=None if robot is None else robot.health.latched,
             complaints=tuple(complaints),
         )
-
-    @property
-    def lossy(self) -> bool:
-        """Return whether the wire itself delays frames."""
-        return self.program is not None and self.program.wire == "failing"
 
     def _end(self) -> None:
         case, program, seen = self.acting, self.program, self._newest

@@ -30,7 +30,7 @@ class SoakRig(BusRig, Protocol):
         ...
 
     def start_driver(self, wire: str) -> Kurt2:
-        """Start a new driver over a wire given by name, or `none`; return it. Raises SettingsError."""
+        """Start a new driver over a wire given by name and return it."""
         ...
 
     def end_driver(self) -> None:

@@ -40,7 +40,7 @@ _POLL_EVERY_TICKS = 1000
 
 
 class ProgramStart(NamedTuple):
-    """Number of a start, its wire by name or `none`, and the seed of the soak."""
+    """Number of a start, its wire by name, and the seed of the soak."""
 
     number: int
     wire: str

@@ -1,6 +1,6 @@
 """Schema of `config/soak/*.yaml`: one simulated day of the robot."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -58,7 +58,7 @@ class SoakSettings(Settings):
     down_s: Span
     fault_gap_s: Annotated[float, Field(gt=0, le=100_000)]
     picked_up_after_s: Annotated[float, Field(gt=0, le=1000)]
-    wires: Annotated[dict[str, Share], Field(min_length=1)]
+    wires: Annotated[dict[Literal["none", "slow", "lossy"], Share], Field(min_length=1)]
     first_corrections: Annotated[int, Field(ge=0, le=100_000)]
     moods: Annotated[dict[str, MoodSettings], Field(min_length=1)]
     limits: LimitSettings

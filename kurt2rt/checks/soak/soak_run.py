@@ -155,7 +155,7 @@ class SoakRun:
         if self._operator.on_tick(record):
             program.runtime.reposition()
             self._odometry.invalidate()
-        if self._faults.acting is not None or program.wire in ("lossy", "failing"):
+        if self._faults.acting is not None or program.wire == "lossy":
             self._odometry.invalidate()
         self._check_session(program, record)
         if now_s >= self._next_minute_s:

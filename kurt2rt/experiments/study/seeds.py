@@ -112,7 +112,6 @@ def make_plan(
     seeds: Sequence[int],
     parts: JobParts,
     *,
-    wire: str,
     loops: RequestedLoops = ALL_ON_BUS,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> SeedPlan:
@@ -122,7 +121,6 @@ def make_plan(
         tasks: the task by the label of each way of teaching, its own first.
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
-        wire: name of the simulated wire.
         loops: requested for lessons and exams.
         source_of: returns the hash of the program's source.
 
@@ -133,7 +131,7 @@ def make_plan(
     fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
     jobs = {}
     for place, (label, task) in enumerate(tasks.items()):
-        made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds), wire)
+        made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds))
         end = f"-control-{place}" if place else ""
         jobs[label] = tuple(SeedJob(task=task, seed=seed, label=end, made_of=made, **parts) for seed in seeds)
     choice = choose_loops([job for each in jobs.values() for job in each], loops, parts["robot"])

@@ -35,12 +35,12 @@ class SchoolKind:
             raise
         return LinkedRobot(settings, link)
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        """Return what opens simulations. They raise hal.settings.SettingsError for any wire."""
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        """Return what opens simulations."""
         from kurt2rt.robots.school.simulated import MemoryLine
         from simbridge.link_simulation import LinkSimulationFactory
 
-        return LinkSimulationFactory(settings, wire, open_link=MemoryLine)
+        return LinkSimulationFactory(settings, open_link=MemoryLine)
 
     def serve(self, settings: RobotSettings, address: str) -> object:
         """Return a simulated robot's end of a pseudo-terminal at the path `address`. Raises hal.bus.BusError."""

@@ -29,13 +29,13 @@ class TurtlebotKind:
         session = ZenohSession(checked.ros, connect=[address])
         return LinkedRobot(checked, TurtlebotLink(checked, session, session.name))
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        """Return what opens simulations. They raise hal.settings.SettingsError for any wire."""
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        """Return what opens simulations."""
         from kurt2rt.robots.turtlebot.lidar import lidar_of
         from kurt2rt.robots.turtlebot.simulated import LocalLink
         from simbridge.link_simulation import LinkSimulationFactory
 
-        return LinkSimulationFactory(settings, wire, open_link=LocalLink, make_sensors=lidar_of)
+        return LinkSimulationFactory(settings, open_link=LocalLink, make_sensors=lidar_of)
 
     def serve(self, settings: RobotSettings, address: str) -> object:
         """Return a simulated robot's end of topics at the locator `address`, such as tcp/127.0.0.1:7447.

@@ -159,8 +159,8 @@ class CarelessKind:
     def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
         return KURT2.open(settings, address, tap)
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        factory: Any = CarelessFactory(KURT2.simulations(settings, wire), self.careless)
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        factory: Any = CarelessFactory(KURT2.simulations(settings), self.careless)
         made: SimulationFactory = factory
         return made
 

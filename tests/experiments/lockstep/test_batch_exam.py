@@ -13,7 +13,6 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.batch.compiled import IS_COMPILED
-from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
@@ -113,12 +112,6 @@ def test_batch_refuses_tasks_that_it_does_not_know(name: str, changes: dict[str,
     task = load_task(name, changes=changes)
     with pytest.raises(BatchRefusedError, match="use the CAN bus"):
         examine_in_batch(STAGE, ROBOT, task, [BatchExam(ExamSetup(task.exam.worlds[0], 1, policy))])
-
-
-def test_batch_over_a_wire_is_refused() -> None:
-    exam = BatchExam(ExamSetup("a", 1, teacher_policy=True))
-    with pytest.raises(BatchRefusedError, match="no wire"):
-        examine_in_batch(Kurt2SimulationFactory(ROBOT, "lossy"), ROBOT, short_task(), [exam])
 
 
 @pytest.mark.deep

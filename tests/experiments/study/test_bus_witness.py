@@ -27,7 +27,7 @@ IN_BATCH = LoopRequest.BATCH
 def run(folder: Path, asked: LoopRequest = IN_BATCH) -> SeedPlan:
     results = Results(folder)
     parts, loops = JobParts(factory=STAGE, robot=ROBOT, results=results), RequestedLoops(asked, asked)
-    plan = make_plan({"": TASK}, [5], parts, wire="none", loops=loops, source_of=lambda _: "tested")
+    plan = make_plan({"": TASK}, [5], parts, loops=loops, source_of=lambda _: "tested")
     with results.held():
         run_missing(plan, results, HERE, lambda _: None)
     return plan

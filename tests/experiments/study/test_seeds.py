@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from hal.settings import SettingsError
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.local_executor import open_processes
 from kurt2rt.experiments.study.plan import run_missing
@@ -16,9 +17,9 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 TASK = short_task(2.5, 1.0, 1.0)
 
 
-def plan_in(folder: Path, *seeds: int, wire: str = "none") -> SeedPlan:
+def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> SeedPlan:
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    return make_plan({"": TASK}, seeds, parts, wire=wire, source_of=lambda _: "tested")
+    return make_plan({"": task}, seeds, parts, source_of=lambda _: "tested")
 
 
 def taught(folder: Path, *seeds: int, processes: int = 1) -> SeedPlan:
@@ -44,9 +45,9 @@ def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
     assert results.missing(plan.waves[0]) == [0]
 
 
-def test_robot_of_another_wire_is_taught_again(tmp_path: Path) -> None:
+def test_robot_of_another_task_is_taught_again(tmp_path: Path) -> None:
     taught(tmp_path, 5)
-    (other,) = plan_in(tmp_path, 5, wire="lossy").waves[0]
+    (other,) = plan_in(tmp_path, 5, task=short_task(2.5, 1.0, 0.5)).waves[0]
     assert Results(tmp_path).missing([other]) == [0]
     other.run(lambda _done_s: None)
     assert Results(tmp_path).missing([other]) == []

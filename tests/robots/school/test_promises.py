@@ -48,8 +48,8 @@ class PtyLine(InstantLink):
 class SchoolOnPty(SchoolKind):
     """School robot whose simulations use a pseudo-terminal."""
 
-    def simulations(self, settings: RobotSettings, wire: str) -> SimulationFactory:
-        return LinkSimulationFactory(settings, wire, open_link=PtyLine)
+    def simulations(self, settings: RobotSettings) -> SimulationFactory:
+        return LinkSimulationFactory(settings, open_link=PtyLine)
 
 
 def test_school_robot_in_memory_keeps_all_promises() -> None:

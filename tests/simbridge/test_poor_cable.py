@@ -1,0 +1,191 @@
+"""Robot over a poor cable: it drives on where it may, stands where it must, and equal seeds give equal runs."""
+
+import random
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from itertools import pairwise
+
+import pytest
+
+from hal.bus import CONTROL_ID, CanBus
+from hal.frame import Frame
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
+from simbridge.can_line import CanLine
+from simbridge.faults.cable import SOUND, Cable, CableFaults, CableInterface
+from simbridge.kurt2_simulation import Kurt2Simulation
+from tests.simbridge.rig import CODEC, ROBOT
+
+TURN = WheelSpeeds(0.2, -0.2)
+TICK_S = ROBOT.cycle_s
+PHASE_S = 0.005
+LOSSY = CableFaults(lost=0.1)
+ENCODER_ID = CODEC.message("ENCODER").frame_id
+
+
+class CableLine(CanLine):
+    """Line over a cable; the notebook's tick comes half a cycle after the robot's."""
+
+    def __init__(self, faults: CableFaults, seed: int = 1) -> None:
+        self._now_s = 0.0
+        cable = Cable(lambda: self._now_s, faults, random.Random(seed))
+        self.robot_end, self.notebook_end = (CanBus("cable", lambda _: cable.open()) for _ in range(2))
+        self.robot_end.set_id_filter({CONTROL_ID})
+
+    def cycle(self, step_robot: Callable[[], None]) -> None:
+        self._now_s += TICK_S - PHASE_S
+        step_robot()
+        self._now_s += PHASE_S
+
+
+class Drive:
+    """Driver that turns the robot on the spot, tick by tick."""
+
+    def __init__(self, simulation: Kurt2Simulation) -> None:
+        self.simulation = simulation
+        self.ticks = 0
+        self.readings = simulation.robot.sense(0.0)
+        self.grant = GuardResult(STANDSTILL, (), latched=False)
+
+    @property
+    def now_s(self) -> float:
+        return self.ticks * TICK_S
+
+    def until(self, time_s: float) -> list[GuardResult]:
+        """Return the guard's results of each tick up to this time."""
+        grants = []
+        while self.now_s < time_s - TICK_S / 2:
+            self.ticks += 1
+            self.simulation.step()
+            self.readings = self.simulation.robot.sense(self.now_s)
+            self.grant = self.simulation.robot.drive(TURN, self.now_s, self.now_s)
+            grants.append(self.grant)
+        return grants
+
+
+@contextmanager
+def driving(faults: CableFaults) -> Iterator[Drive]:
+    with closing(Kurt2Simulation(ROBOT, "a", 1, "cable", open_line=lambda: CableLine(faults))) as simulation:
+        yield Drive(simulation)
+
+
+async def policy_drives(open_line: Callable[[], CanLine], seed: int = 1, seconds: float = 1.5, world: str = "a") -> str:
+    """Let the teacher's policy drive without a stop by the bus, and return the hash of the last state."""
+    task = load_task("wall_following")
+    task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
+    with closing(Kurt2Simulation(ROBOT, world, seed, "exam", open_line=open_line)) as simulation:
+        result = await examine(simulation, ROBOT, task, [], ExamSetup(world, seed, teacher_policy=True), lambda _: None)
+        assert simulation.robot.health.latched is None
+        assert (result.collisions, result.stuck) == (0, False)
+        return simulation.simulated_robot.state_hash()
+
+
+async def test_sound_cable_equals_the_bus_in_memory_to_the_last_bit() -> None:
+    """All telemetry of a cycle arrives before the tick, and CONTROL before the next cycle."""
+    in_memory = await policy_drives(CanLine)
+    assert await policy_drives(lambda: CableLine(SOUND)) == in_memory
+    assert await policy_drives(lambda: CableLine(CableFaults(delay_s=0.004))) == in_memory
+
+
+async def test_lossy_cable_same_seed_gives_the_same_run() -> None:
+    first = await policy_drives(lambda: CableLine(LOSSY, seed=3))
+    assert await policy_drives(lambda: CableLine(LOSSY, seed=3)) == first
+    assert await policy_drives(lambda: CableLine(LOSSY, seed=4)) != first
+
+
+def test_age_of_readings_is_phase_less_delay() -> None:
+    with driving(CableFaults(delay_s=0.004)) as drive:
+        for tick in range(1, 50):
+            drive.until(tick * TICK_S)
+            assert 0.001 <= drive.readings.encoder_age_s <= PHASE_S + 1e-9
+
+
+@pytest.mark.parametrize("faults", [LOSSY, CableFaults(overtaken=0.2)])
+def test_robot_over_a_poor_cable_keeps_turning(faults: CableFaults) -> None:
+    with driving(faults) as drive:
+        grants = drive.until(7.0)
+    moving = sum(grant.wheel_speeds == TURN for grant in grants)
+    assert moving > 0.95 * len(grants)
+    assert not any(grant.latched for grant in grants)
+
+
+def test_robot_without_encoder_frames_stands() -> None:
+    with driving(CableFaults(lost_ids=frozenset({ENCODER_ID}))) as drive:
+        drive.until(0.5)
+        assert drive.grant.reasons == (GuardReason.ENCODER_STALE,)
+        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
+
+
+def test_robot_whose_frames_come_twice_stands() -> None:
+    """It cannot tell them from those of a second sender."""
+    with driving(CableFaults(doubled=0.2)) as drive:
+        drive.until(2.0)
+        assert drive.grant.latched
+        assert drive.grant.reasons == (GuardReason.FOREIGN_TELEMETRY,)
+
+
+def test_robot_over_a_cable_of_many_ticks_stands() -> None:
+    with driving(CableFaults(delay_s=0.4)) as drive:
+        drive.until(1.0)
+        assert drive.grant.reasons == (GuardReason.BUS_BLOCKED,)
+        assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
+
+
+class Ends:
+    """A sender and two receivers, a millisecond of time between frames."""
+
+    def __init__(self, faults: CableFaults) -> None:
+        self.now_s = 0.0
+        cable = Cable(lambda: self.now_s, faults, random.Random(7))
+        self.sender, *self.receivers = (cable.open() for _ in range(3))
+
+    def send(self, frames: int, frame_id: int = 0x09) -> None:
+        for number in range(frames):
+            self.sender.send(Frame(frame_id, number.to_bytes(8, "big")))
+            self.now_s += 0.001
+
+
+def heard(end: CableInterface) -> list[int]:
+    """Return the numbers of the frames that wait at an end."""
+    return [int.from_bytes(frame.data, "big") for frame in iter(lambda: end.recv(0), None)]
+
+
+def test_frame_loss_is_confirmed_and_drawn_for_each_receiver() -> None:
+    ends = Ends(CableFaults(lost=0.5))
+    ends.send(1000)
+    assert heard(ends.sender) == list(range(1000))
+    first, second = (set(heard(end)) for end in ends.receivers)
+    assert all(450 < len(each) < 550 for each in (first, second))
+    assert first - second
+    assert second - first
+
+
+def test_doubled_and_overtaken_frames_are_as_many_as_set() -> None:
+    doubled, overtaken = Ends(CableFaults(doubled=0.3)), Ends(CableFaults(overtaken=0.3))
+    for ends in (doubled, overtaken):
+        ends.send(1000)
+    numbers = heard(doubled.receivers[0])
+    assert sorted(set(numbers)) == list(range(1000))
+    assert 1250 < len(numbers) < 1350
+    numbers = heard(overtaken.receivers[0])
+    assert set(range(999)) <= set(numbers)
+    assert 190 < sum(late < early for early, late in pairwise(numbers)) < 270
+
+
+def test_delayed_frames_keep_their_order_and_wait_for_their_time() -> None:
+    ends = Ends(CableFaults(delay_s=0.02))
+    ends.send(100)
+    first = heard(ends.receivers[0])
+    assert 80 <= len(first) < 100
+    assert heard(ends.sender) == first
+    ends.now_s += 0.02
+    assert first + heard(ends.receivers[0]) == list(range(100))
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("world", ["a", "b", "c"])
+async def test_policy_over_a_lossy_cable_follows_walls(world: str) -> None:
+    for seed in range(5):
+        await policy_drives(lambda: CableLine(LOSSY), seed, 60.0, world)
