@@ -229,16 +229,6 @@ class KnowledgeCode(ErrorCode):
     # Recorded runs that knowledge is tried on, exams, uploads
     NO_RECORDED_RUN = ("no recorded run", "holds no recorded run", "kurt2rt run makes them, --runs gives their folder")
     NO_RUN_FITS = ("no run fits", "none of its runs can be tried: {reason}", "")
-    NOTHING_DROVE = (
-        "nothing drove",
-        "in none of its {runs} runs of such knowledge anything drove (0 s)",
-        "they prove nothing, and nothing was deleted: record a run in which the robot drives",
-    )
-    DECISION_WOULD_CHANGE = (
-        "decision would change",
-        "at {at_s:.2f} s the robot would do something else: {new}, and not {old}",
-        "nothing was deleted",
-    )
     EXAM_RUNS = ("exam runs", "an exam is under way", "wait for its end")
     EXAM_NOT_STARTED = ("exam not started", "the exam cannot be started ({error})", "install kurt2rt whole")
     UPLOAD_REFUSED = ("upload refused", "{reason}", "")

@@ -62,7 +62,6 @@ def test_every_command_is_found() -> None:
             "export",
             "lerobot",
             "import",
-            "compact",
             "contradictions",
             "key",
             "table",

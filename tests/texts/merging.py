@@ -42,7 +42,7 @@ def knowledge_errors() -> Iterator[tuple[str, str]]:
     """Yield the error of each code, with names of its fields for their values."""
     for code in KnowledgeCode:
         names = {name for text in (code.what, code.do) for _, name, _, _ in Formatter().parse(text) if name}
-        fields = {name: 14.2 if name == "at_s" else name.upper() for name in names}
+        fields = {name: name.upper() for name in names}
         yield code, str(KnowledgeError(code, where="mine.knowledge", **fields))
 
 

@@ -2,7 +2,6 @@
 
 import typer
 
-from kurt2rt.cli.knowledge.compact import compact
 from kurt2rt.cli.knowledge.contradictions import contradictions
 from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.export import export, import_, key, table
@@ -31,7 +30,6 @@ for _command in (
     diff,
     export,
     key,
-    compact,
     table,
     graph,
 ):

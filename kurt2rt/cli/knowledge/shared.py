@@ -16,7 +16,6 @@ TEACHER = "command line"
 """Teacher of the lessons that these commands write."""
 
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
-Recordings = Annotated[Path, typer.Option("--runs", help="Folder of recorded runs, or one run of it, to try it on.")]
 
 
 @contextmanager

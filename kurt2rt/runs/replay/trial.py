@@ -1,6 +1,6 @@
-"""Replay of recorded runs under changed and unchanged knowledge."""
+"""Recorded runs that knowledge can be tried on."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -8,16 +8,15 @@ from typing import NamedTuple
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
-from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers
+from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick
+from kurt2rt.runs.replay.replay import ReplayedTick
 from kurt2rt.runs.replay.run import Run
 
 Report = Callable[[str, float, float], None]
@@ -95,21 +94,6 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
     return RecentRuns(() if newest is None else (newest,), tuple(left_out))
 
 
-def replay_answers(
-    run: Run, knowledge: Sequence[TrialKnowledge], report: Report
-) -> Iterator[tuple[TickRecord, list[PolicyAnswers]]]:
-    """Yield each tick of a run with the answers of each knowledge to its situations, in the order given.
-
-    Raises RecordingError if the run cannot be replayed.
-    """
-    replay = Replay(run)
-    policies = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
-    tell = progress_reporter(run, report)
-    for tick in replay:
-        tell(tick)
-        yield tick.record, [policy.answers(tick.record, replay.runtime) for policy in policies]
-
-
 def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
     """Return a callback for each replayed tick of a run; it calls `report` every 500 ticks."""
     whole_s = run.duration_s
@@ -119,11 +103,6 @@ def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None
             report(run.name, run.elapsed_s(tick.entry), whole_s)
 
     return tell
-
-
-def format_answers(both: PolicyAnswers) -> str:
-    """Return the answers in a few words, the mid level first."""
-    return ", ".join(format_answer(each) for each in (both.mid, both.basic) if each is not None)
 
 
 def format_answer(answer: PolicyAnswer) -> str:
@@ -144,10 +123,10 @@ def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
     """
     if not run.head.knowledge:
         return False
-    format_answers, file = Path(run.head.knowledge), knowledge.resolve()
-    if format_answers.is_absolute():
-        return format_answers.resolve() == file
-    return any((folder / format_answers).resolve() == file for folder in path.resolve().parents)
+    taught, file = Path(run.head.knowledge), knowledge.resolve()
+    if taught.is_absolute():
+        return taught.resolve() == file
+    return any((folder / taught).resolve() == file for folder in path.resolve().parents)
 
 
 def _incompatibility(run: Run, binding: KnowledgeBinding) -> str | None:

@@ -16,12 +16,11 @@ from mcap.records import McapRecord, Message, Metadata
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.main import main
-from kurt2rt.core.rla.events import RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import BeginSession, Resume, Watch
 from kurt2rt.core.tick_record import TickRecord
@@ -37,11 +36,10 @@ from kurt2rt.runs.recording.run_head import RUN_METADATA
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
 from kurt2rt.runs.replay import reader, trial
-from kurt2rt.runs.replay.compaction import TEACHER, Compaction, compact
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import TrialKnowledge, compatible_runs, newest_compatible_run, replay_answers
+from kurt2rt.runs.replay.trial import compatible_runs, newest_compatible_run
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.cli.helpers import CommandLine
@@ -112,69 +110,14 @@ def folded(path: Path) -> RlaSystem:
         return fold_journal(journal, radius=1.0)
 
 
-def compacted(path: Path, recordings: Path, *, dry_run: bool = False) -> Compaction:
-    return compact(path, recordings, stamp=STAMP, dry_run=dry_run, report=quietly)
-
-
-def test_compact_deletes_unneeded_rlas_and_keeps_decisions(knowledge: Path, recordings: Path) -> None:
-    before = folded(knowledge)
-    done = compacted(knowledge, recordings, dry_run=True)
-    assert folded(knowledge).rlas == before.rlas
-
-    assert compacted(knowledge, recordings) == done
-    after = folded(knowledge)
-    assert {"far-1", "far-2"} <= {rla.origin.command_id for rla in done.deleted}
-    assert len(after) == done.kept == len(before) - len(done.deleted)
-    assert done.kept > 0
-    assert (done.runs, done.ticks, done.notes, done.other_behaviours) == (1, 500, (), ())
-    assert 100 < done.driven_ticks < done.ticks
-
-    again = compacted(knowledge, recordings)
-    assert (again.deleted, again.kept) == ((), done.kept)
-    apply_plan(plan_undo(knowledge, taught_by=TEACHER, teacher="command line"), STAMP)
-    assert folded(knowledge).rlas == before.rlas
-
-
-def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> None:
-    compacted(knowledge, recordings)
-    with Journal.read_only(knowledge) as journal:
-        known = TrialKnowledge(tuple(journal.events()), Statistics())
-        (run,) = compatible_runs(recordings, journal.binding).runs
-    nearest = {answered.basic.nearest for _, (answered,) in replay_answers(run, (known,), quietly)}
-    assert {rla.rla_id for rla in nearest if rla is not None} == {rla.rla_id for rla in folded(knowledge).rlas}
-
-
-def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
-    before = folded(knowledge)
-    folder = tmp_path / "runs"
-    stood = record_story("walls", folder, seconds=1, other=untaught)
-    stood.rename(folder / "20260320T084640Z-wall_following")
-    with refused(KnowledgeCode.NOTHING_DROVE, runs=1):
-        compacted(knowledge, folder)
-    assert folded(knowledge).rlas == before.rlas
-
-    shutil.copytree(recordings, folder, dirs_exist_ok=True)
-    done = compacted(knowledge, folder, dry_run=True)
-    assert done.runs == 1
-    (note,) = done.notes
-    assert "20260320T084640Z-wall_following: " in note
-
-
-def test_compaction_of_running_robot_or_without_runs_is_refused(
-    knowledge: Path, recordings: Path, tmp_path: Path
-) -> None:
+def test_no_run_or_none_that_fits_is_refused(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
     with Journal.read_only(knowledge) as look:
         binding = look.binding
-    with Journal.open(knowledge, binding), refused(KnowledgeCode.ANOTHER_WRITER):
-        compacted(knowledge, recordings)
     for folder in (tmp_path, tmp_path / "nowhere"):
         with refused(KnowledgeCode.NO_RECORDED_RUN):
-            compacted(knowledge, folder)
-    other = replace(binding, feature_hash="another")
+            compatible_runs(folder, binding)
     with refused(KnowledgeCode.NO_RUN_FITS):
-        compatible_runs(recordings, other)
-    with Journal.read_only(knowledge) as journal:
-        assert not any(isinstance(event, RlaDeleted) for event in journal.events())
+        compatible_runs(recordings, replace(binding, feature_hash="another"))
 
 
 def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, lessons: list[TeachingEvent]) -> None:
@@ -466,15 +409,6 @@ def test_at_a_terminal_an_undo_asks_first(kurt2rt: CommandLine, knowledge: Path)
     for quick in ("--yes", "--no-preview"):
         assert kurt2rt("knowledge", "redo", knowledge, quick, typed=Typed()).err == ""
         kurt2rt("knowledge", "undo", knowledge, quick, typed=Typed())
-
-
-def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
-    dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
-    assert re.search(r"RLA \d", dry)
-    done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out
-    assert re.search(r"500 ticks \(5 s, [1-9] s .*\b1 runs", done)
-    assert f"kurt2rt knowledge undo {knowledge} --of compact" in done
-    assert "nowhere: " in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")
 
 
 def test_declined_undo_leaves_no_files_next_to_the_knowledge(kurt2rt: CommandLine, knowledge: Path) -> None:
