@@ -12,7 +12,6 @@ _ROOMY_FOLDER = "give a path in a folder that may be written and has room"
 _HEALTH = "look at the disk's health"
 _LOCAL = "give a path on a local disk"
 _NEW_FILE = "give the path of a new file"
-_KEY = "kurt2rt knowledge key makes one"
 
 
 class KnowledgeCode(ErrorCode):
@@ -174,17 +173,6 @@ class KnowledgeCode(ErrorCode):
     )
     NOT_EXPORTABLE = ("not exportable", "cannot be exported: it {reason}", "name its settings otherwise")
     MANIFEST_DAMAGED = ("manifest damaged", "its {name} is damaged ({error})", _NEW_COPY)
-    SIGNATURE_DAMAGED = ("signature damaged", "its {name} is damaged ({error})", _NEW_COPY)
-    SIGNATURE_WRONG = ("signature wrong", "its signature does not fit: it was changed after it was signed", _NEW_COPY)
-    OTHER_SIGNER = ("other signer", "is {signed}, not signed by {trusted}", "nothing was imported")
-    KEY_IS_FOLDER = ("key is folder", "is a folder", "give the key file to make")
-    KEY_NOT_MADE = ("key not made", "no key can be made there ({error})", _NEW_FILE)
-    NO_PRIVATE_KEY = ("no private key", "is no Ed25519 key that can sign ({error})", _KEY)
-    NO_PUBLIC_KEY = (
-        "no public key",
-        "is no Ed25519 public key ({error})",
-        "give the .pub file of a signer that you trust",
-    )
     # Versions
     BRANCH_NOTE_DAMAGED = (
         "branch note damaged",

@@ -171,7 +171,7 @@ class SimulatedRuns:
             brought.write_bytes(content)
             try:
                 if content.startswith(_ZIP):
-                    import_knowledge(brought, loaded, self._robot, present.task, None, stamp=utc_now())
+                    import_knowledge(brought, loaded, self._robot, present.task, stamp=utc_now())
                 else:
                     brought.rename(loaded)
                 # Opened as the next run opens it: damage, another task's lessons.

@@ -63,7 +63,6 @@ def test_every_command_is_found() -> None:
             "lerobot",
             "import",
             "contradictions",
-            "key",
             "table",
             "graph",
             "surprise",

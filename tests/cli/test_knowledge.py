@@ -221,16 +221,11 @@ def test_list_one_file_or_missing_folder(kurt2rt: CommandLine, tmp_path: Path, l
     assert str(error) in kurt2rt.refused("knowledge", "list", nonsense)
 
 
-def test_export_signed_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
-    made = kurt2rt("knowledge", "key", "ann").out
-    print_of = made.splitlines()[1].rpartition(" ")[2]
-    given = kurt2rt("knowledge", "export", lessons, "out.zip", "--sign", "ann")
-    assert f", signed by {print_of}\n" in given.out
-    taken = kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge", "--trusted", "ann.pub")
-    assert taken.out.splitlines()[0].endswith(f" {print_of}")
+def test_export_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
+    assert kurt2rt("knowledge", "export", lessons, "out.zip").out.startswith("export  out.zip: ")
+    taken = kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge")
+    assert taken.out.startswith("import  theirs.knowledge: ")
     assert folded(Path("theirs.knowledge")).rlas == folded(lessons).rlas
-    unknown = kurt2rt("knowledge", "import", "out.zip", "--into", "again.knowledge").out
-    assert "(--trusted)" in unknown
     Path("torn.zip").write_bytes(Path("out.zip").read_bytes()[:-500])
     assert "torn.zip: " in kurt2rt.refused("knowledge", "import", "torn.zip", "--into", "k")
 

@@ -151,7 +151,7 @@ async def test_loaded_knowledge_replaces_the_file_and_keeps_a_copy(tmp_path: Pat
     runs = runs_in(tmp_path)
     open_knowledge(runs.present.knowledge, ROBOT, TASK).close()
     if form == "archive":
-        export_knowledge(taught, tmp_path / "out.zip", ROBOT, TASK, None, stamp="2026-11-22T10:00:00.000+00:00")
+        export_knowledge(taught, tmp_path / "out.zip", ROBOT, TASK, stamp="2026-11-22T10:00:00.000+00:00")
     content = (tmp_path / "out.zip" if form == "archive" else taught).read_bytes()
     assert await runs.load(content, TEACHER) == Outcome.of(ResultCode.KNOWLEDGE_LOADED, lessons=1)
     assert runs.advance().endswith(f" {tmp_path / 'walls.knowledge.1'}")

@@ -8,7 +8,6 @@ import pytest
 from kurt2rt import Knowledge
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.archive import pack, unpack
-from kurt2rt.knowledge.exchange.signing import make_key
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -116,15 +115,12 @@ def test_strangers_file_runs_no_code_by_a_name_in_it(kurt2rt: CommandLine, plugi
     named = str(plugin_folder / named) if named == "evil" else named
     Journal.open(plugin_folder / "mine.knowledge", replace(FLEEING, system=named)).close()
     Journal.open(plugin_folder / "good.knowledge", FLEEING).close()
-    make_key(plugin_folder / "ann")
     said = [kurt2rt.refused(*words) for words in TO_READ_IT]
     assert kurt2rt("knowledge", "export", "good.knowledge", "good.zip").exit_code == 0
     good = unpack(plugin_folder / "good.zip")
     about = {name: value for name, value in good.manifest.items() if name not in ("format", "files")}
-    (plugin_folder / "evil.zip").write_bytes(pack({**about, "task": named}, good.files, None))
-    taken = ("knowledge", "import", "evil.zip", "--into", "k")
-    said.append(kurt2rt.refused(*taken))
-    assert "not signed by" in kurt2rt.refused(*taken, "--trusted", "ann.pub")
+    (plugin_folder / "evil.zip").write_bytes(pack({**about, "task": named}, good.files))
+    said.append(kurt2rt.refused("knowledge", "import", "evil.zip", "--into", "k"))
     with pytest.raises(KnowledgeError) as refused:
         Knowledge.load("mine.knowledge")
     assert [each for each in (*said, str(refused.value)) if "which is neither shipped nor installed" not in each] == []

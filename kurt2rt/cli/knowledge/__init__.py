@@ -4,7 +4,7 @@ import typer
 
 from kurt2rt.cli.knowledge.contradictions import contradictions
 from kurt2rt.cli.knowledge.diff import diff
-from kurt2rt.cli.knowledge.export import export, import_, key, table
+from kurt2rt.cli.knowledge.export import export, import_, table
 from kurt2rt.cli.knowledge.graph import graph
 from kurt2rt.cli.knowledge.listing import list_files
 from kurt2rt.cli.knowledge.merge import branch, merge
@@ -29,7 +29,6 @@ for _command in (
     merge,
     diff,
     export,
-    key,
     table,
     graph,
 ):

@@ -1,4 +1,4 @@
-"""`kurt2rt knowledge export`, `import`, `key` and `table`."""
+"""`kurt2rt knowledge export`, `import` and `table`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -11,7 +11,6 @@ from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package
-from kurt2rt.knowledge.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.files.table import export_table
 from kurt2rt.knowledge.files.task_of_file import task_of_elsewhere, task_of_file
 from kurt2rt.knowledge.journal import journal_file
@@ -21,9 +20,6 @@ from kurt2rt.knowledge.journal.writer import utc_now
 def export(
     file: KnowledgeFile,
     out: Annotated[Path, typer.Argument(help="File to write; nothing may be there yet.")],
-    sign: Annotated[
-        Path | None, typer.Option(help="Sign it with this private key, as kurt2rt knowledge key makes one.")
-    ] = None,
     task_name: TaskOfTheFile = None,
     robot_name: RobotName = None,
 ) -> None:
@@ -32,14 +28,11 @@ def export(
     For example:
 
         kurt2rt knowledge export var/wall_following.knowledge walls.zip
-        kurt2rt knowledge export var/wall_following.knowledge walls.zip --sign ann
     """
-    key = None if sign is None else read_private_key(sign)
     name = task_of_file(file, task_name)
     robot, task = load_robot_of(robot_name, name), load_task(name)
-    size = export_knowledge(file, out, robot, task, key, stamp=utc_now())
-    signed = "" if key is None else f", signed by {fingerprint(key.public_key().public_bytes_raw())}"
-    say(f"export  {out}: {size / 1000:.0f} kB{signed}")
+    size = export_knowledge(file, out, robot, task, stamp=utc_now())
+    say(f"export  {out}: {size / 1000:.0f} kB")
 
 
 def import_(
@@ -47,42 +40,21 @@ def import_(
     into: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
     task_name: Annotated[str | None, task_option("Default: the task whose settings came with it.")] = None,
     robot_name: RobotName = None,
-    trusted: Annotated[
-        Path | None, typer.Option(help="Take it only if the owner of this public key (.pub) has signed it.")
-    ] = None,
 ) -> None:
     """Make a knowledge file of an exported one; refuse what was changed, or has other features.
 
     For example:
 
         kurt2rt knowledge import walls.zip --into var/walls.knowledge
-        kurt2rt knowledge import walls.zip --into walls.knowledge --trusted ann.pub
     """
-    public = None if trusted is None else read_public_key(trusted)
-    named = read_package(file, public).task
+    named = read_package(file).task
     name = task_name or task_of_elsewhere(named, file)
     robot, task = load_robot_of(robot_name, name), load_task(name)
-    imported = import_knowledge(file, into, robot, task, public, stamp=utc_now())
+    imported = import_knowledge(file, into, robot, task, stamp=utc_now())
     package = imported.package
-    signer = "not signed" if package.signed_by is None else f"signed by {fingerprint(package.signed_by)}"
-    vouched = "" if package.signed_by is None or public is not None else ", a signer that was not checked (--trusted)"
-    say(f"import  {into}: {len(package.lessons)} rows of {package.binding.system}, {signer}{vouched}")
+    say(f"import  {into}: {len(package.lessons)} rows of {package.binding.system}")
     if imported.differing_settings:
         say(f"settings that differ here: {', '.join(imported.differing_settings)}")
-
-
-def key(
-    file: Annotated[Path, typer.Argument(help="Where the private key goes; nothing may be there yet.")],
-) -> None:
-    """Make a key to sign exports with, and its public half (.pub) for those who are to trust it.
-
-    For example:
-
-        kurt2rt knowledge key ann
-    """
-    public = make_key(file)
-    say(f"key  {file}: keep it to yourself")
-    say(f"public key  {public}: {fingerprint(read_public_key(public))}")
 
 
 def table(

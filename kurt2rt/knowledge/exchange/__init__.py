@@ -1,1 +1,1 @@
-"""Knowledge as one file to give away: with what it was taught with, and who vouches for it."""
+"""Knowledge as one file to give away, with what it was taught with."""

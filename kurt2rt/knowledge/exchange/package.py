@@ -6,8 +6,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
-
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.statistics import Statistics
@@ -25,7 +23,6 @@ from kurt2rt.knowledge.exchange.attachments import (
 )
 from kurt2rt.knowledge.exchange.feature_diff import differing_features
 from kurt2rt.knowledge.exchange.manifest import read_manifest, require_expectations, require_times
-from kurt2rt.knowledge.exchange.signing import fingerprint
 from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_new, write_numbered
 from kurt2rt.knowledge.files.create import create_knowledge
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
@@ -52,8 +49,6 @@ class KnowledgePackage:
     """Name of the task whose settings are in it."""
     exported_at: str
     """UTC, ISO 8601."""
-    signed_by: bytes | None
-    """Raw public key of the signer, whose signature was verified; None: not signed."""
     settings: Mapping[str, bytes]
     """Settings files in it, by name."""
 
@@ -67,15 +62,7 @@ class ImportResult:
     """Settings files that differ here: the same RLAs may answer within other distances."""
 
 
-def export_knowledge(
-    path: Path,
-    out: Path,
-    robot: RobotSettings,
-    task: TaskSettings,
-    key: Ed25519PrivateKey | None,
-    *,
-    stamp: str,
-) -> int:
+def export_knowledge(path: Path, out: Path, robot: RobotSettings, task: TaskSettings, *, stamp: str) -> int:
     """Write a package of the knowledge file at `path` to a new file `out`; return its size in bytes.
 
     Args:
@@ -83,7 +70,6 @@ def export_knowledge(
         out: of the package.
         robot: that it was taught with; its settings are in the package.
         task: that it was taught for; its settings are in the package.
-        key: that signs the package; None: not signed.
         stamp: of the export, UTC, ISO 8601.
 
     Raises:
@@ -91,13 +77,13 @@ def export_knowledge(
         SettingsError: a file that the task uses cannot be read.
     """
     with Journal.read_only(path) as journal:
-        content = _package(journal, robot, task, key, stamp)
+        content = _package(journal, robot, task, stamp)
     write_new(content, out)
     return len(content)
 
 
 def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSettings, task: TaskSettings) -> SavedCopy:
-    """Save an unsigned package of the knowledge file `path` as `<task>-<stamp>.zip` in `folder`.
+    """Save a package of the knowledge file `path` as `<task>-<stamp>.zip` in `folder`.
 
     This process may be writing `path`. The call waits for the disk. `stamp`: UTC, ISO 8601.
 
@@ -106,14 +92,12 @@ def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSetti
         SettingsError: a file that the task uses cannot be read.
     """
     with Journal.in_writer_process(path) as journal:
-        content = _package(journal, robot, task, None, stamp)
+        content = _package(journal, robot, task, stamp)
         system = journal.binding.system
     return write_numbered(content, folder, (plain_part(system), stamp_part(stamp)), ".zip")
 
 
-def _package(
-    journal: Journal, robot: RobotSettings, task: TaskSettings, key: Ed25519PrivateKey | None, stamp: str
-) -> bytes:
+def _package(journal: Journal, robot: RobotSettings, task: TaskSettings, stamp: str) -> bytes:
     path, binding = journal.path, journal.binding
     require_compatible(binding, binding_for(robot, task), path, journal.has_lessons_at)
     entries, statistics = journal.read_all()
@@ -134,20 +118,12 @@ def _package(
     reason = unsafe_reason({name: len(data) for name, data in files.items()})
     if reason:  # every import would refuse it
         raise KnowledgeError(KnowledgeCode.NOT_EXPORTABLE, where=path, reason=reason)
-    return pack(about, files, key)
+    return pack(about, files)
 
 
-def read_package(path: Path, trusted: bytes | None = None) -> KnowledgePackage:
-    """Read and check an exported file.
-
-    `trusted`: raw public key of the only accepted signer; None: any package, signed or not.
-
-    Raises KnowledgeError if it is damaged, changed, of another kind, or not signed by `trusted`.
-    """
+def read_package(path: Path) -> KnowledgePackage:
+    """Read and check an exported file. Raises KnowledgeError if it is damaged, changed or of another kind."""
     archive = unpack(path)
-    if trusted is not None and archive.signed_by != trusted:
-        signed = "not signed" if archive.signed_by is None else f"signed by {fingerprint(archive.signed_by)}"
-        raise KnowledgeError(KnowledgeCode.OTHER_SIGNER, where=path, signed=signed, trusted=fingerprint(trusted))
     try:
         return _content(path, archive)
     except KeyError as error:
@@ -157,9 +133,7 @@ def read_package(path: Path, trusted: bytes | None = None) -> KnowledgePackage:
         raise KnowledgeError(KnowledgeCode.PACKAGE_INVALID, where=path, error=one_line) from error
 
 
-def import_knowledge(
-    path: Path, into: Path, robot: RobotSettings, task: TaskSettings, trusted: bytes | None, *, stamp: str
-) -> ImportResult:
+def import_knowledge(path: Path, into: Path, robot: RobotSettings, task: TaskSettings, *, stamp: str) -> ImportResult:
     """Make the knowledge file `into`, where no file may be, from a package.
 
     Args:
@@ -167,14 +141,13 @@ def import_knowledge(
         into: knowledge file to make.
         robot: that will use it.
         task: that it will be used for.
-        trusted: raw public key of the only accepted signer; None: any package, signed or not.
         stamp: of the import, UTC, ISO 8601.
 
     Raises:
-        KnowledgeError: the package is damaged, not signed by `trusted`, or of other features or another task.
+        KnowledgeError: the package is damaged, or of other features or another task.
         SettingsError: a file that `task` uses cannot be read.
     """
-    package = read_package(path, trusted)
+    package = read_package(path)
     here = binding_for(robot, task)
     if package.binding.feature_hash != here.feature_hash:
         difference = differing_features(package.settings, robot, task) or "not visible in its settings"
@@ -213,6 +186,5 @@ def _content(path: Path, archive: Archive) -> KnowledgePackage:
         statistics,
         task=manifest.task,
         exported_at=manifest.exported_at,
-        signed_by=archive.signed_by,
         settings=settings,
     )

@@ -18,9 +18,8 @@ from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import RlaCreated, RlaRewarded
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.knowledge.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
+from kurt2rt.knowledge.exchange.archive import MANIFEST, pack, unpack
 from kurt2rt.knowledge.exchange.package import ImportResult, export_knowledge, import_knowledge, read_package
-from kurt2rt.knowledge.exchange.signing import make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.fold import check_knowledge
@@ -52,22 +51,19 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def export(path: Path, out: Path, key: Path | None = None) -> Path:
-    private = None if key is None else read_private_key(key)
-    size = export_knowledge(path, out, ROBOT, TASK, private, stamp=NOW)
+def export(path: Path, out: Path) -> Path:
+    size = export_knowledge(path, out, ROBOT, TASK, stamp=NOW)
     assert out.stat().st_size == size
     return out
 
 
-def import_from(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> ImportResult:
-    return import_knowledge(path, into, ROBOT, task, None if trusted is None else read_public_key(trusted), stamp=NOW)
+def import_from(path: Path, into: Path, task: TaskSettings = TASK) -> ImportResult:
+    return import_knowledge(path, into, ROBOT, task, stamp=NOW)
 
 
 @pytest.fixture(scope="module")
 def exported(taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("exported")
-    make_key(folder / "ann")
-    return export(taught, folder / "mine.zip", folder / "ann")
+    return export(taught, tmp_path_factory.mktemp("exported") / "mine.zip")
 
 
 def test_import_knowledge_of_an_export_is_equal_bit_for_bit(taught: Path, exported: Path, tmp_path: Path) -> None:
@@ -81,7 +77,7 @@ def test_import_knowledge_of_an_export_is_equal_bit_for_bit(taught: Path, export
         (note,) = new.notes().values()
         assert note.startswith("mine.zip, ")
         assert note.count(NOW) == 2
-    export(tmp_path / "theirs.knowledge", tmp_path / "again.zip", exported.parent / "ann")
+    export(tmp_path / "theirs.knowledge", tmp_path / "again.zip")
     assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
 
 
@@ -90,13 +86,13 @@ def test_export_knowledge_leaves_out_the_delays_of_teachers(taught: Path, export
     copy.write_bytes(taught.read_bytes())
     with open_knowledge(copy, ROBOT, TASK) as journal:
         journal.checkpoint(replace(journal.statistics(), answer_delays={"Ann": (80, 90)}))
-    assert export(copy, tmp_path / "mine.zip", exported.parent / "ann").read_bytes() == exported.read_bytes()
+    assert export(copy, tmp_path / "mine.zip").read_bytes() == exported.read_bytes()
 
 
 def test_export_knowledge_is_a_zip_with_manifest(exported: Path) -> None:
     with zipfile.ZipFile(exported) as archive:
         manifest = json.loads(archive.read(MANIFEST))
-        assert {"knowledge.jsonl", "statistics.json", "settings/task.json", SIGNATURE} <= set(archive.namelist())
+        assert {"knowledge.jsonl", "statistics.json", "settings/task.json"} <= set(archive.namelist())
     assert (manifest["format"], manifest["system"], manifest["rlas"]) == (1, "wall_following", 1)
     assert manifest["features"]["names"][0] == "s1"
 
@@ -143,14 +139,11 @@ def test_read_package_forged_parts_are_refused_by_code(exported: Path, tmp_path:
         ({MANIFEST: b"{}"}, KnowledgeCode.PACKAGE_NOT_OURS),
         ({MANIFEST: b"{"}, KnowledgeCode.MANIFEST_DAMAGED),
         ({MANIFEST: json.dumps({**manifest, "format": 2}).encode()}, KnowledgeCode.PACKAGE_NEWER_FORMAT),
-        ({MANIFEST: json.dumps({**manifest, "task": "eight"}).encode()}, KnowledgeCode.SIGNATURE_WRONG),
-        ({SIGNATURE: b"{}"}, KnowledgeCode.SIGNATURE_DAMAGED),
     )
     for number, (changes, code) in enumerate(cases):
         with refused(code):
             read_package(rewritten(exported, tmp_path / f"{number}.zip", **changes))
-    assert read_package(rewritten(exported, tmp_path / "bare.zip", **{SIGNATURE: None})).signed_by is None
-    (tmp_path / "empty.zip").write_bytes(pack({}, {}, None))
+    (tmp_path / "empty.zip").write_bytes(pack({}, {}))
     with refused(KnowledgeCode.PACKAGE_INVALID):
         read_package(tmp_path / "empty.zip")
 
@@ -182,7 +175,7 @@ def made_over(
     """Write a copy of the archive with a matching manifest, as a hostile author can, and return its path."""
     whole = unpack(exported)
     manifest = {name: value for name, value in whole.manifest.items() if name not in ("format", "files")}
-    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **(files or {})}, None))
+    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **(files or {})}))
     return out
 
 
@@ -297,9 +290,8 @@ def test_read_package_lesson_without_time_is_refused(exported: Path, tmp_path: P
 
 def test_read_package_endless_nesting_is_refused(exported: Path, tmp_path: Path) -> None:
     deep = b"[" * 100_000
-    for name, code in ((MANIFEST, KnowledgeCode.MANIFEST_DAMAGED), (SIGNATURE, KnowledgeCode.SIGNATURE_DAMAGED)):
-        with refused(code):
-            read_package(rewritten(exported, tmp_path / "deep.zip", **{name: deep}))
+    with refused(KnowledgeCode.MANIFEST_DAMAGED):
+        read_package(rewritten(exported, tmp_path / "deep.zip", **{MANIFEST: deep}))
     for name in ("knowledge.jsonl", "statistics.json"):
         with refused(KnowledgeCode.PACKAGE_INVALID):
             read_package(made_over(exported, tmp_path / "deep.zip", {name: deep}))
@@ -326,37 +318,6 @@ def test_export_knowledge_while_written_is_of_one_moment(
         [entry.event for entry in before[0]],
         before[1],
     )
-
-
-def test_import_knowledge_other_signer_is_refused(exported: Path, taught: Path, tmp_path: Path) -> None:
-    make_key(tmp_path / "bob")
-    unsigned = export(taught, tmp_path / "unsigned.zip")
-    with refused(KnowledgeCode.OTHER_SIGNER):
-        import_from(exported, tmp_path / "k", trusted=tmp_path / "bob.pub")
-    with refused(KnowledgeCode.OTHER_SIGNER, signed="not signed"):
-        import_from(unsigned, tmp_path / "k", trusted=tmp_path / "bob.pub")
-    assert not (tmp_path / "k").exists()
-    import_from(exported, tmp_path / "k", trusted=exported.parent / "ann.pub")
-
-
-def test_make_key_is_private_and_overwrites_nothing(tmp_path: Path) -> None:
-    make_key(tmp_path / "keys" / "ann")
-    assert (tmp_path / "keys" / "ann").stat().st_mode & 0o777 == 0o600
-    with refused(KnowledgeCode.KEY_NOT_MADE):
-        make_key(tmp_path / "keys" / "ann")
-    (tmp_path / "keys" / "bob.pub").write_bytes(b"another's")
-    with refused(KnowledgeCode.KEY_NOT_MADE):
-        make_key(tmp_path / "keys" / "bob")
-    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob.pub"]
-    (tmp_path / "keys" / "bob.pub").rename(tmp_path / "keys" / "bob")
-    with refused(KnowledgeCode.KEY_NOT_MADE):
-        make_key(tmp_path / "keys" / "bob")
-    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob"]
-    assert (tmp_path / "keys" / "bob").read_bytes() == b"another's"
-    with refused(KnowledgeCode.NO_PRIVATE_KEY):
-        read_private_key(tmp_path / "keys" / "ann.pub")
-    with refused(KnowledgeCode.NO_PUBLIC_KEY):
-        read_public_key(tmp_path / "keys" / "ann")
 
 
 def test_import_knowledge_other_features_are_named(exported: Path, tmp_path: Path) -> None:
