@@ -174,23 +174,6 @@ class KnowledgeCode(ErrorCode):
     NOT_EXPORTABLE = ("not exportable", "cannot be exported: it {reason}", "name its settings otherwise")
     MANIFEST_DAMAGED = ("manifest damaged", "its {name} is damaged ({error})", _NEW_COPY)
     # Versions
-    BRANCH_NOTE_DAMAGED = (
-        "branch note damaged",
-        "its note on the file it was branched from is damaged ({error})",
-        "keep the file",
-    )
-    NO_SUCH_POINT = (
-        "no such point",
-        "holds no lesson {given!r}, and that is no time either",
-        "give an id as kurt2rt knowledge lessons shows it, or a time such as 2026-11-22T03:10",
-    )
-    STAMP_INVALID = ("stamp invalid", "the stamp of a lesson is no time ({error})", "give the id of a lesson instead")
-    CHANGED_MEANWHILE = ("changed meanwhile", "was taught while the merge was planned", "merge again")
-    MERGE_MISFIT = (
-        "merge misfit",
-        "cannot be merged into {into}: {error}",
-        "undo there what is in the way, or go on in one of them",
-    )
     NO_LESSON = ("no lesson", "holds no lesson that {state}", "")
     NO_LESSON_BY = ("no lesson by", "holds no lesson by {teacher} that stands", "{others}")
     NO_UNDONE_LESSON_BY = (

@@ -56,7 +56,6 @@ def test_every_command_is_found() -> None:
             "undo",
             "redo",
             "list",
-            "branch",
             "merge",
             "diff",
             "export",

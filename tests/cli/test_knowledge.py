@@ -4,12 +4,13 @@ import csv
 import json
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded, SessionBegun
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -132,75 +133,38 @@ def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path
     assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out
 
 
-def test_branch_is_listed_taught_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_copy_is_taught_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
-    count = len(folded(mine))
-    first = folded(mine).lessons[0].event.origin.command_id
-    said = kurt2rt("knowledge", "branch", mine, "early.knowledge", "--at", first)
-    assert " early.knowledge: " in said.out
-    assert " 1 rows " in said.out
-    assert kurt2rt("knowledge", "branch", mine, "late.knowledge").exit_code == 0
-    listed = kurt2rt("knowledge", "list", tmp_path).out
-    assert listed.count("mine.knowledge,") == 2
-    assert "wall_following" in listed
-
-    kurt2rt("knowledge", "undo", "late.knowledge", "--lesson", first)
-    told = json.loads(kurt2rt("knowledge", "diff", mine, "late.knowledge", "--json").out)
-    assert (len(told["lessons_only_here"]), len(told["rlas_only_here"])) == (1, 1)
-    as_json = json.loads(kurt2rt("knowledge", "diff", "early.knowledge", mine, "--json").out)
-    assert as_json["common_rows"] == 1
-    assert len(as_json["rlas_only_there"]) == count - 1
-
-    before = mine.read_bytes()
-    assert "1 undone " in kurt2rt("knowledge", "merge", mine, "late.knowledge", "--dry-run").out
-    assert mine.read_bytes() == before
-    assert kurt2rt("knowledge", "merge", mine, "late.knowledge").exit_code == 0
-    assert folded(mine).get(1) is None
-    merged = mine.read_bytes()
-    assert kurt2rt("knowledge", "merge", mine, "late.knowledge").exit_code == 0
-    assert mine.read_bytes() == merged
-    told = json.loads(kurt2rt("knowledge", "diff", mine, "late.knowledge", "--json").out)
-    assert (told["lessons_only_here"], told["lessons_only_there"]) == ([], [])
-
-
-def test_branch_clock_set_back_is_reported(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
+    other = Path(shutil.copy(lessons, tmp_path / "other.knowledge"))
     with Journal.read_only(mine) as look:
-        binding, entries = look.binding, look.entries()
-    newest = entries[-1].stamped_at
+        binding = look.binding
+    by_ann = replace(folded(mine).rlas[0], rla_id=1000, origin=Origin("new", "Ann", Phase.CORRECTIONS, 9))
+    with Journal.open(other, binding) as journal:
+        journal.append([JournalEntry(RlaCreated(by_ann), utc_now()), JournalEntry(_correction("right"), utc_now())])
     with Journal.open(mine, binding) as journal:
-        for number, stamp in enumerate(("2099-01-01T00:00:00.000+00:00", newest)):
-            begun = SessionBegun("evening", Origin(f"late-{number}", "Ann", Phase.CORRECTIONS, 9))
-            journal.append([JournalEntry(begun, stamp)])
-    said = kurt2rt("knowledge", "branch", mine, "then.knowledge", "--at", newest).out
-    cut, earlier_dates = said.splitlines()
-    assert f" {len(entries)} rows " in cut
-    assert earlier_dates.startswith("1 ")
+        journal.append([JournalEntry(_correction("left"), utc_now())])
+    told = json.loads(kurt2rt("knowledge", "diff", mine, other, "--json").out)
+    assert (len(told["lessons_only_here"]), len(told["lessons_only_there"]), len(told["rlas_only_there"])) == (1, 2, 1)
+    (changed,) = told["rlas_with_another_action"]
+    assert (changed["here"]["action"], changed["there"]["action"]) == ("left", "right")
+    before, whole = folded(mine).rlas, mine.read_bytes()
+    left_out, would, nothing = kurt2rt("knowledge", "merge", mine, other, "--dry-run").out.splitlines()
+    assert "RLA 1 corrected: right" in left_out
+    assert " 1 lessons, 1 RLAs " in would
+    assert "--dry-run" in nothing
+    assert mine.read_bytes() == whole
+    undo = kurt2rt("knowledge", "merge", mine, other).out.splitlines()[-1].partition("kurt2rt ")[2].split()
+    assert len(folded(mine).rlas) == len(before) + 1
+    assert kurt2rt("knowledge", "merge", mine, other).out.splitlines()[1:] == [
+        f"{mine}: nothing is there that is not here"
+    ]
+    assert kurt2rt(*undo, "--no-preview").exit_code == 0
+    assert folded(mine).rlas == before
+    assert "1 of its lessons were undone" in kurt2rt("knowledge", "merge", mine, other).out
 
 
-def test_merge_conflict_is_settled_by_prefer(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
-    kurt2rt("knowledge", "branch", mine, "other.knowledge")
-    for path, action in ((mine, "left"), (tmp_path / "other.knowledge", "right")):
-        with Journal.read_only(path) as look:
-            binding = look.binding
-        with Journal.open(path, binding) as journal:
-            correction = ActionReplaced(1, action, "forward", Origin(f"by-{action}", "Ann", Phase.CORRECTIONS, 9))
-            journal.append([JournalEntry(correction, utc_now())])
-    said = kurt2rt("knowledge", "merge", mine, "other.knowledge")
-    assert said.exit_code == 1
-    conflict, refused = said.out.splitlines()
-    assert re.findall(r"RLA 1|left|right", conflict) == ["RLA 1", "left", "RLA 1", "right"]
-    assert refused.startswith(f"{mine}: ")
-    assert rla_1(mine).action == "left"
-    assert kurt2rt("knowledge", "merge", mine, "other.knowledge", "--prefer", "theirs").exit_code == 0
-    assert rla_1(mine).action == "right"
-
-
-def rla_1(knowledge: Path) -> Rla:
-    rla = folded(knowledge).get(1)
-    assert rla is not None
-    return rla
+def _correction(action: str) -> ActionReplaced:
+    return ActionReplaced(1, action, "forward", Origin(f"by-{action}", "Ann", Phase.CORRECTIONS, 9))
 
 
 def test_list_empty_folder_is_empty(kurt2rt: CommandLine, tmp_path: Path) -> None:

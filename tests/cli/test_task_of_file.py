@@ -55,7 +55,6 @@ def test_lesson_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) 
         ("lesson", "--knowledge", "mine.knowledge"),
         ("run", "--knowledge", "mine.knowledge"),
         ("knowledge", "export", "mine.knowledge", "out.zip"),
-        ("knowledge", "merge", "mine.knowledge", "mine.knowledge"),
     ],
     ids=" ".join,
 )
@@ -72,7 +71,6 @@ TO_READ_IT = (
     ("certify", "mine.knowledge"),
     ("knowledge", "export", "mine.knowledge", "out.zip"),
     ("knowledge", "contradictions", "mine.knowledge"),
-    ("knowledge", "merge", "mine.knowledge", "mine.knowledge"),
 )
 """Commands that look up the task that a knowledge file names."""
 

@@ -11,7 +11,7 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, words_for
 from kurt2rt.core.planning.goal_pursuit import GoalPursuit
 from kurt2rt.core.planning.plan import Plan
 from kurt2rt.core.planning.topological_map import Edge
-from kurt2rt.core.rla.events import Appraised, KnowledgeMerged, Lesson, LessonRedone, TeachingEvent
+from kurt2rt.core.rla.events import Appraised, Lesson, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord, hold_text
 from kurt2rt.core.rla.rla import ASK, CRITIC, MID
 from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
@@ -121,7 +121,6 @@ def lessons() -> Iterator[tuple[str, str]]:
         "begun": begun,
         "ended": ended,
         "appraised": Appraised("bad", -1, 9, origin("signal-1")),
-        "merged": KnowledgeMerged("other", 3, "b/3", origin("merge-1")),
     }
     for label, each in told.items():
         yield f"timeline, {label}", describer.describe(each)

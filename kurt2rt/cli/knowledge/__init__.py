@@ -7,7 +7,7 @@ from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.export import export, import_, table
 from kurt2rt.cli.knowledge.graph import graph
 from kurt2rt.cli.knowledge.listing import list_files
-from kurt2rt.cli.knowledge.merge import branch, merge
+from kurt2rt.cli.knowledge.merge import merge
 from kurt2rt.cli.knowledge.show import check, lessons, show
 from kurt2rt.cli.knowledge.undo import redo, undo
 
@@ -25,7 +25,6 @@ for _command in (
     check,
     undo,
     redo,
-    branch,
     merge,
     diff,
     export,

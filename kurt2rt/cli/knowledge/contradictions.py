@@ -5,12 +5,14 @@ from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
+from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.outcome_text import neighbours_text
+from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.contradiction import NEIGHBOURS, Contradiction, find_contradiction
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.loading import read_lessons
-from kurt2rt.knowledge.versions.contradictions import load_radii
+from kurt2rt.runtime import empty_system
 
 
 def contradictions(
@@ -30,7 +32,8 @@ def contradictions(
     """
     name = task_of_file(file, task_name)
     task, robot = load_task(name), load_robot_of(robot_name, name)
-    system = load_radii(task, robot).empty_system()
+    definition = load_situation(task.situation, robot.infrared.names)
+    system = empty_system(task, definition, critic_of(task.critic, robot), None)
     system.apply_all(read_lessons(file, robot, task))
     groups = action_groups(task.repertoire)
     found = [each for rla in system.rlas if (each := find_contradiction(system, rla, groups)) is not None]

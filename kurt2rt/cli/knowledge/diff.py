@@ -14,7 +14,6 @@ from kurt2rt.core.rla.rla import Rla
 from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.versions.diff import KnowledgeDiff, compare
-from kurt2rt.knowledge.versions.lesson_identity import read_content
 
 
 def diff(
@@ -30,7 +29,7 @@ def diff(
     """
     with Journal.read_only(file) as a, Journal.read_only(other) as b:
         require_compatible(b.binding, a.binding, other, b.has_lessons_at)
-        found = compare(read_content(a), read_content(b))
+        found = compare(a, b)
     if as_json:
         typer.echo(json.dumps(_as_json(found), indent=2))
         return

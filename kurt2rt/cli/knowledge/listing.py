@@ -1,5 +1,6 @@
 """`kurt2rt knowledge list`."""
 
+import math
 from pathlib import Path
 from typing import Annotated
 
@@ -9,12 +10,11 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.tables import console_of
 from kurt2rt.knowledge.exchange.package import IMPORTED_FROM
+from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show.table_cells import printable
-from kurt2rt.knowledge.versions.branch import branch_origin
-from kurt2rt.knowledge.versions.lesson_identity import read_content
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 
@@ -69,12 +69,7 @@ def list_files(
 
 def _row(path: Path) -> tuple[str, str, str, str, str]:
     with Journal.read_only(path) as journal:
-        content, origin, imported = (
-            read_content(journal),
-            branch_origin(journal),
-            journal.notes().get(IMPORTED_FROM, ""),
-        )
-    newest = content.entries[-1].stamped_at[:19].replace("T", " ") if content.entries else ""
-    came = imported if origin is None else f"{origin.file}, {origin.rows} rows"
-    system = content.system
+        entries, came = journal.entries(), journal.notes().get(IMPORTED_FROM, "")
+        system = fold_entries(journal, entries, radius=math.inf)
+    newest = entries[-1].stamped_at[:19].replace("T", " ") if entries else ""
     return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came

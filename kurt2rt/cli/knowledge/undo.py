@@ -15,7 +15,7 @@ def undo(
     file: KnowledgeFile,
     lesson: Annotated[
         str | None,
-        typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the last one that stands."),
+        typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the last that stands."),
     ] = None,
     of: Annotated[
         str | None,
@@ -26,7 +26,7 @@ def undo(
     dry_run: DryRun = False,
     yes: Yes = False,
 ) -> None:
-    """Undo a lesson, or all of one teacher: what it changed is as it was before.
+    """Undo a lesson, a merge, or all of one teacher: what it changed is as before.
 
     It first replays the newest recorded run of this knowledge, and shows the
     decisions that differ without the lesson. At a terminal it then asks.
@@ -51,7 +51,7 @@ def redo(
     file: KnowledgeFile,
     lesson: Annotated[
         str | None,
-        typer.Option(help="Id of the lesson, as kurt2rt knowledge lessons shows it; else the one undone last."),
+        typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the one undone last."),
     ] = None,
     of: Annotated[
         str | None, typer.Option(help="All lessons of this teacher that were undone, the one undone last first.")

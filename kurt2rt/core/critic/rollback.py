@@ -6,7 +6,6 @@ from typing import NamedTuple
 from kurt2rt.core.critic.settings import RollbackSettings
 from kurt2rt.core.rla.events import (
     Appraised,
-    KnowledgeMerged,
     LessonRedone,
     LessonUndone,
     SessionBegun,
@@ -83,7 +82,7 @@ class RollbackMonitor:
         match event:
             case LessonUndone(lesson, _):
                 self._unproven = [each for each in self._unproven if each.lesson != lesson]
-            case Appraised() | SituationNamed() | SessionBegun() | SessionEnded() | KnowledgeMerged():
+            case Appraised() | SituationNamed() | SessionBegun() | SessionEnded():
                 pass
             case LessonRedone():  # a person's decision needs no proof
                 pass

@@ -112,19 +112,6 @@ class LessonRedone:
 
 
 @dataclass(frozen=True, slots=True)
-class KnowledgeMerged:
-    """Merge: the rows before this one came from another knowledge file. Changes no RLA by itself."""
-
-    source: str
-    """Name of the other file."""
-    rows: int
-    """Number of its rows that this merge includes or left out on purpose."""
-    last: str
-    """Command id of the last of those rows: identifies the file and its continuations."""
-    origin: Origin
-
-
-@dataclass(frozen=True, slots=True)
 class SessionBegun:
     """Beginning of a teaching session; changes no RLA."""
 
@@ -147,5 +134,5 @@ RlaLesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewa
 Lesson = RlaLesson | SituationNamed
 """Teaching event that can be undone."""
 
-TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun | SessionEnded | KnowledgeMerged
+TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun | SessionEnded
 """Entry of the knowledge journal; the RLA system is the fold of these events."""

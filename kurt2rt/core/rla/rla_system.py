@@ -18,7 +18,6 @@ from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    KnowledgeMerged,
     Lesson,
     LessonRedone,
     LessonUndone,
@@ -235,7 +234,7 @@ class RlaSystem:
                 if problem is not None:
                     raise InvalidEventError(EventFault.NOT_REDOABLE, {"lesson": lesson}, problem)
                 self._learn(self._history.redo(lesson), again=True)
-            case SessionBegun() | Appraised() | KnowledgeMerged():
+            case SessionBegun() | Appraised():
                 pass
             case SessionEnded(lasted_ticks, _):
                 self.teaching_ticks += lasted_ticks

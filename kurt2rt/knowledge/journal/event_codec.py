@@ -10,7 +10,6 @@ from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    KnowledgeMerged,
     LessonRedone,
     LessonUndone,
     RlaCreated,
@@ -32,8 +31,7 @@ EVENT_VERSION = 6
 Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
 behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
 rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
-Up to version 4 no situation was named. Up to version 5 nothing was redone, nor merged from another file, and no
-credit told of which edge it was.
+Up to version 4 no situation was named. Up to version 5 nothing was redone, and no credit told of which edge it was.
 """
 
 _ADDED: tuple[tuple[int, str, str, object], ...] = (
@@ -44,7 +42,7 @@ _ADDED: tuple[tuple[int, str, str, object], ...] = (
 )
 """(version, kind, field, value): the field came with the version; in older events it has the value."""
 
-_SINCE = {"named": 5, "redone": 6, "merged": 6}
+_SINCE = {"named": 5, "redone": 6}
 """Version that a kind of event came with; older programs cannot read it."""
 
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
@@ -58,7 +56,6 @@ _FIELDS = {
     "named": ("name", "situation", "level", *_ORIGIN),
     "undone": ("lesson", *_ORIGIN),
     "redone": ("lesson", *_ORIGIN),
-    "merged": ("source", "rows", "last", *_ORIGIN),
     "session begun": ("name", *_ORIGIN),
     "session ended": ("lasted_ticks", *_ORIGIN),
 }
@@ -139,8 +136,6 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
             own = {"kind": "undone", "lesson": lesson}
         case LessonRedone(lesson, _):
             own = {"kind": "redone", "lesson": lesson}
-        case KnowledgeMerged(source, rows, last, _):
-            own = {"kind": "merged", "source": source, "rows": rows, "last": last}
         case SessionBegun(name, _):
             own = {"kind": "session begun", "name": name}
         case SessionEnded(lasted_ticks, _):
@@ -178,9 +173,6 @@ def _event(content: object) -> TeachingEvent:
             return LessonUndone(_text(content, "lesson"), origin)
         case "redone":
             return LessonRedone(_text(content, "lesson"), origin)
-        case "merged":
-            rows = _whole(content, "rows", least=0)
-            return KnowledgeMerged(_text(content, "source"), rows, _text(content, "last"), origin)
         case "appraised":
             value = _opinion(content, "value")
             return Appraised(_word(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)

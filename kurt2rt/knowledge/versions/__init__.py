@@ -1,1 +1,1 @@
-"""Versions of knowledge: undo, branch, diff, merge."""
+"""Versions of knowledge: undo, diff, merge."""

@@ -1,11 +1,17 @@
 """Difference of two knowledge files: lessons that stand in one of them only, and RLAs."""
 
+import math
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.knowledge.versions.lesson_identity import KnowledgeContent, LessonKey, count_common_rows
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.versions.lesson_identity import LessonKey, lesson_keys
 
 
 @dataclass(frozen=True)
@@ -29,28 +35,51 @@ class KnowledgeDiff:
         return not (self.lessons_a or self.lessons_b or self.rlas_a or self.rlas_b or self.changed)
 
 
-def compare(a: KnowledgeContent, b: KnowledgeContent) -> KnowledgeDiff:
-    """Return the difference of two files of the same features. RLAs are the same if the same lesson created them."""
-    rlas_a = {a.rla_keys[rla.rla_id]: rla for rla in active_rlas(a)}
-    rlas_b = {b.rla_keys[rla.rla_id]: rla for rla in active_rlas(b)}
+def compare(a: Journal, b: Journal) -> KnowledgeDiff:
+    """Return the difference of two files of the same features. RLAs are the same if the same lesson created them.
+
+    Raises KnowledgeError for a damaged row, or a lesson that does not fit those before it.
+    """
+    rows_a, rows_b = a.entries(), b.entries()
+    in_a, in_b = _Content(a, rows_a), _Content(b, rows_b)
+    both = [(rla, in_b.rlas[key]) for key, rla in in_a.rlas.items() if key in in_b.rlas]
     return KnowledgeDiff(
-        count_common_rows(a.entries, b.entries),
-        _standing_only_in(a, _standing_keys(b)),
-        _standing_only_in(b, _standing_keys(a)),
-        tuple(rla for key, rla in rlas_a.items() if key not in rlas_b),
-        tuple(rla for key, rla in rlas_b.items() if key not in rlas_a),
-        tuple((rla, rlas_b[key]) for key, rla in rlas_a.items() if key in rlas_b and rlas_b[key].action != rla.action),
+        _count_common_rows(rows_a, rows_b),
+        in_a.standing_but_for(in_b.standing.keys()),
+        in_b.standing_but_for(in_a.standing.keys()),
+        tuple(rla for key, rla in in_a.rlas.items() if key not in in_b.rlas),
+        tuple(rla for key, rla in in_b.rlas.items() if key not in in_a.rlas),
+        tuple((here, there) for here, there in both if here.action != there.action),
     )
 
 
-def active_rlas(content: KnowledgeContent) -> list[Rla]:
-    """Return all living RLAs of a file, level by level, the basic one first, and oldest first in each."""
-    return [rla for level in (BASIC, *content.journal.binding.levels) for rla in content.system.rlas_at(level)]
+class _Content:
+    """Lessons that stand in a file, and its living RLAs, by keys that are the same in both files."""
+
+    def __init__(self, journal: Journal, entries: Sequence[StoredEntry]) -> None:
+        system = fold_entries(journal, entries, radius=math.inf)
+        keys = lesson_keys(system)
+        self.standing: Mapping[LessonKey, LessonRecord] = {
+            keys[record.event.origin.command_id]: record for record in system.lessons if not record.undone
+        }
+        levels = (BASIC, *journal.binding.levels)
+        self.rlas: Mapping[LessonKey, Rla] = {
+            keys[_creation(system, rla)]: rla for level in levels for rla in system.rlas_at(level)
+        }
+
+    def standing_but_for(self, others: AbstractSet[LessonKey]) -> tuple[LessonRecord, ...]:
+        return tuple(record for key, record in self.standing.items() if key not in others)
 
 
-def _standing_keys(content: KnowledgeContent) -> set[LessonKey]:
-    return {content.key_of(record) for record in content.system.lessons if not record.undone}
+def _creation(system: RlaSystem, rla: Rla) -> str:
+    return system.lessons_about(rla.rla_id)[0].event.origin.command_id
 
 
-def _standing_only_in(one: KnowledgeContent, other: AbstractSet[LessonKey]) -> tuple[LessonRecord, ...]:
-    return tuple(record for record in one.system.lessons if not record.undone and one.key_of(record) not in other)
+def _count_common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int:
+    """Return the number of rows that both begin with, whatever their stamps."""
+    same = 0
+    for mine, theirs in zip(one, other, strict=False):
+        if mine.event != theirs.event:
+            break
+        same += 1
+    return same

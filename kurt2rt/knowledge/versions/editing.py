@@ -37,17 +37,15 @@ def new_origin(kind: str, teacher: str) -> Origin:
     return Origin(f"{kind}-{uuid.uuid4().hex}", teacher, Phase.CORRECTIONS, tick=0)
 
 
-def append_with_values(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics | None = None) -> None:
+def append_with_values(journal: Journal, entries: Sequence[JournalEntry]) -> None:
     """Append events that fit, and the values after them, in one transaction.
-
-    `saved`: the statistics to go on from; None: those of the file.
 
     Raises:
         KnowledgeError: the file cannot be read, or the disk does not take the rows.
         InvalidEventError: an event does not fit.
     """
-    before, saved = journal.events(), saved or journal.statistics()
-    after = statistics_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
+    new, dimensions = [entry.event for entry in entries], len(journal.binding.feature_names)
+    after = statistics_after(journal.events(), new, journal.statistics(), dimensions)
     journal.append_and_checkpoint(entries, after)
 
 

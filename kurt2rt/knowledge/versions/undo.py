@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.core.outcome import Outcome
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import LessonRedone, LessonUndone, TeachingEvent
-from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.lesson_history import DERIVED, LessonRecord
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
@@ -38,13 +38,13 @@ class UndoPlan:
 
 
 def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = None, *, teacher: str) -> UndoPlan:
-    """Plan the undo of one lesson, of a hold, or of all lessons of a teacher that stand, newest first.
+    """Plan the undo of one lesson, of a hold or merge, or of all lessons of a teacher that stand, newest first.
 
     It only reads the file.
 
     Args:
         path: of the knowledge file.
-        lesson: command id of the lesson, or id of a hold; None: the last lesson that stands.
+        lesson: command id of the lesson, or id of a hold or merge; None: the last lesson that stands.
         taught_by: the teacher of all lessons to undo; None: one lesson.
         teacher: who undoes.
 
@@ -55,9 +55,10 @@ def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = Non
     system = reading.system
     if taught_by is not None:
         command_ids = _lessons_to_undo(system, taught_by, path)
-    elif lesson is not None and system.lessons_of_hold(lesson):
-        _require_possible(system.why_not_undo_hold(lesson), path)
-        command_ids = [each for each in system.lessons_of_hold(lesson)[::-1] if not _record(system, each).undone]
+    elif lesson is not None and (together := _together(system, lesson)):
+        command_ids = [each for each in together[::-1] if not _record(system, each).undone]
+        if not command_ids:
+            _require_possible(Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=lesson), path)
     else:
         state = "stands; there is nothing to undo"
         command_ids = [_select(path, lesson, system.last_standing_lesson, system.why_not_undo, state)]
@@ -67,13 +68,13 @@ def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = Non
 
 
 def plan_redo(path: Path, lesson: str | None = None, taught_by: str | None = None, *, teacher: str) -> UndoPlan:
-    """Plan the redo of one lesson, or of all undone lessons of a teacher, the last undo first; only reads the file.
+    """Plan the redo of one lesson, of a hold or merge, or of a teacher's undone lessons; only reads the file.
 
-    Of a teacher's lessons, those in whose place another lesson stands stay undone.
+    Of several lessons, those in whose place another lesson stands stay undone.
 
     Args:
         path: of the knowledge file.
-        lesson: command id of the lesson; None: the one undone last.
+        lesson: command id of the lesson, or id of a hold or merge; None: the one undone last.
         taught_by: the teacher of all lessons to redo; None: one lesson.
         teacher: who redoes.
 
@@ -85,6 +86,10 @@ def plan_redo(path: Path, lesson: str | None = None, taught_by: str | None = Non
     changes, refusals = list[LessonRedone](), list[Outcome]()
     if taught_by is not None:
         command_ids = _undone_by_time(reading, taught_by)
+    elif lesson is not None and (together := _together(system, lesson)):
+        command_ids = [each for each in together if _record(system, each).undone]
+        if not command_ids:
+            _require_possible(Outcome.of(RefusalCode.STANDS_ALREADY, lesson=lesson), path)
     else:
         state = "was undone; there is nothing to redo"
         command_ids = [_select(path, lesson, system.last_undone_lesson, system.why_not_redo, state)]
@@ -96,6 +101,8 @@ def plan_redo(path: Path, lesson: str | None = None, taught_by: str | None = Non
         changes.append(LessonRedone(command_id, new_origin("redo", teacher)))
         system.apply(changes[-1])
     if not changes:
+        if taught_by is None:  # a hold or merge, whose places are all taken
+            _require_possible(refusals[0], path)
         reason = f": {text_of(refusals[0])}" if refusals else ""
         raise KnowledgeError(KnowledgeCode.NO_UNDONE_LESSON_BY, where=path, teacher=taught_by, reason=reason)
     return reading.planned(changes, refusals)
@@ -157,6 +164,12 @@ def _select(
 def _require_possible(refusal: Outcome | None, where: object) -> None:
     if refusal is not None:
         raise KnowledgeError(KnowledgeCode.LESSON_REFUSED, where=where, reason=text_of(refusal), outcome=refusal.code)
+
+
+def _together(system: RlaSystem, command: str) -> list[str]:
+    """Return the command ids of the lessons of a hold or merge, oldest first; empty for one lesson of this id."""
+    command_ids = [record.event.origin.command_id for record in system.lessons]
+    return [] if command in command_ids else [each for each in command_ids if each.startswith(f"{command}{DERIVED}")]
 
 
 def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:

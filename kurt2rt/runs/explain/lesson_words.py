@@ -2,7 +2,6 @@
 
 from kurt2rt.core.rla.events import (
     Appraised,
-    KnowledgeMerged,
     LessonRedone,
     LessonUndone,
     RlaCreated,
@@ -37,8 +36,6 @@ class LessonDescriber:
                 return f"session ended by {by}"
             case Appraised(appraisal):
                 return f"called {appraisal} ({by})"
-            case KnowledgeMerged(source):
-                return f"lessons of {source} brought in ({by})"
             case RlaCreated(rla):
                 self._home_of[rla.rla_id] = rla.behaviour, rla.level
         behaviour, level = (

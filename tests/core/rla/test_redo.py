@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
+from kurt2rt.core.rla.events import Appraised, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -83,12 +83,6 @@ def test_redo_standing_or_unknown_lesson_is_refused() -> None:
 def test_redo_reward_counts_again() -> None:
     system = system_of(FIRST, rewarded(1, 1, "praise"), undone("praise"), redone("praise"))
     assert system.appraisal(1) == Appraisal(rewards=1)
-
-
-def test_merge_event_changes_nothing() -> None:
-    system = system_of(FIRST, KnowledgeMerged("b.knowledge", 7, "lesson-7", origin("merge-1")))
-    assert system.rlas == (FIRST.rla,)
-    assert len(system.lessons) == 1
 
 
 @examples(100)

@@ -13,7 +13,6 @@ from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
-    KnowledgeMerged,
     LessonRedone,
     LessonUndone,
     RlaCreated,
@@ -62,7 +61,6 @@ events = st.one_of(
     st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
     st.builds(LessonUndone, texts, origins),
     st.builds(LessonRedone, texts, origins),
-    st.builds(KnowledgeMerged, texts, st.integers(0, 2**62), texts, origins),
     st.builds(SituationNamed, texts, conditions, texts, origins),
     st.builds(SessionBegun, texts, origins),
     st.builds(SessionEnded, st.integers(0, 2**62), origins),
@@ -70,7 +68,6 @@ events = st.one_of(
 
 NAMED = SituationNamed("door", (1.0, 2.0), MID, origin("name-1", 500))
 REDONE = LessonRedone("create-1", origin("redo-1", 510))
-MERGED = KnowledgeMerged("other.knowledge", 7, "create-7", origin("merge-1", 520))
 APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
 
 
@@ -161,8 +158,6 @@ def test_decode_event_wrong_field_is_named(key: str, value: object) -> None:
         (NAMED, "version", 4),
         (REDONE, "lesson", 1),
         (REDONE, "version", 5),
-        (MERGED, "rows", -1),
-        (MERGED, "version", 5),
         (session(10)[0], "name", None),
         (session(10)[1], "lasted_ticks", -1),
     ],
@@ -210,7 +205,7 @@ def test_decode_event_behaviour_and_level_are_kept() -> None:
     "event",
     [
         *(created(1), replaced(1, "left", "forward"), withdrawn(1), deleted(1), rewarded(1), APPRAISED),
-        *(undone("create-1"), REDONE, MERGED, NAMED, *session(10)),
+        *(undone("create-1"), REDONE, NAMED, *session(10)),
     ],
 )
 def test_decode_event_missing_field_is_named(event: TeachingEvent) -> None:

@@ -7,7 +7,6 @@ import pytest
 
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
-from kurt2rt.knowledge.versions.branch import branch_origin
 from tests.knowledge.lessons import BINDING, begun, entry, tamper
 from tests.knowledge.refusals import refused
 
@@ -65,14 +64,6 @@ def test_open_deeply_nested_binding_is_refused(path: Path) -> None:
     tamper(begun(path), f"UPDATE binding SET value = '{DEEP}' WHERE key = 'feature_names'")
     with refused(KnowledgeCode.BINDING_DAMAGED):
         Journal.read_only(path)
-
-
-@pytest.mark.parametrize("note", [DEEP, "3", '["a", "b", "c", "d"]'], ids=["nested", "number", "no row"])
-def test_branch_origin_damaged_note_is_refused(path: Path, note: str) -> None:
-    with Journal.open(begun(path), BINDING) as journal:
-        journal.note("branch of", note)
-        with refused(KnowledgeCode.BRANCH_NOTE_DAMAGED):
-            branch_origin(journal)
 
 
 def test_open_hard_link_is_refused(path: Path) -> None:
