@@ -6,7 +6,6 @@
 # make kills  the robot program is killed over and over while it is taught; SHARD=2/8 does an eighth of 10 000
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
-# make rivals  all learners of other kinds, taught by presses, by hand and by rewards, on one page: a night of two processors
 # make wheelhouse  all packages of a robot as wheels, for x86-64 and aarch64, to install without a network: a minute
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
@@ -18,7 +17,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies rivals wheelhouse hil bench lint types size clean
+.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies wheelhouse hil bench lint types size clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -49,7 +48,7 @@ guard: $(INSTALLED)
 
 # Every small change to them has to make a test fail; minutes.
 mutants: $(INSTALLED)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[mutants]'
+	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt mutmut
 	EXAMPLES=thorough $(BIN)/python -m tests.hal.mutants
 
 # The robot program is killed 10 000 times while it is taught: an hour of one processor; SHARD=2/8 is the second of eight.
@@ -67,15 +66,6 @@ equal-lessons: $(INSTALLED)
 SEARCHES ?= $(basename $(notdir $(wildcard config/searches/*.yaml)))
 studies: $(INSTALLED)
 	for name in $(SEARCHES); do $(BIN)/kurt2rt search $$name || exit 1; done
-
-# Each robot, task and learner is a job of its own; a run that was interrupted goes on where it was.
-# TEACHER=slow or superhuman: each into a folder of its own.
-RIVALS_SEEDS ?= 4300-4319
-RIVALS_TASKS ?= wall_following fleeing eight streets
-TEACHER ?= ordinary
-rivals: $(INSTALLED)
-	$(BIN)/kurt2rt rivals --league all --tuned presses --teacher $(TEACHER) --seeds $(RIVALS_SEEDS) $(RIVALS_TASKS:%=--task %) \
-		--after 10 --after 20 --after 40 --after 80 --set exam.duration_s=60 --out results/rivals-$(TEACHER)
 
 # With a small environment of its own, because a robot needs no tests. Wheels for glibc 2.34 and newer, Debian 12.
 ARCHITECTURES ?= x86_64 aarch64

@@ -36,7 +36,6 @@ ROOMS: dict[str, frozenset[str]] = {
         " kurt2rt.channel",
         "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.teacher.scripted",
-        "kurt2rt.experiments.rivals.agents": "* kurt2rt.experiments kurt2rt.gym",
         "kurt2rt.gym": "hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.experiments.lockstep",
         "kurt2rt.library": "hal simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"

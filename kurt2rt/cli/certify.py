@@ -79,7 +79,7 @@ class _Options:
             min=0.0,
             max=1.0,
             help="Fraction of the runs, 0 to 1, in which one range sensor breaks after 2 s: another sensor and "
-            "fault (dead, stuck, unplugged and others of kurt2rt broken) in each. They have a row of their own, and "
+            "fault (dead, stuck, unplugged and others) in each. They have a row of their own, and "
             "are driven on the CAN loop alone.",
         ),
     ] = 0.0

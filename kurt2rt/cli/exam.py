@@ -45,7 +45,8 @@ class _Options:
         typer.Option(
             "--broken-sensor",
             metavar="SENSOR=FAULT",
-            help="Let a range sensor of the robot break after 2 s, such as s15=low; faults as in kurt2rt broken.",
+            help="Let a range sensor of the robot break after 2 s, such as s15=low; the faults are low, high, frozen, "
+            "unplugged, dark and phantom.",
         ),
     ] = None
     robot_settings: RobotName = None

@@ -13,7 +13,7 @@ from kurt2rt.cli.tables import console_of, print_study, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
-from kurt2rt.experiments.route.lesson import TaughtRoute, copy_knowledge, teach_route, with_route
+from kurt2rt.experiments.route.lesson import TaughtRoute, teach_route, with_route
 from kurt2rt.experiments.route.plan import basic_file, basic_task_of, decisions_of, make_plan
 from kurt2rt.experiments.route.summary import read_study
 from kurt2rt.experiments.route.tables import all_tables, robot_table
@@ -23,6 +23,7 @@ from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
+from kurt2rt.knowledge.journal.loading import copy_knowledge
 from kurt2rt.platform.text_table import print_whole
 
 

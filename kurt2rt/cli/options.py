@@ -51,14 +51,6 @@ def search_argument() -> Any:
     )
 
 
-def tuning_argument() -> Any:
-    """Return the argument of `kurt2rt tune`."""
-    return typer.Argument(
-        help="League: a name in config/rivals, or the path of a YAML file.",
-        autocompletion=_names_in("rivals"),
-    )
-
-
 DEFAULT_OF_THE_TASK = "the task's (teaching.default_teacher)"
 
 

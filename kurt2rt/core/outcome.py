@@ -56,8 +56,6 @@ class ResultCode(StrEnum):
     RLA_DELETED = "rla deleted"
     RLA_REWARDED = "rla rewarded"
     RLA_PUNISHED = "rla punished"
-    LEARNER_REWARDED = "learner rewarded"
-    LEARNER_PUNISHED = "learner punished"
     LESSON_UNDONE = "lesson undone"
     HOLD_UNDONE = "hold undone"
     """All lessons of a hold or of a demonstration that stood."""

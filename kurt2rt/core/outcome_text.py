@@ -77,8 +77,6 @@ _TEXTS: dict[Code, str] = {
     ResultCode.RLA_DELETED: "{title} deleted",
     ResultCode.RLA_REWARDED: "{title} rewarded",
     ResultCode.RLA_PUNISHED: "{title} punished",
-    ResultCode.LEARNER_REWARDED: "the learner is rewarded",
-    ResultCode.LEARNER_PUNISHED: "the learner is punished",
     ResultCode.LESSON_UNDONE: "undone: {says}",
     ResultCode.HOLD_UNDONE: "undone: {lessons} lessons of one press",
     ResultCode.CRITIC_AGREED: "the critic thought {appraisal}, too",

@@ -288,7 +288,7 @@ def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp
     assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0
 
 
-@pytest.mark.parametrize("command", ["demo", "lesson", "run", "rivals", "transfer"])
+@pytest.mark.parametrize("command", ["demo", "lesson", "run", "compare", "transfer"])
 def test_task_of_another_robot_is_refused_with_that_robot(kurt2rt: CommandLine, command: str) -> None:
     refused = kurt2rt.refused(command, "--task", "school/fleeing", "--robot-settings", "kurt2")
     assert "task school/fleeing: is for the robot school (got the robot kurt2" in refused

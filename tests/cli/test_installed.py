@@ -19,19 +19,17 @@ from tests.cli.helpers import ROOT, CommandLine, Said
 from tests.test_imports import PACKAGES
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-FOR_USERS = PROJECT["optional-dependencies"].keys() - {"mutants", "rl", "test"}
+FOR_USERS = PROJECT["optional-dependencies"].keys() - {"test"}
 REFUSED = {
     "recording": ("replay", "why", "recover copies", "run --record runs", "run --live-view 0"),
     "simulation": ("run", "sim --bus shared:base", "demo", "exam base.knowledge", "knowledge graph base.knowledge"),
     "page": ("teach --phone",),
-    "cluster": ("worker --to x",),
+    "studies": ("worker --to x",),
     "export": ("export lerobot",),
     "ros": ("ros --as base",),
 }
 """Commands that need an extra, by the extra."""
 NEEDED_BY_NO_COMMAND = {"gymnasium", "llvmlite", "numba", "pytest"}
-NEEDED_BY_AGENTS = {"sb3_contrib", "stable_baselines3", "torch"}
-"""Packages of the extra `rl`, which the tests run without; a league leaves agents out that lack them."""
 
 
 @cache
@@ -116,11 +114,9 @@ def test_extras_of_main_bring_each_package_that_is_imported() -> None:
         name for text in texts for name in re.findall(r"^ *(?:import|from) (\w+)[\w.]*(?: import |$)", text, re.M)
     }
     foreign = imported - sys.stdlib_module_names - set(PACKAGES) - modules_of() - {"_typeshed"}
-    assert foreign - NEEDED_BY_NO_COMMAND - NEEDED_BY_AGENTS <= EXTRAS.keys()
+    assert foreign - NEEDED_BY_NO_COMMAND <= EXTRAS.keys()
     for module, extra in EXTRAS.items():
         assert module in modules_of(extra), module
-    rl = {canonicalize_name(Requirement(each).name) for each in PROJECT["optional-dependencies"]["rl"]}
-    assert {canonicalize_name(each) for each in NEEDED_BY_AGENTS - {"torch"}} <= rl  # stable-baselines3 brings torch
 
 
 def test_extra_for_tests_holds_all_that_users_may_install() -> None:

@@ -40,8 +40,8 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
 }
 REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
-    *(("replay",), ("service", "check"), ("soak",), ("status",), ("surprise",), ("transfer",), ("doubt",), ("why",)),
-    *(("broken",), ("certify",), ("results", "show"), ("rivals",), ("results", "merge"), ("search",), ("tune",)),
+    *(("replay",), ("service", "check"), ("soak",), ("status",), ("transfer",), ("doubt",), ("why",)),
+    *(("certify",), ("results", "show"), ("compare",), ("results", "merge"), ("search",)),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
     *(("plugin", "list"), ("plugin", "check"), ("export", "lerobot")),
 }

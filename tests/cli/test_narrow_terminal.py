@@ -22,7 +22,6 @@ from kurt2rt.experiments.paper.tables import drive_table, exam_table, knowledge_
 from kurt2rt.experiments.phases.tables import all_tables as phases_tables
 from kurt2rt.experiments.route.tables import all_tables as route_tables
 from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.experiments.surprise.jobs import surprise_table
 from kurt2rt.platform.text_table import print_whole
 from tests.checks.bench.test_report import MACHINE, RESULTS
 from tests.checks.soak.test_checks import RESULT as SOAKED
@@ -37,7 +36,6 @@ from tests.experiments.results import curriculum_result, exam_result, robot_of_s
 from tests.experiments.route.outcomes import drive as route_drive
 from tests.experiments.route.outcomes import outcome as route_outcome
 from tests.experiments.route.test_tables import study as route_study
-from tests.experiments.surprise.test_surprise import QUIET
 from tests.runs.replay.stored_runs import STORED
 from tests.service.health.reports import ILL
 
@@ -72,7 +70,6 @@ REPORTS: dict[str, Print] = {
         *map(as_rich, route_tables(route_study([route_outcome(100, route_drive()), route_outcome(101, route_drive())])))
     ),
     "phases": printing(*map(as_rich, phases_tables(phases_study(), ["Too few."]))),
-    "surprise": printing(as_rich(surprise_table([[QUIET]]))),
     "paper": printing(
         *(
             as_rich(of([paper.summary_of("streets", DRIVES)], "streets"))

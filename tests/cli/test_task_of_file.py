@@ -131,7 +131,7 @@ def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, 
     assert kurt2rt("exam", "mine.knowledge", "--task", "route", *short).exit_code == 0
 
 
-@pytest.mark.parametrize("command", ["demo", "exam", "lesson", "phases", "run", "surprise", "sim"])
+@pytest.mark.parametrize("command", ["demo", "exam", "lesson", "phases", "run", "sim"])
 def test_task_and_world_read_alike_in_every_command(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, command: str
 ) -> None:

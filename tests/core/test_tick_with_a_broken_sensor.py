@@ -16,7 +16,6 @@ from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
-from kurt2rt.experiments.surprise.drive import StuckSensor
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.explain.reasons import format_reasons
@@ -61,7 +60,7 @@ def replayed(tmp_path_factory: pytest.TempPathFactory) -> Replayed:
             tmp_path_factory.mktemp("run"),
             seconds=SECONDS,
             other=spins_with_a_teacher,
-            faulty=lambda robot: StuckSensor(robot, SENSOR, STUCK_FROM_S),
+            faulty=lambda robot: FaultySensor(robot, load_robot().infrared, SENSOR, FaultKind.FROZEN, STUCK_FROM_S),
         )
     )
     found = Replayed(run, [], [], [])

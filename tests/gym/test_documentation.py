@@ -48,7 +48,7 @@ def test_page_lists_each_ending_and_each_information() -> None:
 
 @pytest.mark.deep
 def test_printed_training_with_ppo_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("stable_baselines3", reason="stable-baselines3 needs PyTorch: pip install 'kurt2rt[rl]'")
+    pytest.importorskip("stable_baselines3", reason="stable-baselines3 needs PyTorch: pip install stable-baselines3")
     script = DOCS / "examples" / "train_with_ppo.py"
     monkeypatch.setattr(sys, "argv", [script.name, "--steps", "1024", "--worlds", "c", "--exams", "1"])
     runpy.run_path(str(script), run_name="__main__")

@@ -6,7 +6,7 @@ import pytest
 
 import kurt2rt
 from kurt2rt.core.learner.learner import LearnerSetting
-from kurt2rt.experiments.rivals.learners.k_nearest import KNearest
+from kurt2rt.core.learner.neighbours import KNearest
 
 
 class Shy(KNearest):

@@ -29,11 +29,11 @@ from kurt2rt.checks.plugins.robot_promises import broken_of_robot
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.learner.conformance import broken_among
+from kurt2rt.core.learner.learners import LEARNERS, find_learner
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
-from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 _TASK = "wall_following"

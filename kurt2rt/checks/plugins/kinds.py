@@ -16,7 +16,7 @@ from hal.robot_settings import robot_that_task_names
 from hal.settings import SettingsError, content_of
 from hal.settings_files import TASKS, WORLDS, YAML_SUFFIXES
 from kurt2rt.checks.plugins.folder_robots import robots_by_part
-from kurt2rt.experiments.rivals.registry import LEARNERS
+from kurt2rt.core.learner.learners import LEARNERS
 
 
 class KindName(StrEnum):

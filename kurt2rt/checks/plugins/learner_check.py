@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.checks.plugins.hold_promises import broken_of_hold_learner
 from kurt2rt.core.learner.conformance import broken_promises, made_up
 from kurt2rt.core.learner.learner import LearnerFactory, LearnerSetting, Why
 
@@ -34,7 +33,7 @@ def check_learner(
         setting: of a task, with at least two actions.
         now_ns: processor time of this thread, in ns.
     """
-    broken = [*broken_promises(make, setting), *broken_of_hold_learner(make, setting)]
+    broken = broken_promises(make, setting)
     return Finding(broken, "" if broken else _time_to_decide(make, setting, now_ns))
 
 

@@ -16,7 +16,7 @@ from hal.settings import SettingsError
 from hal.settings_by_kind import KindSettings, find_kind
 from hal.settings_files import WORLDS, find_config, plugin_file
 from kurt2rt.checks.plugins.kinds import NoPluginError
-from kurt2rt.experiments.rivals.registry import LEARNERS, find_learner
+from kurt2rt.core.learner.learners import LEARNERS, find_learner
 
 
 class TextKind(StrEnum):

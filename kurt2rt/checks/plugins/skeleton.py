@@ -12,7 +12,7 @@ from behaviors.repertoire_settings import BEHAVIOURS
 from hal.robot_plugins import ROBOTS
 from hal.settings_files import TASKS, WORLDS
 from kurt2rt.checks.plugins.kinds import KINDS, NoPluginError
-from kurt2rt.experiments.rivals.registry import LEARNERS
+from kurt2rt.core.learner.learners import LEARNERS
 
 _NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 _PART_OF_A_TASK = (
@@ -20,7 +20,7 @@ _PART_OF_A_TASK = (
     "`docs/add-a-task.md` of kurt2rt explains the file.\n"
 )
 _USES = {
-    LEARNERS.group: "\n`kurt2rt rivals --learner $name` teaches it and compares it with others.\n",
+    LEARNERS.group: "\n`kurt2rt compare --learner $name` teaches it and compares it with others.\n",
     POLICIES.group: _PART_OF_A_TASK.format(key="policy"),
     JUDGES.group: _PART_OF_A_TASK.format(key="judge"),
     METRICS.group: _PART_OF_A_TASK.format(key="course"),

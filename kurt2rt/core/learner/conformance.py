@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.plugin_frames import place_in_plugin
-from kurt2rt.core.learner.learner import Driven, Learner, LearnerFactory, LearnerSetting, SignalLearner, Why
+from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
 
 _LESSONS, _PROBES = 40, 200
 _FARTHEST_COUNTS = 500.0
@@ -15,8 +15,6 @@ _FARTHEST_COUNTS = 500.0
 
 def broken_promises(make: LearnerFactory, setting: LearnerSetting) -> list[str]:
     """Return the promises that a learner breaks, each in a sentence; empty if it keeps all that were tried.
-
-    A learner of rewards gets rewards among its lessons. It may try out, so it need not ask first or follow a lesson.
 
     Args:
         make: returns a new learner of the setting.
@@ -94,16 +92,14 @@ class _Check:
         self._situations, self._actions, self._probes = made_up(setting)
 
     def asks_at_first(self) -> bool:
-        learner = self._new()
-        return isinstance(learner, SignalLearner) or set(self._decisions(learner, self._probes[:5])) == {None}
+        return set(self._decisions(self._new(), self._probes[:5])) == {None}
 
     def names_actions(self) -> bool:
         return set(self._decisions(self._taught(_LESSONS))) <= {None, *self._setting.actions}
 
     def follows_first_lesson(self) -> bool:
         learner = self._taught(1)
-        follows = {learner.decide(self._situations[0], taught=taught) == self._actions[0] for taught in (True, False)}
-        return isinstance(learner, SignalLearner) or follows == {True}
+        return {learner.decide(self._situations[0], taught=taught) for taught in (True, False)} == {self._actions[0]}
 
     def decides_without_change(self) -> bool:
         asked = self._new()
@@ -144,12 +140,7 @@ class _Check:
 
     def _teach(self, learner: Learner, place: int) -> None:
         why = (Why.ANSWER, Why.CORRECTION, Why.HOLD)[place % 3]
-        if isinstance(learner, SignalLearner) and place % 3:
-            ticks = range(max(0, place - 4), place + 1)
-            driven = [Driven(self._situations[tick], self._actions[tick], place - tick) for tick in reversed(ticks)]
-            learner.signal(driven, 1 if place % 3 == 1 else -1)
-        else:
-            learner.lesson(self._situations[place], self._actions[place], why)
+        learner.lesson(self._situations[place], self._actions[place], why)
 
     def _decisions(self, learner: Learner, probes: NDArray[np.float64] | None = None) -> list[str | None]:
         tried = self._probes if probes is None else probes

@@ -1,8 +1,8 @@
 """Learner: a part that is taught actions for situations, and decides by them; the RLA system is one of many."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from enum import StrEnum
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +21,6 @@ class Why(StrEnum):
     """The teacher held an action; its situation is one of those on the way, ten a second."""
     SHOWN = "shown"
     """The teacher drove by hand, and confirmed that the robot is to drive so."""
-    DROVE = "drove"
-    """The learner itself chose the action, and its teacher let it drive on. Only learners that ask for it get it."""
-    OVERRULED = "overruled"
-    """The learner itself chose the action, and its teacher took over: it is wrong. Only learners that ask get it."""
-
-
-OWN = frozenset({Why.DROVE, Why.OVERRULED})
-"""Occasions on which no teacher named the action."""
 
 
 class Learner(Protocol):
@@ -80,44 +72,8 @@ class LearnerSetting(NamedTuple):
     """Number by which the learner asks, of a meaning and range of its own; None: the learner's default."""
 
 
-@runtime_checkable
-class SignalLearner(Protocol):
-    """Learner that learns from rewards as well: a learner without `signal` gets none, and a teacher is told so."""
-
-    def signal(self, driven: "Sequence[Driven]", value: int) -> None:
-        """Learn from a reward of +1 or -1.
-
-        Args:
-            driven: what the learner did in the second up to the tick that the teacher means, newest first; at least
-                one entry. It is stored with the reward, so that `decide` need not note what it decides.
-            value: +1 or -1.
-        """
-        ...
-
-
-class Driven(NamedTuple):
-    """One tick in which a learner drove."""
-
-    situation: NDArray[np.float64]
-    """Situation of the tick, read-only, shape (d,)."""
-    action: str
-    """Action that drove."""
-    age_ticks: int
-    """Ticks between it and the tick that the teacher means, 0 or more."""
-
-
 LearnerFactory = Callable[[LearnerSetting], Learner]
 """Maker of a learner without knowledge."""
-
-
-class Signal(NamedTuple):
-    """Reward as a learner gets it, and the command that gave it."""
-
-    driven: tuple[Driven, ...]
-    behaviour: str
-    """Behaviour that drove; empty if the task has a single one."""
-    value: int
-    command_id: str
 
 
 class Label(NamedTuple):

@@ -1,7 +1,5 @@
 """Learner level: it drives by learners, with the same minimum time per action as the RLAs' level."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +8,7 @@ from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.learner.learner import Driven, Label, Signal, Why
+from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import LessonUndone, TeachingEvent
@@ -75,20 +73,10 @@ class LearnerLevel:
             why: occasion.
             command_id: id of the command, by which an undo names the lesson.
         """
-        self.team.teach(Label(_read_only_copy(situation), behaviour, action, why, command_id))
+        copied = situation.copy()
+        copied.flags.writeable = False
+        self.team.teach(Label(copied, behaviour, action, why, command_id))
         self._held.allow_switch()
-
-    def signal(self, driven: Sequence[Driven], behaviour: str, value: int, command_id: str) -> None:
-        """Give a reward to the learner of the behaviour that drove.
-
-        Args:
-            driven: ticks that the reward is about, newest first; the situations are copied.
-            behaviour: that drove in them.
-            value: +1 or -1.
-            command_id: id of the command.
-        """
-        copied = tuple(each._replace(situation=_read_only_copy(each.situation)) for each in driven)
-        self.team.teach(Signal(copied, behaviour, value, command_id))
 
     def on_event(self, event: TeachingEvent) -> None:
         """Undo the lesson that an event undoes."""
@@ -99,9 +87,3 @@ class LearnerLevel:
     def _stand(self, cause: DecisionCause) -> Decision:
         self._held.stop()
         return Decision(STANDSTILL, cause, None, None, None)
-
-
-def _read_only_copy(situation: NDArray[np.float64]) -> NDArray[np.float64]:
-    copied = situation.copy()
-    copied.flags.writeable = False
-    return copied

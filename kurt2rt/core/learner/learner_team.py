@@ -1,11 +1,11 @@
-"""Learner team: one learner for each taught behaviour, and the labels and signals that they were given."""
+"""Learner team: one learner for each taught behaviour, and the labels that they were given."""
 
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.learner.learner import Label, Learner, LearnerFactory, LearnerSetting, Signal, SignalLearner
+from kurt2rt.core.learner.learner import Label, Learner, LearnerFactory, LearnerSetting
 from kurt2rt.core.rla.lesson_history import hold_of
 
 _LONGEST_ERROR = 200
@@ -15,7 +15,7 @@ _LONGEST_ERROR = 200
 class LearnerTeam:
     """Learners of one robot, one for each behaviour, as an RLA answers only in its own behaviour.
 
-    Their knowledge is the fold of the standing lessons, so an undo of any of them teaches new learners the others.
+    Their knowledge is the fold of the standing labels, so an undo of any of them teaches new learners the others.
     """
 
     def __init__(self, name: str, make: LearnerFactory, setting: LearnerSetting, behaviours: Sequence[str]) -> None:
@@ -29,7 +29,7 @@ class LearnerTeam:
         """
         self.name = name
         self._make, self._setting, self._behaviours = make, setting, tuple(behaviours)
-        self._lessons: list[Label | Signal] = []
+        self._labels: list[Label] = []
         self.failure = ""
         """Failure of a learner in one line, after which none of them decides; empty without one."""
         self._learners = self._new()
@@ -37,17 +37,7 @@ class LearnerTeam:
     @property
     def labels(self) -> tuple[Label, ...]:
         """Labels that were not undone, oldest first."""
-        return tuple(each for each in self._lessons if isinstance(each, Label))
-
-    @property
-    def lessons(self) -> tuple[Label | Signal, ...]:
-        """Labels and signals that were not undone, oldest first."""
-        return tuple(self._lessons)
-
-    @property
-    def learns_from_signals(self) -> bool:
-        """Return whether its learners take rewards."""
-        return all(isinstance(each, SignalLearner) for each in self._learners.values())
+        return tuple(self._labels)
 
     def learner(self, behaviour: str) -> Learner:
         """Return the learner of a behaviour of the task."""
@@ -72,23 +62,23 @@ class LearnerTeam:
             return None
         return action
 
-    def teach(self, lesson: Label | Signal) -> None:
-        """Give a label or signal to the learner of its behaviour; an error of it becomes `failure`."""
-        self._lessons.append(lesson)
-        self._give(lesson)
+    def teach(self, label: Label) -> None:
+        """Give a label to the learner of its behaviour; an error of it becomes `failure`."""
+        self._labels.append(label)
+        self._give(label)
 
-    def teach_all(self, lessons: Iterable[Label | Signal]) -> None:
-        """Give labels and signals in order."""
-        for lesson in lessons:
-            self.teach(lesson)
+    def teach_all(self, labels: Iterable[Label]) -> None:
+        """Give labels in order."""
+        for label in labels:
+            self.teach(label)
 
     def undo(self, command_id: str) -> None:
-        """Teach new learners all lessons except that of a command; nothing happens if it gave none."""
-        self._keep(lambda lesson: lesson.command_id != command_id)
+        """Teach new learners all labels except those of a command; nothing happens if it gave none."""
+        self._keep(lambda label: label.command_id != command_id)
 
     def undo_hold(self, hold: str) -> None:
         """Teach new learners all labels except those of a hold, also of those that changed no RLA."""
-        self._keep(lambda lesson: hold_of(lesson.command_id) != hold)
+        self._keep(lambda label: hold_of(label.command_id) != hold)
 
     def snapshot(self) -> dict[str, bytes]:
         """Return the snapshot of each behaviour's learner."""
@@ -97,23 +87,19 @@ class LearnerTeam:
     def _new(self) -> dict[str, Learner]:
         return {behaviour: self._make(self._setting) for behaviour in self._behaviours}
 
-    def _keep(self, stays: Callable[[Label | Signal], bool]) -> None:
-        kept = [lesson for lesson in self._lessons if stays(lesson)]
-        if len(kept) == len(self._lessons):
+    def _keep(self, stays: Callable[[Label], bool]) -> None:
+        kept = [label for label in self._labels if stays(label)]
+        if len(kept) == len(self._labels):
             return
-        self._lessons, self.failure, self._learners = kept, "", self._new()
-        for lesson in kept:
-            self._give(lesson)
+        self._labels, self.failure, self._learners = kept, "", self._new()
+        for label in kept:
+            self._give(label)
 
-    def _give(self, lesson: Label | Signal) -> None:
+    def _give(self, label: Label) -> None:
         if self.failure:
             return
-        learner = self._learners[lesson.behaviour]
         try:
-            if isinstance(lesson, Label):
-                learner.lesson(lesson.situation, lesson.action, lesson.why)
-            elif isinstance(learner, SignalLearner):
-                learner.signal(lesson.driven, lesson.value)
+            self._learners[label.behaviour].lesson(label.situation, label.action, label.why)
         except Exception as error:  # noqa: BLE001 - as above: what it would decide now is unknown
             self._fail(error)
 

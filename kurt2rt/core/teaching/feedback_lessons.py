@@ -1,8 +1,6 @@
 """Lessons that judge what the robot did: rewards and appraisals (paper, phases 3 and 4)."""
 
-from kurt2rt.core.learner.learner import Driven
-from kurt2rt.core.learner.learner_level import LearnerLevel
-from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode, ResultCode, refuse
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.events import RlaRewarded
@@ -12,9 +10,6 @@ from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Reward
 from kurt2rt.core.teaching.known_names import require_rla
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
-
-_SIGNAL_TICKS = 100
-"""Ticks up to the one that a reward means, of which a learner is told what it did: one second."""
 
 
 class FeedbackLessons:
@@ -26,14 +21,12 @@ class FeedbackLessons:
         recent: DecisionHistory,
         reinforcement: Reinforcement | None,
         appraisal_lessons: AppraisalLessons | None,
-        learner: LearnerLevel | None,
     ) -> None:
         """Connect the RLAs, the decisions that feedback is about, and the optional parts of a `LessonBuilder`."""
         self._system = system
         self._recent = recent
         self._reinforcement = reinforcement
         self._appraisal_lessons = appraisal_lessons
-        self._learner = learner
 
     def reward(self, command: Reward, origin: Origin) -> LessonResult:
         """Return the outcome and event of a reward for the decision of a remembered tick.
@@ -41,8 +34,6 @@ class FeedbackLessons:
         Raises CommandRefusedError for a tick that was forgotten, drove slowly or had no RLA that answered.
         """
         meant = self._known_tick(command.decision_tick)
-        if self._learner is not None:
-            return self._signal(self._learner, command, meant, origin)
         rla_id = self._recent.driving_rla(meant)
         if rla_id is None:
             raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
@@ -63,24 +54,6 @@ class FeedbackLessons:
         meant = self._known_tick(command.decision_tick)
         self._require_full_speed(meant)
         return self._appraisal_lessons.build(command, meant, origin)
-
-    def _signal(self, learner: LearnerLevel, command: Reward, meant: int, origin: Origin) -> LessonResult:
-        """Give a reward to a learner; the journal has no row of it, because it changes no RLA."""
-        if not learner.team.learns_from_signals:
-            raise CommandRefusedError(RefusalCode.NO_SIGNALS)
-        recent = self._recent
-        if not recent.learner_action(meant):
-            raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
-        self._require_full_speed(meant)
-        behaviour = recent.behaviour(meant)
-        driven = [
-            Driven(recent.situation(tick), recent.learner_action(tick), meant - tick)
-            for tick in range(meant, meant - _SIGNAL_TICKS, -1)
-            if recent.contains(tick) and recent.learner_action(tick) and recent.behaviour(tick) == behaviour
-        ]
-        learner.signal(driven, behaviour, command.value, origin.command_id)
-        code = ResultCode.LEARNER_REWARDED if command.value > 0 else ResultCode.LEARNER_PUNISHED
-        return LessonResult(Outcome.of(code), None)
 
     def _require_full_speed(self, tick: int) -> None:
         """Raise CommandRefusedError if a stored tick was slow: values and critic are about driving at full speed."""

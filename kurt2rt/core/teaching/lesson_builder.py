@@ -69,7 +69,7 @@ class LessonBuilder:
         self._mid = mid
         self._holds_yield = holds_yield
         self._learner = learner
-        self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons, learner)
+        self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons)
         self._undos = UndoLessons(level, appraisal_lessons, mid, learner)
         self.corrections_at: Counter[str] = Counter()
         """Number of corrections by level."""
@@ -94,6 +94,8 @@ class LessonBuilder:
             case DeleteRla(rla_id=rla_id):
                 deleted = rla_outcome(ResultCode.RLA_DELETED, require_rla(rla_id, self._system))
                 return LessonResult(deleted, RlaDeleted(rla_id, origin))
+            case Reward() if self._learner is not None:
+                raise CommandRefusedError(RefusalCode.NO_SIGNALS)
             case Reward():
                 return self._feedback.reward(command, origin)
             case Appraise():

@@ -84,7 +84,7 @@ class StuckDetector:
 class Episode(ABC):
     """Simulation, runtime, task metric, stuck detection and counters of one drive, one world step a tick.
 
-    A subclass is a kind of drive: lesson, exam, tour, goals or surprise. Each tick calls, in this order: the counters
+    A subclass is a kind of drive: lesson, exam, tour or goals. Each tick calls, in this order: the counters
     of this class, `on_tick` of the subclass, the trail, and once a second `on_second`.
     """
 

@@ -69,22 +69,16 @@ class FaultySensor(RobotProxy):
         self._chance = random.Random(f"{kind} sensor {place}")
         self._measured: int | None = None
         self._reading = 0
-        self.true_counts = 0
-        """Reading of the working sensor in the last tick, in counts."""
-        self.counts = 0
-        """Reading of the broken sensor in the last tick, in counts."""
 
     def sense(self, now_s: float) -> SensorReadings:
         """Return the readings of the robot at `now_s`, in s, with that of the broken sensor."""
         readings = self._robot.sense(now_s)
         counts, place = readings.infrared_counts, self._place
-        self.true_counts = self.counts = counts[place]
         if now_s < self._from_s:
             return readings
-        if self.true_counts != self._measured:  # a new measurement
-            self._reading = self._read(self.true_counts)
-            self._measured = self.true_counts
-        self.counts = self._reading
+        if counts[place] != self._measured:  # a new measurement
+            self._reading = self._read(counts[place])
+            self._measured = counts[place]
         return readings._replace(infrared_counts=(*counts[:place], self._reading, *counts[place + 1 :]))
 
     def _read(self, true_counts: int) -> int:

@@ -1,7 +1,7 @@
 """Training run: a scripted teacher teaches the robot in lockstep."""
 
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import accumulate
 
@@ -26,7 +26,6 @@ from kurt2rt.experiments.lockstep.teacher_of_plan import teacher_of
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.runtime import Runtime
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 
@@ -148,13 +147,10 @@ class TrainingRun(Episode):
         seed: int,
         session: str,
         on_progress: Callable[[float], None],
-        answering: BasicTeacher | None = None,
     ) -> None:
-        """Begin the run; `answering`: teacher of phases 1 and 2, None: the task's own."""
         task, settings, period_s = runtime.task, runtime.robot, runtime.robot.cycle_s
         teaching = task.teaching
-        if answering is None:
-            answering = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+        answering = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
         self._teacher = teacher_of(plan, task, settings, answering, seed=seed, session=session)
         self._dispatcher = None
         if task.mid is not None:
@@ -188,11 +184,6 @@ class TrainingRun(Episode):
     def presses(self) -> int:
         """Number of presses that the teacher has sent."""
         return len(self._workload.press_ticks)
-
-    @property
-    def correction_ticks(self) -> Sequence[int]:
-        """Ticks in which the teacher sent a correction, or began to hold an action."""
-        return self._workload.correction_ticks
 
     async def drive(self) -> None:
         """Teach all phases of the plan."""

@@ -66,8 +66,6 @@ class TeacherWorkload:
         self._confirmed = False
         self.press_ticks: list[int] = []
         """Tick of each press, in order; one tick may have several."""
-        self.correction_ticks: list[int] = []
-        """Tick of each correction, and of the begin of each hold."""
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
@@ -115,7 +113,6 @@ class TeacherWorkload:
     def _set(self, place: int, minute: WorkloadMinute, tick: int) -> None:
         before = self._minutes[place]
         self.press_ticks.extend([tick] * (minute.presses - before.presses))
-        self.correction_ticks.extend([tick] * (minute.corrections - before.corrections))
         self._minutes[place] = minute
 
     def _place(self, tick: int) -> int:

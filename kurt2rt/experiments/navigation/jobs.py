@@ -7,8 +7,8 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, Strategy
 from kurt2rt.experiments.navigation.robot_day import teach_and_send
-from kurt2rt.experiments.route.lesson import copy_knowledge
 from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.knowledge.journal.loading import copy_knowledge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

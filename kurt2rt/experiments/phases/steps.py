@@ -85,15 +85,6 @@ def phases_of(task: TaskSettings) -> PhasesSettings:
     return task.phases
 
 
-def reward_plan(task: TaskSettings, lasts_s: float, purpose: str) -> LessonPlan:
-    """Return the plan of a teacher who answers, and rewards by the task's judge, for `lasts_s` seconds.
-
-    `purpose`: another one begins at another place, with other noise. Raises hal.settings.SettingsError if the task
-    has no judge or no section on phases.
-    """
-    return _Plans(task, phases_of(task)).rewards(lasts_s, purpose, "judge")
-
-
 @dataclass(frozen=True, slots=True)
 class _Plans:
     """Lesson plans of one task's steps. Robots that are compared are rescued by one rule in all phases."""

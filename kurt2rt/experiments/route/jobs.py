@@ -4,10 +4,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
-from kurt2rt.experiments.route.lesson import copy_knowledge, route_of_task, teach_route
+from kurt2rt.experiments.route.lesson import route_of_task, teach_route
 from kurt2rt.experiments.route.outcome import BasicOutcome, RouteOutcome
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.knowledge.journal.loading import copy_knowledge
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

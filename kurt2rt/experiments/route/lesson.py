@@ -20,7 +20,6 @@ from kurt2rt.experiments.route.outcome import Place, RouteDrive, RouteOutcome, W
 from kurt2rt.experiments.route.route_monitor import RouteMonitor
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.experiments.study.provenance import Provenance
-from kurt2rt.knowledge.journal.journal import Journal
 
 _PLACE_STRIDE = 2
 """Points of a drive's trail from one that is kept to the next: 0.2 s."""
@@ -140,15 +139,6 @@ def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> T
     if decisions is not None:
         update["decisions"] = decisions
     return task.model_copy(update={"course": course.model_copy(update=update)})
-
-
-def copy_knowledge(source: Path, path: Path) -> None:
-    """Copy a knowledge file to `path`, where no file may be, also while another process writes it.
-
-    Raises KnowledgeError.
-    """
-    with Journal.read_only(source) as journal:
-        path.write_bytes(journal.image())
 
 
 def _named(report: Report, plan: LessonPlan) -> Report:

@@ -2,11 +2,9 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoops, choose_witnesses
 from kurt2rt.experiments.search.jobs import SearchJob, label_of
-from kurt2rt.experiments.search.learner_job import LearnerSearchJob
 from kurt2rt.experiments.search.settings import Robots, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace, Values
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
@@ -50,13 +48,11 @@ class JobMaker:
         return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.loops.in_batch)))
 
     def _jobs(self, part: str, label: str, values: Values, robots: Robots) -> tuple[SearchJob, ...]:
-        jobs, task, rival = [], self.space.task(values), self.space.rival(values)
+        jobs, task = [], self.space.task(values)
         loops = DriveLoops(self.search.lessons, self.search.exams)
         for seed in robots.seeds.seeds:
             worlds = robots.worlds_of(seed)
             own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
-            source = "" if rival is None else rival.source
-            made = self.fingerprints.of(own, (task.teaching.world, *worlds), learner=source)
-            new = SearchJob if rival is None else partial(LearnerSearchJob, rival=rival)
-            jobs.append(new(part=part, label=label, task=own, seed=seed, loops=loops, made_of=made, **self.parts))
+            made = self.fingerprints.of(own, (task.teaching.world, *worlds))
+            jobs.append(SearchJob(part=part, label=label, task=own, seed=seed, loops=loops, made_of=made, **self.parts))
         return tuple(jobs)

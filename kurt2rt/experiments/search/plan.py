@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
@@ -13,14 +12,10 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.search.job_maker import JobMaker
 from kurt2rt.experiments.search.jobs import SearchJob
-from kurt2rt.experiments.search.learner_job import LearnerSearchJob
 from kurt2rt.experiments.search.settings import CheckSettings, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
-
-DECIDING = (SearchJob, LearnerSearchJob)
-"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +30,7 @@ class SearchPlan:
 
     @property
     def check(self) -> CheckSettings:
-        """Robots and worlds of the check. Raises hal.settings.SettingsError if the search has none."""
-        if self.search.check is None:
-            raise SettingsError("names no check", where=f"search {self.search.name}", do="add the key check")
+        """Robots and worlds of the check."""
         return self.search.check
 
     @property
@@ -51,7 +44,7 @@ def make_plan(
     parts: JobParts,
     *,
     changes: Mapping[str, str],
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(SearchJob, type(factory)),
 ) -> SearchPlan:
     """Check task, space and worlds, and return the plan.
 
@@ -68,7 +61,7 @@ def make_plan(
     factory = parts["factory"]
     space = TaskSpace(search, changes, load_teacher(search.teacher))
     task = space.task(space.shipped)
-    robots = [(each, seed) for each in (search.search, search.check) if each for seed in each.seeds.seeds]
+    robots = [(each, seed) for each in (search.search, search.check) for seed in each.seeds.seeds]
     exams = [(world, seed) for each, seed in robots for world in each.worlds_of(seed)]
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
     factory.require_worlds(*worlds)

@@ -9,7 +9,6 @@ from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.task_settings import Name
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
-from kurt2rt.experiments.rivals.tuned import GATE
 
 SEED = "SEED"
 """Part of a world's name that stands for the robot's seed."""
@@ -56,8 +55,8 @@ class CheckSettings(Robots):
 class Dimension(Settings):
     """Key of the task's file, and the values to try."""
 
-    key: Annotated[str, Field(pattern=rf"^({GATE}|[a-z_0-9]+(\.[a-z_0-9]+)+)$")]
-    """Levels with dots between them; a number is a place in a list, from 0. `gate` is that of the learner."""
+    key: Annotated[str, Field(pattern=r"^[a-z_0-9]+(\.[a-z_0-9]+)+$")]
+    """Levels with dots between them; a number is a place in a list, from 0."""
     kind: Literal["float", "int"] = "float"
     low: float
     high: float
@@ -73,15 +72,6 @@ class Dimension(Settings):
         if self.kind == "int" and not (self.low.is_integer() and self.high.is_integer()):
             raise ValueError(f"low and high of an int must be whole numbers (got {self.low:g} and {self.high:g})")
         return self
-
-
-class LearnerToSearch(Settings):
-    """Learner behind the door, whose numbers are searched."""
-
-    name: str
-    """Name, or `module:Name`."""
-    gate: float
-    """Number by which it asks in the first trial, of its own unit: the value of the key `gate`."""
 
 
 class SearchSettings(Settings):
@@ -100,11 +90,8 @@ class SearchSettings(Settings):
     at_once: Annotated[int, Field(ge=1, le=64)] = 4
     """Number of trials that are chosen together, on what the trials before them showed."""
     sampler_seed: Annotated[int, Field(ge=0, le=1_000_000)] = 0
-    learner: LearnerToSearch | None = None
-    """Learner that is taught in place of the RLAs; None: the RLAs."""
     search: Robots
-    check: CheckSettings | None = None
-    """None: the best trial is taken as it is, as for rivals, which `kurt2rt rivals` examines on robots of its own."""
+    check: CheckSettings
     space: Annotated[tuple[Dimension, ...], Field(min_length=1)]
 
     @model_validator(mode="after")
@@ -112,16 +99,14 @@ class SearchSettings(Settings):
         for seed in self.search.seeds.seeds:
             if not may_be_searched(seed):
                 raise ValueError(f"search.seeds: {seed} is for reports (got {seed}, allowed 0-999 and 3000-3999)")
-        for seed in self.check.seeds.seeds if self.check else ():
+        for seed in self.check.seeds.seeds:
             if may_be_searched(seed):
                 raise ValueError(f"check.seeds: {seed} is for searches (got {seed}, allowed 1000-2999, 4000 and above)")
         generated = {world for world in self.search.worlds if re.search(r"-\d+$", world)}
-        both = sorted(generated & set(self.check.worlds)) if self.check else []
+        both = sorted(generated & set(self.check.worlds))
         if both:
             raise ValueError(f"check.worlds: {both[0]} is a world of the search; give another, or one with {SEED}")
         keys = [each.key for each in self.space]
-        if GATE in keys and self.learner is None:
-            raise ValueError(f"space: {GATE} is a number of a learner, and no learner is named")
         twice = next((key for key in keys if keys.count(key) > 1), None)
         if twice:
             raise ValueError(f"space: the key {twice} stands twice")

@@ -9,8 +9,6 @@ from typing import Any
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import TeacherProfile
-from kurt2rt.experiments.rivals.rival import Rival
-from kurt2rt.experiments.rivals.tuned import GATE
 from kurt2rt.experiments.search.settings import Dimension, SearchSettings
 
 Values = Mapping[str, float]
@@ -85,36 +83,14 @@ class TaskSpace:
         self._search, self._changes, self._profile = search, changes, profile
         task = load_task(search.task, changes=changes)
         self._content = content_of_task(task)
-        self.shipped: Values = {each.key: self._shipped_value(each.key) for each in search.space}
+        self.shipped: Values = {each.key: value_at(self._content, each.key) for each in search.space}
         for each in search.space:
             self._require_free(each)
         self._require_fit()
-        self.rival(self.shipped)
 
     def changes(self, values: Values) -> dict[str, Any]:
         """Return what a trial changes in the task's file, by dotted key."""
-        return changes_of_values(self._content, {key: value for key, value in values.items() if key != GATE})
-
-    def rival(self, values: Values) -> Rival | None:
-        """Return the learner of a trial; None: the RLAs are taught.
-
-        Raises NoLearnerError, and SettingsError for a learner of holds or rewards.
-        """
-        learner = self._search.learner
-        if learner is None:
-            return None
-        rival = Rival.of_learner(learner.name, values.get(GATE, learner.gate))
-        if rival.is_held or rival.is_rewarded:
-            raise SettingsError(
-                f"{learner.name} is not taught by presses", where="learner", do="name one of the presses league"
-            )
-        return rival
-
-    def _shipped_value(self, key: str) -> float:
-        if key == GATE:
-            assert self._search.learner is not None, "the schema refuses the key without a learner"
-            return self._search.learner.gate
-        return value_at(self._content, key)
+        return changes_of_values(self._content, values)
 
     def task(self, values: Values) -> TaskSettings:
         """Return the task of a trial, with its teacher. Raises SettingsError if the values do not fit together."""
@@ -133,8 +109,6 @@ class TaskSpace:
                 where="space",
                 do="widen the range",
             )
-        if key == GATE:
-            return
         other = dimension.low if shipped != dimension.low else dimension.high
         tried = rounded(dimension, other)
         if value_at(content_of_task(self.task({key: tried})), key) != tried:

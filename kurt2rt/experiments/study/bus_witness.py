@@ -77,8 +77,7 @@ class BusWitnessJob(StudyJob):
         """
         batch, bus = (knowledge.with_name(name) for name in ("batch", "bus"))
         outcomes = [await self.of.measure(batch, report), await replace(self.of, loops=ON_BUS).measure(bus, report)]
-        times = set(self.of.machine_times)
-        differing = list(_differing_parts("", *(json.loads(each.model_dump_json(exclude=times)) for each in outcomes)))
+        differing = list(_differing_parts("", *(json.loads(each.model_dump_json()) for each in outcomes)))
         taught = [read_knowledge(file, self.robot, self.task) if file.exists() else None for file in (batch, bus)]
         if taught[0] != taught[1]:
             differing.append("lessons or statistics in the knowledge file")

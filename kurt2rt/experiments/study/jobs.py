@@ -34,8 +34,6 @@ class SimulationJob(ABC):
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
     replaces_others: ClassVar[bool] = False
-    machine_times: ClassVar[frozenset[str]] = frozenset()
-    """Names of fields of the outcome with times of the machine, which differ from run to run."""
     gives_lesson: ClassVar[bool] = False
     """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
     gives_exams: ClassVar[bool] = False

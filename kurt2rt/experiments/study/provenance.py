@@ -32,7 +32,7 @@ class Provenance(Settings):
     plugins: str = ""
     """Hash of the plug-ins that the task names; empty without any."""
     learner: str = ""
-    """Hash of a rival's name, gate and source, and of the packages that it computes with; empty outside of leagues."""
+    """Hash of a learner's name, gate and source, and of the packages that it computes with; empty for RLAs."""
 
     def differences(self, other: "Provenance") -> list[str]:
         """Return the names of the fields that differ."""

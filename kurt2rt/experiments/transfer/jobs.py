@@ -5,21 +5,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam
-from kurt2rt.experiments.lockstep.curriculum import Report, run_drives, run_lesson
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.route.lesson import copy_knowledge
+from kurt2rt.experiments.study.drive import Drive, Examiner
 from kurt2rt.experiments.study.jobs import StudyJob
-from kurt2rt.experiments.transfer.outcome import Checkpoint, Drive, HomeOutcome, TransferOutcome, drive_of
+from kurt2rt.experiments.transfer.outcome import Checkpoint, HomeOutcome, TransferOutcome
 from kurt2rt.experiments.transfer.variants import Variant
-from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
 
 def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[int], presses: int) -> int:
@@ -35,47 +29,6 @@ def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[i
     if presses >= len(press_ticks):
         return len(events)
     return sum(event.origin.tick <= press_ticks[presses] for event in events)
-
-
-def verdict_by(policy: Drive, exam: ExamResult, success: SuccessSettings) -> ExamVerdict:
-    """Return the verdict on a drive by the policy's own one; not judged if the policy did not pass."""
-    return exam.verdict(policy.progress, success) if policy.passed else ExamVerdict.NOT_JUDGED
-
-
-@dataclass(frozen=True, slots=True)
-class Examiner:
-    """Examiner of one robot in one world, by the policy's own drive from the same start."""
-
-    factory: SimulationFactory
-    robot: RobotSettings
-    task: TaskSettings
-    world: str
-    seed: int
-    report: Report
-    loop: DriveLoop = DriveLoop.BUS
-
-    async def drive_policy(self) -> Drive:
-        """Return the policy's own drive; it passes if it has no collision, alarm or standstill.
-
-        Raises SettingsError if task and world do not fit.
-        """
-        policy = await self._drive((), teacher_policy=True)
-        return drive_of(policy, policy.verdict(policy.progress, self.task.exam.success))
-
-    async def examine(self, events: Sequence[TeachingEvent], policy: Drive) -> Drive:
-        """Return the drive of a robot with the knowledge in `events`, judged by the policy's drive.
-
-        A world in which the policy itself does not pass is no measure, and the drive is not judged.
-
-        Raises SettingsError, LessonLostError.
-        """
-        exam = await self._drive(events, teacher_policy=False)
-        return drive_of(exam, verdict_by(policy, exam, self.task.exam.success))
-
-    async def _drive(self, events: Sequence[TeachingEvent], *, teacher_policy: bool) -> ExamResult:
-        exam = BatchExam(ExamSetup(self.world, self.seed, teacher_policy), events)
-        (result,) = await run_drives(self.factory, self.robot, self.task, [exam], self.report, self.loop)
-        return result
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -118,7 +71,7 @@ class HomeJob(StudyJob):
             lessons=len(events),
             rlas=len(lesson.rlas),
             knowledge_hash=lesson.knowledge_hash,
-            drive=await at_home.examine(events, policy),
+            drive=await at_home.examine(policy, events),
             policy=policy,
         )
 
@@ -209,7 +162,7 @@ class TransferJob(StudyJob):
             if checkpoints and checkpoints[-1].lessons == lessons:  # the same knowledge drives the same exam
                 drive = checkpoints[-1].drive
             else:
-                drive = await there.examine(events[: known + lessons], policy)
+                drive = await there.examine(policy, events[: known + lessons])
             taught_s = ticks[presses] * self.robot.cycle_s if presses < len(ticks) else lesson.teaching_s
             checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
         return checkpoints
@@ -219,7 +172,7 @@ class TransferJob(StudyJob):
         before = self.results.read(self.home, HomeOutcome)
         if self.variant.knows_home and len(events) == before.lessons:
             return before.drive
-        return await _examiner(self, self.task, report).examine(events, before.policy)
+        return await _examiner(self, self.task, report).examine(before.policy, events)
 
 
 def _examiner(job: StudyJob, task: TaskSettings, report: Report) -> Examiner:

@@ -3,50 +3,8 @@
 from math import inf
 
 from hal.settings import Settings
-from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.study.drive import Drive
 from kurt2rt.experiments.study.provenance import Provenance
-
-
-class Drive(Settings):
-    """Drive without a teacher."""
-
-    verdict: ExamVerdict
-    """Verdict by the policy's own drive from the same start."""
-    duration_s: float
-    progress: float
-    """Progress by the task's metric, such as laps or m."""
-    collisions: int
-    stuck: bool
-    alarm: str
-    share_unknown: float
-    """Ratio of ticks in unknown situations, 0 to 1."""
-    right_share: float = 0.0
-    """Ratio of the junctions that were left as required, 0 to 1; 0 without junctions."""
-
-    @property
-    def passed(self) -> bool:
-        """True if the drive was judged and passed."""
-        return self.verdict is ExamVerdict.PASSED
-
-    @property
-    def judged(self) -> bool:
-        """True if the policy's own drive is a measure."""
-        return self.verdict is not ExamVerdict.NOT_JUDGED
-
-
-def drive_of(exam: ExamResult, verdict: ExamVerdict) -> Drive:
-    """Return the part of an exam that is stored."""
-    return Drive(
-        verdict=verdict,
-        duration_s=exam.duration_s,
-        progress=exam.progress,
-        collisions=exam.collisions,
-        stuck=exam.stuck,
-        alarm=exam.alarm,
-        share_unknown=exam.share_unknown,
-        right_share=exam.right_share,
-    )
 
 
 class Checkpoint(Settings):

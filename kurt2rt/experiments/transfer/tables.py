@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator
 
 from kurt2rt.experiments.lockstep.report import wilson_interval
+from kurt2rt.experiments.study.drive import Drive
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.study.targets_table import targets_table
-from kurt2rt.experiments.transfer.outcome import Drive
 from kurt2rt.experiments.transfer.plan import TransferStudy, TransferSummary
 from kurt2rt.experiments.transfer.verdicts import median_of, verdicts
 

@@ -86,6 +86,15 @@ def _require_integrity(journal: Journal) -> None:
         raise errors[0]
 
 
+def copy_knowledge(source: Path, path: Path) -> None:
+    """Copy a knowledge file to `path`, where no file may be, also while another process writes it.
+
+    Raises KnowledgeError.
+    """
+    with Journal.read_only(source) as journal:
+        path.write_bytes(journal.image())
+
+
 def read_lessons(
     path: Path, settings: RobotSettings, task: TaskSettings, *, in_writer_process: bool = False
 ) -> list[TeachingEvent]:

@@ -19,7 +19,6 @@ from kurt2rt.core.teacher_settings import (
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
-from kurt2rt.teacher.scripted.teacher_in_charge import Charge, TeacherInCharge
 
 
 def build_teacher(
@@ -54,19 +53,6 @@ def build_teacher(
         session=session,
         corrects=profile.corrects_by != "nothing",
     )
-
-
-def build_teacher_in_charge(
-    task: TaskSettings, robot: RobotSettings, actions: Sequence[str], charge: Charge, *, seed: int, session: str
-) -> TeacherInCharge:
-    """Build a teacher with the times and limits of a task's own, who takes charge of the robot.
-
-    `charge`: rule by which control passes. The other arguments and the errors are those of `build_teacher`.
-    """
-    period_s = robot.cycle_s
-    person = task.teaching.profile.person or _without_limits(task.teaching.teacher, period_s)
-    sense = _task_sense(task, robot, actions)
-    return TeacherInCharge(person, sense, charge, period_s=period_s, seed=seed, session=session)
 
 
 def _task_sense(task: TaskSettings, robot: RobotSettings, actions: Sequence[str]) -> TaskSense:

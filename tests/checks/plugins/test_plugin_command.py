@@ -240,7 +240,7 @@ def test_new_refuses_a_name_that_is_taken(
         (("repertoires", "school/basic"), "kurt2rt/robots/school/data/repertoires/basic.yaml"),
         (("situations", "basic"), "config/situations/basic.yaml"),
         (("policies", "sector_fleeing"), "behaviors/policies/sector_fleeing.py"),
-        (("learners", "k-nn"), "kurt2rt/experiments/rivals/learners/k_nearest.py"),
+        (("learners", "k-nn"), "kurt2rt/core/learner/neighbours.py"),
         (("policies", "parts_base:Turning"), "tests/plugin_parts.py"),
         (("behaviours", "parts_base:Wiggling"), "tests/plugin_parts.py"),
         (("worlds", "hall"), "tests/plugin_parts.py"),

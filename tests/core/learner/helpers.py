@@ -1,11 +1,9 @@
 """Small learners over a situation of one number, and their setting."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.learner.learner import Driven, Label, LearnerSetting, Why
+from kurt2rt.core.learner.learner import Label, LearnerSetting, Why
 from kurt2rt.core.learner.packing import pack, unpack
 
 SETTING = LearnerSetting(
@@ -37,14 +35,6 @@ class Parrot:
 
     def restore(self, data: bytes) -> None:
         self.said = unpack(data, 1)[1]
-
-
-class Dog(Parrot):
-    """Parrot that says the action of the newest good reward."""
-
-    def signal(self, driven: Sequence[Driven], value: int) -> None:
-        if value > 0:
-            self.said.append(driven[0].action)
 
 
 def label(place: float, action: str, command_id: str, behaviour: str = "", why: Why = Why.ANSWER) -> Label:

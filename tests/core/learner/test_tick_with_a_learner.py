@@ -18,7 +18,7 @@ from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, ReplaceAction, Teach, Undo
+from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.explain.collect import collect_facts
@@ -163,11 +163,18 @@ def test_undo_of_a_hold_takes_all_of_its_labels_back(robot: TaughtRobot) -> None
     assert [each.command_id for each in robot.team.labels] == ["t-1"]
 
 
-@pytest.mark.parametrize("command", [DeleteRla("d-1", "Ann", 1), ReplaceAction("r-1", "Ann", 1, "forward")])
-def test_command_about_an_rla_is_refused(robot: TaughtRobot, command: Command) -> None:
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        (DeleteRla("d-1", "Ann", 1), RefusalCode.NO_RLA_DECIDES),
+        (ReplaceAction("r-1", "Ann", 1, "forward"), RefusalCode.NO_RLA_DECIDES),
+        (Reward("r-1", "Ann", 1), RefusalCode.NO_SIGNALS),
+    ],
+)
+def test_command_for_rlas_alone_is_refused(robot: TaughtRobot, command: Command, code: RefusalCode) -> None:
     robot.go_on(20)
     robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
-    assert robot.go_on(1, command).results[0].outcome.code is RefusalCode.NO_RLA_DECIDES
+    assert robot.go_on(1, command).results[0].outcome.code is code
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from hal.guard_reason import GuardReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.report import render_exams
-from kurt2rt.experiments.surprise.drive import StuckSensor
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
@@ -78,7 +78,8 @@ class StageWithABrokenSensor(Kurt2SimulationFactory):
 
     def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
         simulation = super().open(world, seed, purpose)
-        simulation.robot = StuckSensor(simulation.robot, SENSOR, 1.0)  # type: ignore[assignment]
+        frozen = FaultySensor(simulation.robot, ROBOT.infrared, SENSOR, FaultKind.FROZEN, 1.0)
+        simulation.robot = frozen  # type: ignore[assignment]
         return simulation
 
 

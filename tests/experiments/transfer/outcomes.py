@@ -1,10 +1,11 @@
 """Outcomes of the transfer study, written by hand."""
 
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.study.drive import Drive
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.transfer.outcome import Checkpoint, Drive, HomeOutcome, TransferOutcome
+from kurt2rt.experiments.transfer.outcome import Checkpoint, HomeOutcome, TransferOutcome
 from kurt2rt.experiments.transfer.plan import (
     NewWorlds,
     TransferPlan,

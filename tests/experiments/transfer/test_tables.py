@@ -5,15 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.task_settings import SuccessSettings
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.verdict import Target
-from kurt2rt.experiments.transfer.jobs import verdict_by
 from kurt2rt.experiments.transfer.outcome import TransferOutcome
 from kurt2rt.experiments.transfer.tables import all_tables, curve_table, drive_text, teaching_table
 from kurt2rt.experiments.transfer.verdicts import median_of, verdicts
-from tests.experiments.results import exam_result
 from tests.experiments.transfer.outcomes import NOT_JUDGED, drive, robot, study_of
 
 RIGHT_AT_ONCE = ("right", "right", "right")
@@ -85,18 +81,6 @@ def test_verdicts_of_robots_that_are_never_right_are_missed(tmp_path: Path) -> N
 def test_worlds_without_a_judged_exam_have_no_verdict(tmp_path: Path) -> None:
     study = study_of(Results(tmp_path), *robots((NOT_JUDGED,) * 3))
     assert list(verdicts(study.summaries[0], study)) == []
-
-
-@pytest.mark.parametrize(
-    ("policy", "verdict"),
-    [("right", ExamVerdict.PASSED), ("collided", ExamVerdict.NOT_JUDGED), ("stuck", ExamVerdict.NOT_JUDGED)],
-)
-def test_world_whose_policy_fails_judges_no_robot(policy: str, verdict: ExamVerdict) -> None:
-    assert verdict_by(drive(policy), exam_result(laps=2.0), SuccessSettings()) is verdict
-
-
-def test_robot_that_fails_where_the_policy_passes_failed() -> None:
-    assert verdict_by(drive(), exam_result(laps=2.0, collisions=1), SuccessSettings()) is ExamVerdict.FAILED
 
 
 def test_curve_shows_the_policy_of_all_robots(tmp_path: Path) -> None:

@@ -1,0 +1,133 @@
+"""`kurt2rt compare`."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_kind import simulations_of
+from hal.robot_settings import load_robot_of
+from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.executor_option import OnOption
+from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    DEFAULT_OF_THE_TASK,
+    Changes,
+    Jobs,
+    RobotName,
+    changes_of,
+    parse_seeds,
+    results_option,
+    task_option,
+    teacher_option,
+)
+from kurt2rt.cli.shards import ShardOption, run_shard
+from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.task_robot import require_robot_of
+from kurt2rt.core.task_settings import load_task, taught_by_named
+from kurt2rt.experiments.study.loop_choice import LoopRequest
+from kurt2rt.platform.text_table import print_whole
+
+_AFTER = (10, 20, 40)
+
+
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt compare`."""
+
+    learner: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME[=GATE]",
+            help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
+            "number by which it asks. May be given again. Default: 1-nn, k-nn, weighted-vote, svm, tree.",
+            show_default=False,
+        ),
+    ] = None
+    task: Annotated[list[str] | None, task_option("Repeat for several. Default: wall_following.")] = None
+    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4106-4125.")] = "4106-4125"
+    after: Annotated[
+        list[int] | None,
+        typer.Option(
+            min=1,
+            help="Number of presses after which the robot is examined, besides the end of its lesson; may be given "
+            f"again. Default: {', '.join(map(str, _AFTER))}.",
+            show_default=False,
+        ),
+    ] = None
+    changes: Changes = None
+    jobs: Jobs = ALL_PROCESSORS
+    shard: ShardOption = None
+    on: OnOption = None
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
+    out: Annotated[Path, results_option("results/compare")] = Path("results/compare")
+    robot_settings: RobotName = None
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def compare(options: _Options) -> None:
+    """Compare learners of other kinds with the RLA system, taught by the same teacher.
+
+    Each learner is taught as each robot, through the same lessons, guard and
+    sensors, and examined without its teacher after 10, 20 and 40 presses and
+    at the end. The tables show the robots that pass, the teacher's effort, and
+    collisions while it was taught; each row is compared with the RLA system
+    robot by robot.
+
+    For example, all learners of the project; one with another gate in two
+    tasks; your own:
+
+        kurt2rt compare
+        kurt2rt compare --learner k-nn=0.8 --task fleeing --task eight
+        kurt2rt compare --learner mine:Mine
+
+    Results are kept in --out with hashes of what made them; a run that was
+    interrupted goes on where it was. docs/add-a-learner.md says how to write
+    a learner.
+    """
+    # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
+    from kurt2rt.experiments.compare.figures import draw_curves
+    from kurt2rt.experiments.compare.plan import make_plan, read_comparison
+    from kurt2rt.experiments.compare.pupil import PUPILS, Pupil
+    from kurt2rt.experiments.compare.tables import all_tables
+    from kurt2rt.experiments.study.eligibility import reasons_against_judging
+    from kurt2rt.experiments.study.jobs import JobParts
+    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.study.table import as_rich
+
+    names = dict.fromkeys(options.task or ("wall_following",))
+    robot = load_robot_of(options.robot_settings, next(iter(names)))
+    tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
+    for name, task in zip(names, tasks, strict=True):
+        require_robot_of(task, name, robot)
+    results = Results(options.out)
+    plan = make_plan(
+        tasks,
+        [Pupil.parse(name) for name in options.learner or PUPILS],
+        parse_seeds(options.seeds),
+        sorted(set(options.after or _AFTER)),
+        JobParts(factory=simulations_of(robot), robot=robot, results=results),
+        loops=requested_loops(options.lessons, options.exams),
+    )
+    command = typed_command("compare", options, {"seeds": options.seeds})
+    if options.shard is not None:
+        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
+        return
+    figure, not_judged = options.out / "compare.png", list(reasons_against_judging(plan.seeds))
+    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
+        bar.say("figure")
+        comparison = read_comparison(plan, results)
+        draw_curves(comparison, figure)
+    tables = list(all_tables(comparison))
+    if options.as_json:
+        print_json({"tables": tables_of(tables), "not_judged": not_judged, "figure": figure})
+        return
+    print_whole(console_of(), *map(as_rich, tables), *not_judged, f"figure  {figure}")

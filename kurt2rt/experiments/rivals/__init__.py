@@ -1,1 +1,0 @@
-"""Experiments with learners that are no RLA systems, taught by the same teacher."""

@@ -1,1 +1,0 @@
-"""Agents of deep reinforcement learning, trained by the judge of a task."""

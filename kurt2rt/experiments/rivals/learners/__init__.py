@@ -1,1 +1,0 @@
-"""Learners of other kinds than RLA systems; each module holds one."""

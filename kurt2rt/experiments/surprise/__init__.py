@@ -1,1 +1,0 @@
-"""Surprise study: ends of RLAs on known ground, and after a change."""

@@ -1,0 +1,61 @@
+"""`kurt2rt compare` as a user meets it."""
+
+import json
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine
+
+SHORT = (
+    *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
+    *("--set", "exam.worlds=[a]", "--seeds", "3904", "--after", "1", "--jobs", "1", "--out", "made"),
+)
+NEVER = """
+class Never:
+    def __init__(self, setting):
+        self.setting = setting
+
+    def decide(self, situation, *, taught):
+        return None
+
+    def lesson(self, situation, action, why):
+        pass
+
+    def snapshot(self):
+        return b""
+
+    def restore(self, data):
+        pass
+"""
+
+
+def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
+    words = ("compare", "--learner", "k-nn", *SHORT)
+    said = kurt2rt(*words, "--json")
+    assert said.exit_code == 0, said.err
+    document = json.loads(said.out)
+    assert set(document) == {"tables", "not_judged", "figure"}
+    assert [row[1] for row in document["tables"][0]["rows"]] == ["RLA, as shipped", "5-NN with R"]
+    assert Path(document["figure"]).is_file()
+    kept = Path("made/results/k-nn/wall_following-3904.json")
+    before = kept.stat().st_mtime_ns
+    said = kurt2rt(*words)
+    assert said.exit_code == 0, said.err
+    assert "5-NN with R" in said.out
+    assert "1 robot only" in said.out
+    assert kept.stat().st_mtime_ns == before
+
+
+def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
+    assert "there is no such learner" in kurt2rt.refused("compare", "--learner", "deep-thought", *SHORT)
+    assert not Path("made").exists()
+
+
+def test_changed_helper_of_a_learner_is_named_as_the_difference(kurt2rt: CommandLine) -> None:
+    Path("my_asking.py").write_text(f"import my_helper\n{NEVER}", encoding="utf-8")
+    Path("my_helper.py").write_text("HERE = 1\n", encoding="utf-8")
+    words = ("compare", "--learner", "my_asking:Never", *SHORT)
+    assert kurt2rt(*words).exit_code == 0
+    Path("my_helper.py").write_text("HERE = 2\n", encoding="utf-8")
+    refused = kurt2rt.refused(*words)
+    assert "my_asking.Never" in refused
+    assert "(what differs: learner)" in refused

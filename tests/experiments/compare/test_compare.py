@@ -1,0 +1,212 @@
+"""A comparison on the simulated robot: the same robots, teacher and exams for all pupils."""
+
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import anyio
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from hal.batch import AskedMind
+from kurt2rt.core.event_store import InMemoryEventStore
+from kurt2rt.core.learner.learner import Why
+from kurt2rt.core.learner.learner_team import LearnerTeam
+from kurt2rt.core.learner.learners import NoLearnerError
+from kurt2rt.core.learner.rla_learner import RlaLearner
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
+from kurt2rt.experiments.compare.jobs import PupilJob, PupilOutcome
+from kurt2rt.experiments.compare.lesson import LessonSetup, PupilLesson, teach_on_bus
+from kurt2rt.experiments.compare.plan import Comparison, ComparisonPlan, make_plan, read_comparison
+from kurt2rt.experiments.compare.pupil import PUPILS, SHIPPED, Pupil
+from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.experiments.lockstep.lesson_plan import plan_of
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+from kurt2rt.experiments.study.results import Results
+from tests.experiments.compare.outcomes import AFTER, plan_for
+from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.study.here import HERE
+
+IN_BATCH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
+
+
+class Breaking(RlaLearner):
+    """Learner that fails in its fourth lesson."""
+
+    lessons = 0
+
+    def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
+        super().lesson(situation, action, why)
+        self.lessons += 1
+        if self.lessons == 4:
+            raise RuntimeError("four are too many")
+
+
+BREAKING = f"{__name__}:Breaking"
+
+
+@dataclass(frozen=True)
+class Done:
+    results: Results
+    comparison: Comparison
+
+    def outcome(self, name: str) -> PupilOutcome:
+        (row,) = (row for row in self.comparison.rows if row.entry.pupil.name == name)
+        return row.outcomes[0]
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
+    results = Results(tmp_path_factory.mktemp("comparison"))
+    plan = plan_for(results, (3902,), Pupil("rla-door"), Pupil("weighted-vote"), Pupil(BREAKING))
+    with results.held():
+        run_missing(plan, results, HERE, lambda _: None)
+    return Done(results, read_comparison(plan, results))
+
+
+def test_shipped_rla_system_is_the_first_row(done: Done) -> None:
+    assert [row.entry.pupil.name for row in done.comparison.rows][:2] == [SHIPPED, "rla-door"]
+    assert missing_time_s(done.comparison.plan, done.results) == 0.0
+
+
+def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Done) -> None:
+    for row in done.comparison.rows:
+        (outcome,) = row.outcomes
+        assert [each.presses for each in outcome.checkpoints[:-1]] == list(AFTER)
+        assert outcome.presses == outcome.checkpoints[-1].presses
+        assert outcome.failure or outcome.presses > AFTER[-1]
+        seconds = [each.teaching_s for each in outcome.checkpoints]
+        assert seconds == sorted(seconds)
+        assert seconds[-1] == 15.0
+        assert all(len(each.drives) == 1 for each in outcome.checkpoints)
+
+
+def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Done) -> None:
+    failed = done.outcome(BREAKING)
+    assert failed.failure == f"{BREAKING}: RuntimeError: four are too many"
+    assert [each.passed for each in failed.checkpoints][-1] is False
+    assert done.outcome("weighted-vote").failure == ""
+
+
+def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
+    plan = plan_for(Results(tmp_path), (3902,), Pupil("k-nn"), Pupil("k-nn", 0.5))
+    assert len({job.made_of for job in plan.jobs}) == 3
+    assert [job.stem for job in plan.jobs] == [
+        "rla/wall_following-3902",
+        "k-nn/wall_following-3902",
+        "k-nn-gate-0.5/wall_following-3902",
+    ]
+    assert plan.jobs[2].name == "wall_following, 5-NN with R (0.5), seed 3902"
+    assert plan.jobs[2].knowledge_name is None
+
+
+def lesson_of(task: TaskSettings, team: LearnerTeam | None) -> PupilLesson:
+    async def lesson() -> PupilLesson:
+        with closing(STAGE.open(task.teaching.world, 3903, "lesson")) as simulation:
+            setup = LessonSetup(robot=ROBOT, task=task, seed=3903, team=team, after=AFTER)
+            return await teach_on_bus(simulation, setup, lambda _: None)
+
+    return anyio.run(lesson)
+
+
+def events_until_press(task: TaskSettings, most: int) -> list[TeachingEvent]:
+    """Return the lessons of a training run that its plan ends before another press."""
+    store = InMemoryEventStore()
+
+    async def lesson() -> None:
+        with closing(STAGE.open(task.teaching.world, 3903, "lesson")) as simulation:
+            plan = replace(plan_of(task), most_presses=most)
+            training = TrainingStore(store)
+            await teach(simulation, ROBOT, task, training, seed=3903, on_progress=lambda _: None, plan=plan)
+
+    anyio.run(lesson)
+    return store.events
+
+
+def test_mark_holds_what_a_lesson_of_so_many_presses_teaches() -> None:
+    task = taught_by_named(short_task(15.0, 15.0), "ordinary")
+    lesson = lesson_of(task, None)
+    assert [mark.presses for mark in lesson.marks[:-1]] == list(AFTER)
+    for mark in lesson.marks[:-1]:
+        assert list(mark.events) == events_until_press(task, mark.presses)
+        assert mark.labels == ()
+    assert len(lesson.marks[-1].events) > len(lesson.marks[-2].events)
+
+
+def test_marks_that_are_not_reached_are_of_the_end() -> None:
+    task = taught_by_named(short_task(4.0, 1.0), "superhuman")
+    team = Pupil("1-nn").new_team(task, ROBOT, 3903)
+    assert team is not None
+    lesson = lesson_of(task, team)
+    assert lesson.result.presses < AFTER[-1]
+    assert lesson.marks[1].labels == lesson.marks[-1].labels == team.labels
+    assert lesson.marks[1].presses == AFTER[-1]
+
+
+@pytest.mark.parametrize(
+    ("text", "found"), [("k-nn", Pupil("k-nn")), ("k-nn=0.5", Pupil("k-nn", 0.5)), (SHIPPED, Pupil(SHIPPED))]
+)
+def test_pupil_of_a_text(text: str, found: Pupil) -> None:
+    assert Pupil.parse(text) == found
+
+
+@pytest.mark.parametrize("text", ["k-nn=wide", "rla=1", "no-such"])
+def test_pupil_of_another_text_is_refused(text: str) -> None:
+    with pytest.raises(NoLearnerError):
+        Pupil.parse(text)
+
+
+def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 3903) -> PupilOutcome:
+    """Require one outcome of the batch and the CAN bus, and return it."""
+    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
+    plan: ComparisonPlan = make_plan([task], [pupil], (seed,), AFTER, parts, source_of=lambda _: "tested")
+    job: PupilJob = plan.jobs[-1]
+    batch, bus = (
+        anyio.run(replace(job, loops=loops).measure, folder / "knowledge", lambda *_: None)
+        for loops in (IN_BATCH, ON_BUS)
+    )
+    assert batch == bus
+    return batch
+
+
+@pytest.mark.parametrize("name", ["weighted-vote", pytest.param(SHIPPED, marks=pytest.mark.deep)])
+def test_pupil_is_equal_in_batch_and_on_the_bus(name: str, tmp_path: Path) -> None:
+    assert require_equal(tmp_path, Pupil(name), taught_by_named(short_task(exam_s=6.0), "ordinary")).presses > 2
+
+
+def test_pupil_that_fails_is_driven_on_the_bus(tmp_path: Path) -> None:
+    outcome = require_equal(tmp_path, Pupil(BREAKING), taught_by_named(short_task(exam_s=6.0), "ordinary"))
+    assert outcome.failure.endswith("RuntimeError: four are too many")
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight", "streets"])
+@pytest.mark.parametrize("name", PUPILS)
+def test_whole_lesson_of_a_pupil_is_equal(name: str, task: str, tmp_path: Path) -> None:
+    taught = taught_by_named(load_task(task, changes={"exam.duration_s": "40"}), "ordinary")
+    require_equal(tmp_path, Pupil(name), taught, seed=3904)
+
+
+def test_error_of_a_python_mind_ends_the_drive() -> None:
+    task = short_task(exam_s=6.0)
+
+    def choose(_behaviour: str, situation: NDArray[np.float64]) -> str:
+        raise ZeroDivisionError(f"{len(situation)} numbers")
+
+    definition = load_situation(task.situation, ROBOT.infrared.names)
+    features = feature_table(definition, ROBOT, np.ones(definition.dimensions), task)
+    simulation = STAGE.open("a", 3903, "exam")
+    try:
+        batch = STAGE.open_batch([simulation], [AskedMind(choose, features)], build_drive_settings(ROBOT, task))
+        with pytest.raises(ZeroDivisionError, match=f"{definition.dimensions} numbers"):
+            batch.drive([0], 10)
+        assert batch.reason_to_leave(0)
+    finally:
+        simulation.close()

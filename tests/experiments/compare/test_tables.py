@@ -1,0 +1,91 @@
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from kurt2rt.experiments.compare.figures import draw_curves
+from kurt2rt.experiments.compare.tables import (
+    all_tables,
+    effort_table,
+    holm,
+    mcnemar_p,
+    paired_table,
+    pairs_of,
+    success_table,
+)
+from kurt2rt.experiments.study.results import Results
+from tests.experiments.compare.outcomes import comparison_of, robot
+
+OURS = (robot(1, "stuck", "right", "right"), robot(2, "stuck", "stuck", "right"), robot(3, *["not judged"] * 3))
+THEIRS = (
+    robot(1, "right", "right", "stuck", collisions=2, presses=5),
+    robot(2, "stuck", "stuck", "stuck", failure="1-nn: ValueError: empty", presses=7),
+    robot(3, "right", "right", "right", collisions=1, presses=6),
+)
+
+
+def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
+    table = success_table(comparison_of(Results(tmp_path), OURS, THEIRS))
+    assert table.columns == ("task", "learner", "after 2", "after 5", "at the end")
+    ours, theirs = table.rows
+    assert ours[:2] == ("wall_following", "RLA, as shipped")
+    assert [cell.partition(" (")[0] for cell in ours[2:]] == ["0 of 2", "1 of 2", "2 of 2"]
+    assert [cell.partition(" (")[0] for cell in theirs[2:]] == ["2 of 3", "2 of 3", "1 of 3"]
+
+
+def test_robots_without_a_verdict_have_no_share(tmp_path: Path) -> None:
+    none = tuple(robot(seed, *["not judged"] * 3) for seed in (1, 2))
+    comparison = comparison_of(Results(tmp_path), none, none)
+    assert success_table(comparison).rows[0][2:] == ("none judged",) * 3
+    draw_curves(comparison, tmp_path / "empty.png")
+
+
+def test_pairs_and_presses_are_compared_robot_by_robot(tmp_path: Path) -> None:
+    (row,) = paired_table(comparison_of(Results(tmp_path), OURS, THEIRS)).rows
+    assert row[:6] == ("wall_following", "1-NN without R", "2", "0", "0.500", "0.500")
+    assert row[6] == "2.0 (-0.5 to 4.5)"  # 3, 1 and 2 fewer; Student's t of two degrees of freedom is 4.303
+    (alone,) = paired_table(comparison_of(Results(tmp_path), OURS[:1], THEIRS[:1])).rows
+    assert alone[-1] == "-"
+
+
+def test_effort_has_medians_and_sums(tmp_path: Path) -> None:
+    ours, theirs = effort_table(comparison_of(Results(tmp_path), OURS, THEIRS)).rows
+    assert ours[2:] == ("8", "5", "3", "0", "0", "0")
+    assert theirs[2:] == ("6", "5", "3", "3", "0", "0")
+
+
+def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
+    *_, failures = all_tables(comparison_of(Results(tmp_path), OURS, THEIRS))
+    assert failures.rows == (("wall_following", "1-NN without R", "2", "1-nn: ValueError: empty"),)
+    assert len(list(all_tables(comparison_of(Results(tmp_path), OURS, OURS)))) == 3
+
+
+def test_figure_is_drawn(tmp_path: Path) -> None:
+    draw_curves(comparison_of(Results(tmp_path), OURS, THEIRS), tmp_path / "compare.png")
+    assert imread(tmp_path / "compare.png").shape[1] > 500
+
+
+@pytest.mark.parametrize(
+    ("pairs", "p_value"),
+    [
+        ((0, 0), 1.0),
+        ((3, 3), 1.0),
+        ((1, 5), 14 / 64),  # 2 (1 + 6) / 2^6
+        ((5, 1), 14 / 64),
+        ((0, 10), 2 / 1024),
+    ],
+)
+def test_mcnemar_is_the_two_sided_binomial_of_half(pairs: tuple[int, int], p_value: float) -> None:
+    assert mcnemar_p(*pairs) == pytest.approx(p_value)
+
+
+def test_holm_multiplies_by_the_tests_left_and_never_falls() -> None:
+    assert holm([0.01, 0.04, 0.03]) == pytest.approx([0.03, 0.06, 0.06])
+    assert holm([0.5, 0.9]) == pytest.approx([1.0, 1.0])
+    assert holm([]) == []
+
+
+def test_pairs_count_judged_robots_that_one_pupil_passes_with() -> None:
+    ours = [robot(1, "right"), robot(2, "right"), robot(3, "stuck"), robot(4, "not judged"), robot(5, "stuck")]
+    theirs = [robot(1, "stuck"), robot(2, "right"), robot(3, "right"), robot(4, "right"), robot(5, "stuck")]
+    assert pairs_of(ours, theirs) == (1, 1)
