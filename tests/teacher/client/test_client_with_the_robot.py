@@ -105,6 +105,7 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             assert line.undone
 
 
+@pytest.mark.deep  # a press ends, as it must, when this machine stalls for a quarter of a second
 async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:
@@ -158,6 +159,7 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
     assert len(given.lessons) == 1
 
 
+@pytest.mark.deep  # a press ends, as it must, when this machine stalls for a quarter of a second
 async def test_drive_moves_robot_only_while_pressed(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:
@@ -180,6 +182,7 @@ async def test_drive_moves_robot_only_while_pressed(tmp_path: Path) -> None:
             assert robot.link.rtt_ms is not None
 
 
+@pytest.mark.deep  # a press ends, as it must, when this machine stalls for a quarter of a second
 async def test_hold_drives_and_teaches_while_its_block_lasts(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:
