@@ -68,10 +68,10 @@ def paper(options: _Options) -> None:
     robot's result and knowledge file in the output folder.
 
     A run that was interrupted goes on where it was. Results are kept with hashes
-    of what made them: settings of task, robot and worlds, the source of what
-    teaches, drives and simulates, and the versions of what computes. When one of
-    these has changed, what is in the folder is refused and not mixed in: give a
-    new folder. Other seeds and other tasks may share a folder.
+    of what made them: settings of task, robot and worlds, the program's source,
+    and the versions of what computes. When one of these has changed, what is in
+    the folder is refused and not mixed in: give a new folder. Other seeds and
+    other tasks may share a folder.
 
     Compiled loops drive the tasks that they know, if the extra fast is installed
     and the study is long, with equal results (--lessons, --exams).

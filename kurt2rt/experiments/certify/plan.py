@@ -1,6 +1,5 @@
 """Plan of a certificate: blocks of runs and witnesses, and their outcomes."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -8,7 +7,6 @@ from typing import NamedTuple
 from hal.batch import BatchFactory
 from hal.batch_refusal import BatchRefusedError
 from hal.settings import SettingsError
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, opened_batch
 from kurt2rt.experiments.certify.jobs import BlockJob, WitnessJob, require_equal
@@ -17,12 +15,10 @@ from kurt2rt.experiments.certify.run import ALL_WORK, SEED, BrokenShare, Run, dr
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, choose_witnesses
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.loading import read_lessons
 
-DECIDING = (BlockJob, WitnessJob)
-"""Classes whose code, and all that it imports, decides the results."""
 _MOST_RUNS = 200
 _MOST_ROBOT_S = 60_000.0
 """Limits of a job in the batch, which keeps the set points of all its runs: 24 MB."""
@@ -92,8 +88,6 @@ def make_plan(
     knowledge: Path,
     extent: Extent,
     parts: JobParts,
-    *,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> CertifyPlan:
     """Check knowledge, task and worlds, and return the jobs.
 
@@ -102,7 +96,6 @@ def make_plan(
         knowledge: file with its lessons.
         extent: number and worlds of the runs.
         parts: factory, robot and results of the jobs.
-        source_of: returns the hash of the program's source.
 
     Raises:
         KnowledgeError: the knowledge file cannot be read.
@@ -116,7 +109,7 @@ def make_plan(
     needed = {place: place.replace(SEED, str(extent.first)) for place in dict.fromkeys(extent.places)}
     factory.require_worlds(*needed.values())
     require_course(factory, task, needed.values())
-    fingerprints = Fingerprints(factory, robot, source_of(factory))
+    fingerprints = Fingerprints(factory, robot)
     # A generated world follows from its name and the source: all of them need not be built here.
     worlds, taught = [world for place, world in needed.items() if SEED not in place], settings_hash(repr(lessons))
 

@@ -1,17 +1,16 @@
 """Plan of a comparison: every pupil is taught as every robot, task by task."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.compare.jobs import PupilJob, PupilOutcome
 from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
-from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import Results
 
 
@@ -60,7 +59,6 @@ def make_plan(
     parts: JobParts,
     *,
     loops: RequestedLoops = ALL_ON_BUS,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(PupilJob, type(factory)),
 ) -> ComparisonPlan:
     """Check tasks and worlds, and return the jobs.
 
@@ -71,14 +69,13 @@ def make_plan(
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
         loops: that drive lessons and exams.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
         NoLearnerError: there is no such learner.
     """
     factory, presses = parts["factory"], tuple(after)
-    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, parts["robot"], ("paper", "plain", "phases"))
     entries = []
     for task in tasks:
         worlds = (task.teaching.world, *task.exam.worlds)

@@ -1,10 +1,9 @@
 """Plan of the navigation study: the streets of each robot, unless taught before, then its goals."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
@@ -14,11 +13,8 @@ from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
 from kurt2rt.experiments.route.jobs import BasicJob
 from kurt2rt.experiments.route.plan import streets_of
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import Results
-
-DECIDING = (NavigationJob,)
-"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +41,6 @@ def make_plan(
     *,
     basic_folder: Path | None = None,
     controls: bool = False,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> NavigationPlan:
     """Check task and worlds, and return the jobs.
 
@@ -56,7 +51,6 @@ def make_plan(
         parts: factory, robot and results of the jobs.
         basic_folder: files of robots that were taught `basic`; None: the streets are taught first.
         controls: whether to drive also without a plan.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -69,7 +63,7 @@ def make_plan(
     factory.require_worlds(*worlds, basic.teaching.world)
     require_course(factory, task, worlds)
     strategies = (*PLANNING, *(CONTROLS if controls else ()))
-    fingerprints = Fingerprints(factory, robot, source_of(factory), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, robot, ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, factory, robot, results, fingerprints, basic_folder)
     jobs = []
     for seed in seeds:

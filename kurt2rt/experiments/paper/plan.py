@@ -1,6 +1,6 @@
 """Plan of the paper study: a job for each experiment, reading and seed."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,11 +17,8 @@ from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings
 from kurt2rt.experiments.study.eligibility import ROBOTS
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
-from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
-
-DECIDING = (TaughtJob, GrowthJob, Extent)
-"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +47,6 @@ class PaperPlan:
     paper: PaperSettings
     extent: Extent
     seeds: tuple[int, ...]
-    source: str
-    """Hash of the program's source."""
     experiments: tuple[PaperExperiment, ...]
     growth: tuple[Growth, ...]
     """Empty when its task is not among those to be done."""
@@ -93,7 +88,6 @@ def make_plan(
     readings: Sequence[Reading],
     parts: JobParts,
     *,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
     tasks: Sequence[str] = (),
     loops: RequestedLoops = ALL_ON_BUS,
 ) -> PaperPlan:
@@ -105,7 +99,6 @@ def make_plan(
         seeds: one robot each.
         readings: readings of the paper to study.
         parts: factory, robot and results of the jobs.
-        source_of: returns the hash of the program's source.
         tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
         loops: requested for lessons and exams.
 
@@ -122,14 +115,12 @@ def make_plan(
         for reading in readings
         for each in chosen
     ]
-    source = source_of(factory)
-    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
+    fingerprints = Fingerprints(factory, robot, ("paper", "plain", *PHASES))
     maker = _JobMaker(paper, tuple(seeds), parts, fingerprints)
     plan = PaperPlan(
         paper,
         extent,
         maker.seeds,
-        source,
         tuple(maker.experiment(*each) for each in taught),
         tuple(maker.growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
     )

@@ -10,6 +10,7 @@ from kurt2rt.experiments.paper.tables import all_tables, unseen_table
 from kurt2rt.experiments.study.eligibility import ROBOTS
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
+from kurt2rt.experiments.study.provenance import source_hash
 
 _TITLE = "KURT2: the paper's basic-level tasks, taught and examined"
 
@@ -36,5 +37,5 @@ def write_report(study: PaperStudy, pictures: Sequence[SavedFigure], command: st
         settings=[learning_table(study), exams_table(study)],
         success=SUCCESS,
         command=command,
-        source=plan.source,
+        source=source_hash(),
     )

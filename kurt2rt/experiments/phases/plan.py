@@ -1,10 +1,9 @@
 """Plan of the phases study: every step of every robot as a job, in waves."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.reinforcement.settings import AutonomousValues
@@ -14,10 +13,8 @@ from kurt2rt.experiments.phases.jobs import FirstPhasesJob, Job, StepJob
 from kurt2rt.experiments.phases.steps import PHASE_2, PhaseStep, phases_of, steps_of
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
-from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 
-DECIDING = (FirstPhasesJob, StepJob)
-"""Classes whose code, and all that it imports, decides the results."""
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
 """Factor of the intervals in a quick run."""
@@ -36,8 +33,6 @@ class PhasesPlan:
     seeds: tuple[int, ...]
     quick: bool
     """A part only."""
-    source: str
-    """Hash of the program's source."""
     steps: tuple[tuple[Job, ...], ...]
     """Jobs in waves; the jobs of a wave need only results of earlier waves."""
     choice: LoopChoice = NO_CHOICE
@@ -61,7 +56,6 @@ def make_plan(
     *,
     quick: bool = False,
     loops: RequestedLoops = ALL_ON_BUS,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> PhasesPlan:
     """Check task and worlds, and return the jobs.
 
@@ -71,7 +65,6 @@ def make_plan(
         parts: factory, robot and results of the jobs.
         quick: all steps, each so short that it says nothing but that everything works.
         loops: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: the task has no such section, or does not fit a world.
@@ -83,9 +76,8 @@ def make_plan(
     worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
     factory.require_worlds(*worlds)
     require_course(factory, task, worlds)
-    source = source_of(factory)
     # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
-    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, robot, ("paper", "plain", "phases"))
     critic = critic_of(task.critic, robot).model_dump_json()
     by_name = {step.name: step for step in steps}
 
@@ -112,7 +104,7 @@ def make_plan(
             )
             waves[_depth(step, by_name)].append(job)
     choice = choose_loops([job for wave in waves for job in wave], loops, robot)
-    return PhasesPlan(task, tuple(seeds), quick, source, tuple(map(choice.apply, waves)), choice)
+    return PhasesPlan(task, tuple(seeds), quick, tuple(map(choice.apply, waves)), choice)
 
 
 def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:

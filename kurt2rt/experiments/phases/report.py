@@ -9,6 +9,7 @@ from kurt2rt.experiments.phases.tables import all_tables, settings_table
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
+from kurt2rt.experiments.study.provenance import source_hash
 
 
 def reasons_not_to_judge(plan: PhasesPlan) -> Iterator[str]:
@@ -37,5 +38,5 @@ def write_report(study: PhasesStudy, pictures: Sequence[SavedFigure], command: s
         tables=list(all_tables(study, reasons)),
         settings=settings_table(plan.task),
         command=command,
-        source=plan.source,
+        source=source_hash(),
     )

@@ -1,6 +1,6 @@
 """Plan of the route study: the streets of each robot, then a job for each length and variant."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -14,12 +14,9 @@ from kurt2rt.experiments.route.jobs import BasicJob, RouteJob
 from kurt2rt.experiments.route.lesson import route_of_task, with_route
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.loading import read_lessons
-
-DECIDING = (BasicJob, RouteJob)
-"""Classes whose code, and all that it imports, decides the results."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +36,6 @@ class RoutePlan:
     """Task without the route, which each robot's seed draws."""
     basic: TaskSettings
     seeds: tuple[int, ...]
-    source: str
-    """Hash of the program's source."""
     basic_jobs: tuple[BasicJob, ...]
     """Empty where the streets were taught before."""
     experiments: tuple[RouteExperiment, ...]
@@ -65,7 +60,6 @@ def make_plan(
     parts: JobParts,
     *,
     basic_folder: Path | None = None,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> RoutePlan:
     """Check tasks, worlds and routes, and return the jobs.
 
@@ -77,7 +71,6 @@ def make_plan(
         variants: ways of teaching.
         parts: factory, robot and results of the jobs.
         basic_folder: knowledge files of `basic`, by `kurt2rt lesson`; None: the streets are taught first.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -90,8 +83,7 @@ def make_plan(
     routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
     for each in routes.values():
         require_course(factory, each, worlds)
-    source = source_of(factory)
-    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, robot, ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, factory, robot, results, fingerprints, basic_folder)
 
     def experiment(count: int, variant: Variant) -> RouteExperiment:
@@ -107,7 +99,6 @@ def make_plan(
         task,
         basic,
         tuple(seeds),
-        source,
         streets.jobs,
         tuple(experiment(count, variant) for variant in variants for count in decisions),
     )

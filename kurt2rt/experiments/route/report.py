@@ -8,6 +8,7 @@ from kurt2rt.experiments.route.tables import all_tables
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
+from kurt2rt.experiments.study.provenance import source_hash
 
 _TITLE = "KURT2: routes that its mid level was taught"
 
@@ -30,5 +31,5 @@ def write_report(study: RouteStudy, pictures: Sequence[SavedFigure], command: st
         basic_s=plan.basic.teaching.duration_s,
         teaching_s=plan.task.teaching.duration_s,
         command=command,
-        source=plan.source,
+        source=source_hash(),
     )

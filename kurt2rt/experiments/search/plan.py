@@ -1,21 +1,19 @@
 """Plan of a search: its task and space, the maker of its jobs, and the files that it leaves."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
 from kurt2rt.experiments.search.job_maker import JobMaker
-from kurt2rt.experiments.search.jobs import SearchJob
 from kurt2rt.experiments.search.settings import CheckSettings, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace
 from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +42,6 @@ def make_plan(
     parts: JobParts,
     *,
     changes: Mapping[str, str],
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(SearchJob, type(factory)),
 ) -> SearchPlan:
     """Check task, space and worlds, and return the plan.
 
@@ -52,7 +49,6 @@ def make_plan(
         search: what is searched.
         parts: factory, robot and results of the jobs.
         changes: values by dotted key of the task's file, of all trials and of the shipped settings.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: a key, the task or a world does not fit.
@@ -70,7 +66,7 @@ def make_plan(
         require_known_lesson(parts["robot"], task)
     if search.exams is DriveLoop.BATCH:
         require_known_exams(parts["robot"], task)
-    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, parts["robot"], ("paper", "plain", "phases"))
     # More trials, and another number of them checked, leave each trial as it is.
     decides = search.model_dump_json(exclude={"trials": True, "check": {"best"}})
     return SearchPlan(

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from hal.errors import UserError
 from kurt2rt.experiments.study.plan import StoredJob
-from kurt2rt.experiments.study.program_hash import program_hash
+from kurt2rt.experiments.study.provenance import program_hash, versions
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.durable_files import fsync_file, write_durably
@@ -46,7 +46,7 @@ def pack(job: StoredJob, results: Results, earlier: Iterable[StoredJob]) -> Parc
         str(results.folder),
         {name: (results.folder / name).read_bytes() for name in names},
         {str(path): path.read_bytes() for path in inputs},
-        program_hash(),
+        _program(),
     )
 
 
@@ -57,9 +57,9 @@ def run_parcel(parcel: Parcel) -> dict[str, bytes]:
         WorkerDiffersError: this machine has another program than the sender.
         Exception: any error of the job.
     """
-    if program_hash() != parcel.program:
+    if _program() != parcel.program:
         raise WorkerDiffersError(
-            f"the worker's program is another one (got {program_hash()}, allowed {parcel.program})",
+            f"the worker's program is another one (got {_program()}, allowed {parcel.program})",
             do="install the same version of kurt2rt and its packages on both",
         )
     with tempfile.TemporaryDirectory(prefix="kurt2rt-") as name, threadpool_limits(limits=1):
@@ -96,6 +96,11 @@ def unpack(job: StoredJob, results: Results, files: Mapping[str, bytes]) -> None
             archive_existing(results.folder / job.knowledge_name)
             results.keep(scratch / "knowledge", job.knowledge_name)
     write_durably(results.folder / job.file, files[job.file].decode("utf-8"))
+
+
+def _program() -> str:
+    """Return what two machines must have alike: the program with its settings, and the packages that compute."""
+    return f"{program_hash('.py', '.yaml', '.dbc', '.json', '.png', '.pgm')}, {versions()}"
 
 
 def _files_of(job: StoredJob) -> list[str]:

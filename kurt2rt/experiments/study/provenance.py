@@ -4,16 +4,19 @@ import hashlib
 import json
 import platform
 from collections.abc import Collection, Iterable
+from functools import lru_cache
 from importlib.metadata import version
+from importlib.resources import files
+from pathlib import Path
 
 from behaviors.repertoire_settings import RepertoireSettings
 from hal.plugin_source import source_hash_of
+from hal.plugins import OWN_PACKAGES
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, content_of, load_settings
 from hal.settings_files import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.import_graph import modules_needed
 
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
@@ -44,19 +47,24 @@ def versions() -> str:
     return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
 
 
-def source_hash(*deciding: type) -> str:
-    """Return the hash of the files of all modules that these classes need, byte for byte.
+@lru_cache
+def program_hash(*suffixes: str) -> str:
+    """Return the hash of all files of the program with these suffixes, such as `.py`, byte for byte.
 
     A hash of the syntax tree would leave comments out, but Python 3.12 has other trees than Python 3.11.
-
-    Args:
-        deciding: classes that do a job and open its simulation. Code that they do not import decides no result.
     """
     digest = hashlib.sha256()
-    for name, path in modules_needed(base.__module__ for each in deciding for base in each.__mro__).items():
-        digest.update(f"{name}\n".encode())
-        digest.update(hashlib.sha256(path.read_bytes()).digest())
+    for package in OWN_PACKAGES:
+        folder = Path(str(files(package)))
+        for path in sorted(path for path in folder.rglob("*") if path.suffix in suffixes):
+            digest.update(f"{package}/{path.relative_to(folder).as_posix()}\0".encode())
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
     return digest.hexdigest()[:16]
+
+
+def source_hash() -> str:
+    """Return the hash of the program's source, which decides all results."""
+    return program_hash(".py")
 
 
 def settings_hash(*settings: str) -> str:
@@ -71,16 +79,14 @@ class Fingerprints:
         self,
         factory: SimulationFactory,
         robot: RobotSettings,
-        source: str,
         leave_out: Collection[str] = ("paper", "plain"),
     ) -> None:
-        """`source`: as `source_hash` tells. `leave_out`: parts of a task that change nothing in these experiments.
+        """`leave_out`: parts of a task that change nothing in these experiments.
 
         The task's own numbers of the paper, and the reading that is not taken, never do; nor does its sentence to the
         teacher, which is always left out.
         """
         self._leave_out = {*leave_out, "what"}
-        self._source = source
         self._versions = versions()
         self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
         self._stage = factory
@@ -110,7 +116,7 @@ class Fingerprints:
             ),
             robot=self._robot,
             worlds=settings_hash(*(self._settings("worlds", world) for world in sorted(set(worlds)))),
-            source=self._source,
+            source=source_hash(),
             versions=self._versions,
             plugins=settings_hash(*plugins) if plugins else "",
             learner=settings_hash(learner) if learner else "",

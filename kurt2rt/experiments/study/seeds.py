@@ -1,18 +1,17 @@
 """Study of one task: the same curriculum for many seeds."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
 
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopChoice, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 
@@ -82,10 +81,6 @@ class SeedJob(CurriculumJob):
         super(SeedJob, self).run(on_progress)
 
 
-DECIDING = (SeedJob,)
-"""Classes whose code, and all that it imports, decides the results."""
-
-
 @dataclass(frozen=True, slots=True)
 class SeedPlan:
     """Jobs of the study."""
@@ -113,7 +108,6 @@ def make_plan(
     parts: JobParts,
     *,
     loops: RequestedLoops = ALL_ON_BUS,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> SeedPlan:
     """Return the jobs.
 
@@ -122,13 +116,12 @@ def make_plan(
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         loops: requested for lessons and exams.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: settings of a task or a world cannot be loaded.
     """
     factory = parts["factory"]
-    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, parts["robot"], ("paper", "plain", "phases"))
     jobs = {}
     for place, (label, task) in enumerate(tasks.items()):
         made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds))

@@ -1,25 +1,22 @@
 """Plan of the transfer study: each robot is taught at home, then on in each new world by each variant."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, NO_CHOICE, LoopChoice, RequestedLoops, choose_loops
-from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.transfer.jobs import HomeJob, TransferJob
 from kurt2rt.experiments.transfer.outcome import HomeOutcome, TransferOutcome
 from kurt2rt.experiments.transfer.variants import TAUGHT_ON, Variant
 
-DECIDING = (HomeJob, TransferJob)
-"""Classes whose code, and all that it imports, decides the results."""
 SEED = "SEED"
 """Part of a world's name that stands for the robot's seed."""
 AFTER = (0, 2, 5, 10, 15, 20)
@@ -90,7 +87,6 @@ def make_plan(
     parts: JobParts,
     *,
     loops: RequestedLoops = ALL_ON_BUS,
-    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> TransferPlan:
     """Check task and worlds, and return the jobs.
 
@@ -101,7 +97,6 @@ def make_plan(
         variants: ways of teaching in the new worlds.
         parts: factory, robot and results of the jobs.
         loops: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
-        source_of: returns the hash of the program's source.
 
     Raises:
         hal.settings.SettingsError: the task and a world do not fit, or a new world is that of home.
@@ -114,7 +109,7 @@ def make_plan(
     needed = tuple(dict.fromkeys((home, *worlds.values())))
     factory.require_worlds(*needed)
     require_course(factory, task, needed)
-    fingerprints = Fingerprints(factory, parts["robot"], source_of(factory), ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, parts["robot"], ("paper", "plain", "phases"))
     made_at_home = fingerprints.of(task, (home,))
     home_jobs = {seed: HomeJob(task=task, seed=seed, made_of=made_at_home, **parts) for seed in seeds}
 

@@ -33,7 +33,7 @@ def robot(seed: int, *there: str, failure: str = "", collisions: int = 0, presse
 def plan_for(results: Results, seeds: tuple[int, ...], *pupils: Pupil) -> ComparisonPlan:
     """Return a plan of short lessons and exams in world A."""
     parts = JobParts(factory=STAGE, robot=ROBOT, results=results)
-    return make_plan([short_task(exam_s=6.0)], pupils, seeds, AFTER, parts, source_of=lambda _: "tested")
+    return make_plan([short_task(exam_s=6.0)], pupils, seeds, AFTER, parts)
 
 
 def comparison_of(results: Results, *outcomes: tuple[PupilOutcome, ...]) -> Comparison:

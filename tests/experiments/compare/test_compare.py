@@ -166,7 +166,7 @@ def test_pupil_of_another_text_is_refused(text: str) -> None:
 def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 3903) -> PupilOutcome:
     """Require one outcome of the batch and the CAN bus, and return it."""
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    plan: ComparisonPlan = make_plan([task], [pupil], (seed,), AFTER, parts, source_of=lambda _: "tested")
+    plan: ComparisonPlan = make_plan([task], [pupil], (seed,), AFTER, parts)
     job: PupilJob = plan.jobs[-1]
     batch, bus = (
         anyio.run(replace(job, loops=loops).measure, folder / "knowledge", lambda *_: None)

@@ -36,7 +36,6 @@ def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: fl
         (1,),
         JobParts(factory=STAGE, robot=ROBOT, results=results),
         controls=True,
-        source_of=lambda _: "tested",
     )
 
 

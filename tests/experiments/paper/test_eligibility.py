@@ -35,7 +35,7 @@ def plan(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> PaperP
         for seed in seeds
     )
     experiment = PaperExperiment(settings, "shipped", TASK, jobs)
-    return PaperPlan(load_paper(), WHOLE, tuple(seeds), "s", (experiment,), ())
+    return PaperPlan(load_paper(), WHOLE, tuple(seeds), (experiment,), ())
 
 
 SETTINGS = settings_of("wall_following")

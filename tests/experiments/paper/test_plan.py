@@ -41,7 +41,6 @@ def planned(
         seeds,
         readings,
         JobParts(factory=STAGE, robot=ROBOT, results=Results(Path("never-made"))),
-        source_of=lambda _: "s",
         tasks=tasks,
     )
 

@@ -37,7 +37,6 @@ def tiny_plan(results: Results, *tasks: str) -> PaperPlan:
         (100,),
         ("shipped", "plain"),
         JobParts(factory=STAGE, robot=ROBOT, results=results),
-        source_of=lambda _: "tested",
         tasks=tasks,
     )
 

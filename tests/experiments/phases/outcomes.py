@@ -98,7 +98,7 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
         for name in ALL
     }
     stages |= {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
-    plan = PhasesPlan(task, tuple(range(100, 100 + robots)), False, "s", ())
+    plan = PhasesPlan(task, tuple(range(100, 100 + robots)), False, ())
     return PhasesStudy(plan, stages, ((exam(),),) * robots)
 
 

@@ -10,9 +10,8 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.jobs import StepJob
 from kurt2rt.experiments.phases.outcome import JobOutcome
-from kurt2rt.experiments.phases.plan import DECIDING, PhasesPlan, make_plan
+from kurt2rt.experiments.phases.plan import PhasesPlan, make_plan
 from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
-from kurt2rt.experiments.study.import_graph import modules_needed
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
@@ -23,9 +22,7 @@ TASK = load_task("wall_following")
 
 def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> PhasesPlan:
     results = Results(Path("never-made"))
-    return make_plan(
-        task, seeds, JobParts(factory=STAGE, robot=ROBOT, results=results), quick=quick, source_of=lambda _: "s"
-    )
+    return make_plan(task, seeds, JobParts(factory=STAGE, robot=ROBOT, results=results), quick=quick)
 
 
 def with_phases(**changed: float) -> TaskSettings:
@@ -50,9 +47,7 @@ def test_random_penalties_equal_those_of_the_rewards(tmp_path: Path) -> None:
     results = Results(tmp_path)
     jobs = {
         (job.step, job.file): job
-        for job in make_plan(
-            TASK, (100, 101), JobParts(factory=STAGE, robot=ROBOT, results=results), source_of=str
-        ).jobs
+        for job in make_plan(TASK, (100, 101), JobParts(factory=STAGE, robot=ROBOT, results=results)).jobs
     }
     by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
     for job, seed, blame in zip(by_step[REWARDS], (100, 101), (37, 5), strict=True):
@@ -77,19 +72,6 @@ def test_changed_phase_4_changes_all_critics() -> None:
     assert before[REWARDS] == after[REWARDS]
 
 
-def test_deciding_modules_hold_the_steps_not_the_report() -> None:
-    names = {name.rpartition(".")[2] for name in modules_needed(each.__module__ for each in DECIDING)}
-    assert {
-        "corruption",
-        "exams",
-        "steps",
-        "stages",
-        "lesson_plan",
-        "agreement",
-    } <= names
-    assert not {"html_report", "table", "tables", "figures"} & names
-
-
 def test_quick_is_every_step_for_seconds() -> None:
     quick = planned(quick=True)
     assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
@@ -100,7 +82,7 @@ def test_quick_is_every_step_for_seconds() -> None:
 def test_quick_critic_of_another_robot_has_its_sensors(robot: str) -> None:
     settings, task = load_robot(robot), load_task(f"{robot}/wall_following")
     parts = JobParts(factory=simulations_of(settings), robot=settings, results=Results(Path("never-made")))
-    critic = load_critic(make_plan(task, (0,), parts, quick=True, source_of=lambda _: "s").task.critic)
+    critic = load_critic(make_plan(task, (0,), parts, quick=True).task.critic)
     assert critic.perception.sensors is not None
     assert critic.perception.sensors.used <= set(settings.infrared.names)
     assert critic.need.bad_share == 0.0

@@ -38,9 +38,7 @@ def tiny_task() -> TaskSettings:
 
 
 def tiny_plan(results: Results) -> PhasesPlan:
-    return make_plan(
-        tiny_task(), (100,), JobParts(factory=STAGE, robot=ROBOT, results=results), source_of=lambda _: "tested"
-    )
+    return make_plan(tiny_task(), (100,), JobParts(factory=STAGE, robot=ROBOT, results=results))
 
 
 def do_tiny(folder: Path) -> Tiny:

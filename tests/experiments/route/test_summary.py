@@ -46,7 +46,6 @@ def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: 
         VARIANTS,
         JobParts(factory=STAGE, robot=ROBOT, results=results),
         basic_folder=basic_folder,
-        source_of=lambda _: "tested",
     )
 
 

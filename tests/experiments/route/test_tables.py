@@ -25,7 +25,6 @@ def plan(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> Route
         (8,),
         variants,
         JobParts(factory=STAGE, robot=ROBOT, results=results),
-        source_of=lambda _: "tested",
     )
 
 

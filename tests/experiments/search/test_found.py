@@ -10,6 +10,7 @@ from kurt2rt.experiments.search.check import CheckedSettings, CheckRecord, Check
 from kurt2rt.experiments.search.found import write_found
 from kurt2rt.experiments.search.score import RobotScore
 from kurt2rt.experiments.study.intervals import RateDifference
+from kurt2rt.experiments.study.provenance import source_hash
 from tests.experiments.search.tiny import tiny_plan
 
 VALUES = {"learning.radius": 512.0, "learning.weights.0.weight": 0.7}
@@ -41,7 +42,7 @@ def test_found_without_better_settings_changes_nothing(tmp_path: Path) -> None:
     found = written(tmp_path, RateDifference(0.25, -0.125, 0.375))
     assert found["changes"] == {}
     assert "the shipped settings stay" in str(found["verdict"])
-    assert (found["command"], found["date"], found["source"]) == ("kurt2rt search tiny", RECORD.date, "tested")
+    assert (found["command"], found["date"], found["source"]) == ("kurt2rt search tiny", RECORD.date, source_hash())
     assert found["shipped"] == {
         "values": {"learning.radius": 900.0, "learning.weights.0.weight": 1.5},
         "passed": 7,

@@ -39,6 +39,6 @@ def tiny_settings(folder: Path, **other: Any) -> SearchSettings:
     return load_search(str(tiny_search(folder, **other)))
 
 
-def tiny_plan(folder: Path, source: str = "tested", **other: Any) -> SearchPlan:
+def tiny_plan(folder: Path, **other: Any) -> SearchPlan:
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder / "made"))
-    return make_plan(tiny_settings(folder, **other), parts, changes=SHORT, source_of=lambda _: source)
+    return make_plan(tiny_settings(folder, **other), parts, changes=SHORT)

@@ -15,6 +15,7 @@ from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutco
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.loop_choice import LoopRequest, RequestedLoops
 from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.seeds import SeedPlan, make_plan, read_results
 from tests.experiments.helpers import ROBOT, STAGE, short_task
@@ -27,7 +28,7 @@ IN_BATCH = LoopRequest.BATCH
 def run(folder: Path, asked: LoopRequest = IN_BATCH) -> SeedPlan:
     results = Results(folder)
     parts, loops = JobParts(factory=STAGE, robot=ROBOT, results=results), RequestedLoops(asked, asked)
-    plan = make_plan({"": TASK}, [5], parts, loops=loops, source_of=lambda _: "tested")
+    plan = make_plan({"": TASK}, [5], parts, loops=loops)
     with results.held():
         run_missing(plan, results, HERE, lambda _: None)
     return plan
@@ -73,7 +74,7 @@ def test_one_difference_refuses_the_folder_for_good(
         with pytest.raises(BatchDiffersError, match=said):
             run(tmp_path)
     with pytest.raises(BatchDiffersError, match=said):
-        require_no_difference(Results(tmp_path), ["tested"])
+        require_no_difference(Results(tmp_path), [source_hash()])
     require_no_difference(Results(tmp_path), ["of another program"])
 
 
@@ -82,4 +83,4 @@ def test_damaged_witness_is_named(tmp_path: Path) -> None:
     path = tmp_path / witness_of(plan).file
     path.write_text("{}")
     with pytest.raises(StudyError, match=f"{path.name}: is no witness"):
-        require_no_difference(Results(tmp_path), ["tested"])
+        require_no_difference(Results(tmp_path), [source_hash()])

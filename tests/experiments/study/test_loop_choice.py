@@ -24,7 +24,7 @@ BOTH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
 
 
 def jobs(robots: int, task: TaskSettings = KNOWN) -> tuple[StudyJob, ...]:
-    plan = make_plan({"": task}, range(robots), PARTS, source_of=lambda _: "tested")
+    plan = make_plan({"": task}, range(robots), PARTS)
     return plan.every_job
 
 
@@ -87,7 +87,7 @@ def test_auto_names_no_task_if_nothing_is_driven_in_the_batch() -> None:
 
 
 def test_choice_of_a_shard_is_that_of_the_study() -> None:
-    plan = make_plan({"": KNOWN}, range(10), PARTS, loops=IN_BATCH, source_of=lambda _: "tested")
+    plan = make_plan({"": KNOWN}, range(10), PARTS, loops=IN_BATCH)
     parts = [shard_of(plan, Shard(number, 3)) for number in (1, 2, 3)]
     together = [job for part in parts for wave in part.waves for job in wave]
     assert {job.file for job in together} == {job.file for wave in plan.waves for job in wave}

@@ -108,7 +108,7 @@ def test_parcel_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None
 def test_parcel_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
     (first, _), _ = plan_in(tmp_path, given).waves
     parcel = pack(first, Results(tmp_path), [])._replace(program="another")
-    with pytest.raises(WorkerDiffersError, match=r"got [0-9a-f]{16}, allowed another"):
+    with pytest.raises(WorkerDiffersError, match=r"got [0-9a-f]{16}, Python .+, allowed another"):
         run_parcel(parcel)
 
 

@@ -19,7 +19,7 @@ TASK = short_task(2.5, 1.0, 1.0)
 
 def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> SeedPlan:
     parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    return make_plan({"": task}, seeds, parts, source_of=lambda _: "tested")
+    return make_plan({"": task}, seeds, parts)
 
 
 def taught(folder: Path, *seeds: int, processes: int = 1) -> SeedPlan:

@@ -84,7 +84,6 @@ def plan_for(
         seeds,
         variants,
         JobParts(factory=STAGE, robot=ROBOT, results=results),
-        source_of=lambda _: "tested",
     )
 
 
