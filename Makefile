@@ -65,7 +65,7 @@ equal-lessons: $(INSTALLED)
 # Each goes on where it was, and leaves its report in results/search.
 SEARCHES ?= $(basename $(notdir $(wildcard config/searches/*.yaml)))
 studies: $(INSTALLED)
-	for name in $(SEARCHES); do $(BIN)/kurt2rt search $$name || exit 1; done
+	for name in $(SEARCHES); do $(BIN)/kurt2rt study search $$name || exit 1; done
 
 # With a small environment of its own, because a robot needs no tests. Wheels for glibc 2.34 and newer, Debian 12.
 ARCHITECTURES ?= x86_64 aarch64

@@ -56,8 +56,18 @@ Shorten = Callable[[Sequence[str]], list[str]]
 # Seconds to minutes, or without end, as they stand in the text: run whole, but small, in the deep suite.
 LONG: dict[str, Shorten] = {
     "demo": lambda words: [*words, "--task", "short.yaml"],
-    "doubt": lambda words: [*words[:2], "--seeds", "915", "--world", "a", "--seconds", "2", "--task", "short.yaml"],
-    "certify": lambda words: [*words[:2], "--runs", "3", "--seconds", "1", "--pictures", "1"],
+    "study doubt": lambda words: [
+        *words[:3],
+        "--seeds",
+        "915",
+        "--world",
+        "a",
+        "--seconds",
+        "2",
+        "--task",
+        "short.yaml",
+    ],
+    "study certify": lambda words: [*words[:3], "--runs", "3", "--seconds", "1", "--pictures", "1"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
     "lesson": lambda words: shortened_lesson(words),
     "paper": lambda words: [*words, "--seeds", "100"],
@@ -132,8 +142,13 @@ def stories() -> list[Story]:
     return [story for story in found if story.commands]
 
 
+def command_of(words: Sequence[str]) -> str:
+    """Return the name of a command, with its word within `study`."""
+    return " ".join(words[: 2 if words and words[0] == "study" else 1])
+
+
 def is_long(words: Sequence[str]) -> bool:
-    if not words or words[0] not in LONG or "--help" in words:
+    if command_of(words) not in LONG or "--help" in words:
         return False
     return words[0] != "run" or "--seconds" not in words
 
@@ -242,15 +257,15 @@ def test_the_commands_of_the_documentation_run(
 
 
 def test_long_documented_commands_are_run_and_not_only_explained() -> None:
-    shortened = [LONG[words[0]](words) for story in stories() for words in story.commands if is_long(words)]
-    assert [words for words in shortened if "--help" in words or words[0] not in LONG] == []
+    shortened = [LONG[command_of(words)](words) for story in stories() for words in story.commands if is_long(words)]
+    assert [words for words in shortened if "--help" in words or command_of(words) not in LONG] == []
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("story", stories(), ids=told_where)
 def test_long_documented_commands_run_with_smaller_numbers(story: Story, folder: Path) -> None:
     for words in story.commands:
-        run(LONG[words[0]](words) if is_long(words) else words, folder)
+        run(LONG[command_of(words)](words) if is_long(words) else words, folder)
 
 
 def printed_errors(document: str) -> list[str]:
@@ -294,7 +309,7 @@ def test_added_sensor_is_a_feature_of_the_taught_run(kurt2rt: CommandLine) -> No
 
 def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) -> None:
     assert len(Path("my_learner.py").read_text(encoding="utf-8").splitlines()) <= 40
-    words = ("compare", "--learner", "my_learner:Nearest", "--seeds", "3901", "--after", "2", "--jobs", "1")
+    words = ("study", "compare", "--learner", "my_learner:Nearest", "--seeds", "3901", "--after", "2", "--jobs", "1")
     said = kurt2rt(*words, "--task", "short.yaml", "--set", "exam.worlds=[a]", "--json")
     assert said.exit_code == 0, said.err
     success, *_ = json.loads(said.out)["tables"]

@@ -34,7 +34,7 @@ def dry_run(tmp_path: Path) -> str:
 def test_make_studies_makes_each_shipped_search_again(tmp_path: Path) -> None:
     line = dry(tmp_path, "studies").splitlines()[-1]
     assert set(shipped_names("searches")) <= set(line.split(";")[0].split())
-    assert "kurt2rt search $name" in line
+    assert "kurt2rt study search $name" in line
 
 
 def test_make_wheelhouse_takes_wheels_alone_for_both_processors(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""`kurt2rt certify`."""
+"""`kurt2rt study certify`."""
 
 import shlex
 from dataclasses import dataclass
@@ -23,7 +23,6 @@ from kurt2rt.cli.options import (
     changes_of,
     results_option,
 )
-from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
@@ -44,7 +43,7 @@ _GENERATED = {"wall_following": ("rooms-SEED",)}
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt certify`."""
+    """Arguments and options of `kurt2rt study certify`."""
 
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
     runs: Annotated[
@@ -96,7 +95,6 @@ class _Options:
     task: TaskOfTheFile = None
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
     robot_settings: RobotName = None
@@ -116,10 +114,9 @@ def certify(options: _Options) -> None:
 
     For example:
 
-        kurt2rt certify results/demo/wall_following-0.knowledge
-        kurt2rt certify mine.knowledge --runs 10000 --world rooms-SEED
+        kurt2rt study certify results/demo/wall_following-0.knowledge
+        kurt2rt study certify mine.knowledge --runs 10000 --world rooms-SEED
         kurt2rt exam mine.knowledge --seed 20017 --world rooms-20017
-        kurt2rt certify mine.knowledge --runs 100000 --shard 2/8 --out part-2
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. Tasks that the batch does not know, such
@@ -152,11 +149,8 @@ def _certify(options: _Options) -> None:
     broken = BrokenShare(options.dead_sensors, robot.infrared.names)
     extent = Extent(options.first, options.runs, places, loop, broken)
     plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, loop)
-    if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
-        return
     report = options.out / "report.html"
-    with study_run(plan, results, command, options.jobs, options.on) as bar:
+    with study_run(plan, results, options.jobs, options.on) as bar:
         certificate = read_certificate(plan, results)
         worst = worst_runs(certificate.outcomes, options.pictures)
         commands = [_exam_command(options, each) for each in worst]
@@ -230,4 +224,4 @@ def _command(options: _Options, loop: DriveLoop) -> str:
     """Return the command as far as it decides the jobs, which are other ones without the batch."""
     bus = loop if loop is DriveLoop.BUS else None
     stated = {"runs": options.runs, "first": options.first, "exams": bus, "pictures": None}
-    return typed_command("certify", options, stated)
+    return typed_command("study certify", options, stated)

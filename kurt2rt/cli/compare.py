@@ -1,4 +1,4 @@
-"""`kurt2rt compare`."""
+"""`kurt2rt study compare`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,10 +24,8 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
-from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.study.loop_choice import LoopRequest
@@ -38,7 +36,7 @@ _AFTER = (10, 20, 40)
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt compare`."""
+    """Options of `kurt2rt study compare`."""
 
     learner: Annotated[
         list[str] | None,
@@ -63,7 +61,6 @@ class _Options:
     ] = None
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
@@ -85,9 +82,9 @@ def compare(options: _Options) -> None:
     For example, all learners of the project; one with another gate in two
     tasks; your own:
 
-        kurt2rt compare
-        kurt2rt compare --learner k-nn=0.8 --task fleeing --task eight
-        kurt2rt compare --learner mine:Mine
+        kurt2rt study compare
+        kurt2rt study compare --learner k-nn=0.8 --task fleeing --task eight
+        kurt2rt study compare --learner mine:Mine
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. docs/add-a-learner.md says how to write
@@ -117,12 +114,8 @@ def compare(options: _Options) -> None:
         JobParts(factory=simulations_of(robot), robot=robot, results=results),
         loops=requested_loops(options.lessons, options.exams),
     )
-    command = typed_command("compare", options, {"seeds": options.seeds})
-    if options.shard is not None:
-        run_shard(plan, results, command, options.shard, options.jobs, options.on, as_json=options.as_json)
-        return
     figure, not_judged = options.out / "compare.png", list(reasons_against_judging(plan.seeds))
-    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
+    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figure")
         comparison = read_comparison(plan, results)
         draw_curves(comparison, figure)

@@ -1,4 +1,4 @@
-"""`kurt2rt doubt`."""
+"""`kurt2rt study doubt`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -23,7 +23,7 @@ from kurt2rt.platform.text_table import print_whole
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt doubt`."""
+    """Arguments and options of `kurt2rt study doubt`."""
 
     taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --seeds leaves them.")]
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
@@ -62,8 +62,8 @@ def doubt(options: _Options) -> None:
     For example:
 
         kurt2rt lesson --task wall_following --seeds 915-919
-        kurt2rt doubt results/lesson --seeds 915-919 --world floors-SEED
-        kurt2rt doubt results/lesson --seeds 915-919 --world floors-SEED --response stands --set-down 0
+        kurt2rt study doubt results/lesson --seeds 915-919 --world floors-SEED
+        kurt2rt study doubt results/lesson --seeds 915-919 --world floors-SEED --response stands --set-down 0
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them

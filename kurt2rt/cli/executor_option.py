@@ -15,7 +15,7 @@ OnOption = Annotated[
     typer.Option(
         "--on",
         metavar="FILE",
-        help="Run the jobs on the workers of the cluster of this file (kurt2rt worker --new makes one).",
+        help="Run the jobs on the workers of the cluster of this file (kurt2rt study worker --new makes one).",
         show_default=False,
     ),
 ]

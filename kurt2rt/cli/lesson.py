@@ -15,7 +15,6 @@ from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_op
 from kurt2rt.cli.loop_options import requested_loops
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
@@ -60,7 +59,6 @@ def lesson(options: LessonOptions) -> None:
     made otherwise is taught again, and its knowledge file gets a new name.
     Several machines share the robots:
 
-        kurt2rt lesson --seeds 100-119 --shard 2/8 --out part-2
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
@@ -79,8 +77,6 @@ def lesson(options: LessonOptions) -> None:
     task = setup.task
     if options.seeds is None and options.exams is LoopRequest.BATCH:
         raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
-    if options.seeds is None and options.shard is not None:
-        raise typer.BadParameter("a shard is a part of many robots: give --seeds as well", param_hint="--shard")
     if options.seeds is None and options.lessons is LoopRequest.BATCH:
         raise typer.BadParameter("a batch is for many robots: give --seeds as well", param_hint="--lessons")
     if options.seeds is not None and options.knowledge is not None:
@@ -159,19 +155,7 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     loops = requested_loops(options.lessons, options.exams)
     plan = make_plan(tasks, options.all_seeds, parts, loops=loops)
     forget_lost_robots(plan, results)
-    if options.shard is not None:
-        run_shard(
-            plan,
-            results,
-            setup.command,
-            options.shard,
-            options.jobs,
-            options.on,
-            choice=plan.choice,
-            as_json=options.as_json,
-        )
-        return
-    with study_run(plan, results, setup.command, options.jobs, options.on, choice=plan.choice):
+    with study_run(plan, results, options.jobs, options.on, choice=plan.choice):
         by_teacher = read_results(plan, results)
     _show_seeds(by_teacher, setup.task, options)
 

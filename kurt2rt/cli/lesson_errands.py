@@ -5,7 +5,6 @@ import typer
 from behaviors.metrics.errands import ErrandsSettings
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
-from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
@@ -50,10 +49,7 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         basic_folder=options.basic,
         controls=options.controls,
     )
-    if options.shard is not None:
-        run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
-        return
-    with study_run(plan, results, setup.command, options.jobs, options.on) as bar:
+    with study_run(plan, results, options.jobs, options.on) as bar:
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []

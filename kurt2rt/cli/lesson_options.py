@@ -23,7 +23,6 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.shards import ShardOption
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.study.loop_choice import LoopRequest
@@ -57,7 +56,6 @@ class LessonOptions:
         ),
     ] = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO

@@ -7,7 +7,6 @@ from behaviors.metrics.route import RouteSettings
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_options import ROUTES, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.shards import run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, print_study, tables_of
 from kurt2rt.core.task_settings import TaskSettings
@@ -112,10 +111,7 @@ def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
         JobParts(factory=factory, robot=setup.robot, results=results),
         basic_folder=options.basic,
     )
-    if options.shard is not None:
-        run_shard(plan, results, setup.command, options.shard, options.jobs, options.on, as_json=options.as_json)
-        return
-    with study_run(plan, results, setup.command, options.jobs, options.on) as bar:
+    with study_run(plan, results, options.jobs, options.on) as bar:
         bar.say("pictures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, factory, results.folder))

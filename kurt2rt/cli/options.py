@@ -44,7 +44,7 @@ def teacher_option(default: str) -> Any:
 
 
 def search_argument() -> Any:
-    """Return the argument of `kurt2rt search`."""
+    """Return the argument of `kurt2rt study search`."""
     return typer.Argument(
         help="Search: a name in config/searches, or the path of a YAML file.",
         autocompletion=_names_in("searches"),

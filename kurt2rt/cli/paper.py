@@ -22,7 +22,6 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
@@ -49,7 +48,6 @@ class _Options:
     ] = None
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
@@ -85,7 +83,6 @@ def paper(options: _Options) -> None:
 
         kurt2rt paper --quick
         kurt2rt paper --task circle --task eight
-        kurt2rt paper --seeds 100-1099 --shard 2/8 --out part-2
     """
     _run_study(options)
 
@@ -119,12 +116,7 @@ def _run_study(options: _Options) -> None:
         loops=requested_loops(options.lessons, options.exams),
     )
     command = typed_command("paper", options, {"seeds": typed_seeds})
-    if options.shard is not None:
-        run_shard(
-            plan, results, command, options.shard, options.jobs, options.on, choice=plan.choice, as_json=options.as_json
-        )
-        return
-    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
+    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figures and report")
         study = read_study(plan, results)
         pictures = list(draw_figures(study, stage, results.folder))

@@ -24,7 +24,6 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
@@ -53,7 +52,6 @@ class _Options:
     ] = False
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
@@ -89,19 +87,7 @@ def phases(options: _Options) -> None:
     from kurt2rt.experiments.phases.tables import all_tables
 
     plan, results = _plan(options)
-    if options.shard is not None:
-        run_shard(
-            plan,
-            results,
-            _command(options),
-            options.shard,
-            options.jobs,
-            options.on,
-            choice=plan.choice,
-            as_json=options.as_json,
-        )
-        return
-    with study_run(plan, results, _command(options), options.jobs, options.on, choice=plan.choice) as bar:
+    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figures and report")
         study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))

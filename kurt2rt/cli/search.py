@@ -1,4 +1,4 @@
-"""`kurt2rt search`."""
+"""`kurt2rt study search`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +24,7 @@ _FOLDER = Path("results/search")
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt search`."""
+    """Arguments and options of `kurt2rt study search`."""
 
     search: Annotated[str, search_argument()]
     trials: Annotated[
@@ -59,8 +59,8 @@ def search(options: _Options) -> None:
 
     For example:
 
-        kurt2rt search wall_following
-        kurt2rt search circle --trials 20 --jobs 2
+        kurt2rt study search wall_following
+        kurt2rt study search circle --trials 20 --jobs 2
     """
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
@@ -83,7 +83,7 @@ def search(options: _Options) -> None:
     results = Results(options.out or _FOLDER / settings.name)
     parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
-    command = typed_command("search", options)
+    command = typed_command("study search", options)
     require_unchecked(plan, trials)
     if settings.exams is DriveLoop.BATCH:
         say_if_interpreted()

@@ -13,7 +13,6 @@ from kurt2rt.experiments.study.bus_witness import require_no_difference
 from kurt2rt.experiments.study.loop_choice import NO_CHOICE, LoopChoice
 from kurt2rt.experiments.study.plan import StudyPlan, missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.study_record import record_study
 
 
 @contextmanager
@@ -38,21 +37,18 @@ def says_how_to_go_on(results: Results) -> Iterator[None]:
 def study_run(
     plan: StudyPlan,
     results: Results,
-    command: str,
     jobs: int,
     on: Path | None,
     *,
-    part: StudyPlan | None = None,
     choice: LoopChoice = NO_CHOICE,
 ) -> Iterator[OneBar]:
     """Run the jobs of a study that have no result; the context holds the folder while tables and figures are made.
 
     Args:
-        plan: of the whole study, which is recorded in the folder.
-        command: typed words that decide the numbers.
+        plan: of the study.
+        results: folder of its results.
         jobs: number of processes.
         on: value of --on.
-        part: jobs to run; None: all of the plan.
         choice: loops of the plan's jobs, which is said if any job is run.
 
     Yields:
@@ -65,13 +61,11 @@ def study_run(
     """
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 
-    own = plan if part is None else part
     with says_how_to_go_on(results), open_executor(on, jobs) as executor, results.held():
         require_no_difference(results, {job.made_of.source for wave in plan.waves for job in wave})
-        missing_s = missing_time_s(own, results)
+        missing_s = missing_time_s(plan, results)
         if missing_s:
             say_choice(choice)
         with one_bar(missing_s) as bar:
-            record_study(results.folder, plan, command)
-            run_missing(own, results, executor, bar.update)
+            run_missing(plan, results, executor, bar.update)
             yield bar

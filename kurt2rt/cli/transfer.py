@@ -1,4 +1,4 @@
-"""`kurt2rt transfer`."""
+"""`kurt2rt study transfer`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,10 +23,8 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.shards import ShardOption, run_shard
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
-from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by
 from kurt2rt.core.teacher_settings import load_teacher
@@ -46,7 +44,7 @@ _WORLDS = {"streets": "streets-SEED"}
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt transfer`."""
+    """Options of `kurt2rt study transfer`."""
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     teacher: Annotated[str, teacher_option("ordinary")] = "ordinary"
@@ -96,7 +94,6 @@ class _Options:
     ] = False
     changes: Changes = None
     jobs: Jobs = ALL_PROCESSORS
-    shard: ShardOption = None
     on: OnOption = None
     lessons: LessonsOption = LoopRequest.AUTO
     exams: ExamsOption = LoopRequest.AUTO
@@ -118,8 +115,8 @@ def transfer(options: _Options) -> None:
 
     For example, other rooms for each robot, with controls; and other streets:
 
-        kurt2rt transfer --controls
-        kurt2rt transfer --task streets --teacher superhuman
+        kurt2rt study transfer --controls
+        kurt2rt study transfer --task streets --teacher superhuman
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was.
@@ -138,16 +135,8 @@ def transfer(options: _Options) -> None:
         JobParts(factory=simulations_of(robot), robot=robot, results=results),
         loops=requested_loops(options.lessons, options.exams),
     )
-    figure, command = (
-        options.out / "transfer.png",
-        typed_command("transfer", options, {"task": options.task, "seeds": options.seeds}),
-    )
-    if options.shard is not None:
-        run_shard(
-            plan, results, command, options.shard, options.jobs, options.on, choice=plan.choice, as_json=options.as_json
-        )
-        return
-    with study_run(plan, results, command, options.jobs, options.on, choice=plan.choice) as bar:
+    figure = options.out / "transfer.png"
+    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
         bar.say("figure")
         study = read_study(plan, results)
         draw_curves(study, figure)

@@ -1,4 +1,4 @@
-"""`kurt2rt worker`."""
+"""`kurt2rt study worker`."""
 
 import sys
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _At = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt worker`."""
+    """Options of `kurt2rt study worker`."""
 
     to: _To = None
     new: _New = None
@@ -32,13 +32,13 @@ def worker(options: _Options) -> None:
 
     Start one for each processor. Jobs are Python programs, so the members of a
     cluster know each other by a file with its key: copy it to each machine, and
-    keep it to yourself. `kurt2rt worker --new` makes it, and says how to start
-    the scheduler of Dask that passes the jobs on.
+    keep it to yourself. `kurt2rt study worker --new` makes it, and says how to
+    start the scheduler of Dask that passes the jobs on.
 
     For example:
 
-        kurt2rt worker --new lab.cluster --at tls://lab:8786
-        kurt2rt worker --to lab.cluster
+        kurt2rt study worker --new lab.cluster --at tls://lab:8786
+        kurt2rt study worker --to lab.cluster
         kurt2rt paper --on lab.cluster
     """
     # Not at the top: Dask is an extra, and every command is loaded where --help is said.

@@ -134,7 +134,6 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
         (("sim", "--world", "manhatan"), " manhattan?"),
         (("sim", "--world", "cave.png"), "cave.png: "),
         (("run", "--world", "maps/cave.PGM"), " maps/cave.yaml "),
-        (("knowledge", "key", ""), "folder"),
         (("replay", "/proc/self/mem"), f"[Errno {errno.EIO}]"),
         (("run", "--bus", "can7"), "bus 'can7': "),
         (("run", "--robot", "can7"), "bus 'can7': "),  # the earlier name of --bus
@@ -288,8 +287,8 @@ def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp
     assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0
 
 
-@pytest.mark.parametrize("command", ["demo", "lesson", "run", "compare", "transfer"])
+@pytest.mark.parametrize("command", ["demo", "lesson", "run", "study compare", "study transfer"])
 def test_task_of_another_robot_is_refused_with_that_robot(kurt2rt: CommandLine, command: str) -> None:
-    refused = kurt2rt.refused(command, "--task", "school/fleeing", "--robot-settings", "kurt2")
+    refused = kurt2rt.refused(*command.split(), "--task", "school/fleeing", "--robot-settings", "kurt2")
     assert "task school/fleeing: is for the robot school (got the robot kurt2" in refused
     assert refused.endswith("; give --robot-settings school")

@@ -1,4 +1,4 @@
-"""`kurt2rt certify` as a user meets it."""
+"""`kurt2rt study certify` as a user meets it."""
 
 import json
 from pathlib import Path
@@ -11,7 +11,7 @@ SHORT = ("--seconds", "1", "--runs", "3", "--jobs", "1", "--out", "made", "--pic
 
 
 def test_certificate_names_runs_that_exam_repeats(kurt2rt: CommandLine, lessons: Path) -> None:
-    said = kurt2rt("certify", lessons, *SHORT, "--world", "c", "--json")
+    said = kurt2rt("study", "certify", lessons, *SHORT, "--world", "c", "--json")
     assert said.exit_code == 0, said.err
     found = json.loads(said.out)
     assert (found["task"], found["seconds"], found["compared"]) == ("wall_following", 1.0, 3)
@@ -26,36 +26,15 @@ def test_certificate_names_runs_that_exam_repeats(kurt2rt: CommandLine, lessons:
         assert worst["command"] in page
 
 
-@pytest.mark.deep  # `results merge` of a lesson is quick, in test_results
-def test_shards_of_a_certificate_merge_to_what_one_machine_does(kurt2rt: CommandLine, lessons: Path) -> None:
-    words = ("certify", lessons, "--seconds", "1", "--runs", "4", "--jobs", "1", "--pictures", "0", "--world", "a")
-    alone = kurt2rt(*words, "--out", "alone")
-    assert alone.exit_code == 0, alone.err
-    # The witness of the first run goes with its block, to the first shard.
-    for number, jobs in ((1, 3), (2, 1)):
-        part = kurt2rt(*words, "--shard", f"{number}/2", "--out", f"part-{number}")
-        assert part.exit_code == 0, part.err
-        assert part.out.startswith(f"shard {number}/2 is done: {jobs} jobs in part-{number}\n")
-    (study,) = json.loads(kurt2rt("results", "show", "part-1", "--json").out)["studies"]
-    assert study["command"] == f"kurt2rt certify {lessons.name} --runs 4 --seconds 1 --world a --first-seed 20000"
-    assert (study["jobs"], len(study["missing"])) == (4, 1)
-    merged = kurt2rt("results", "merge", "both", "part-1", "part-2")
-    assert merged.exit_code == 0, merged.err
-    whole = kurt2rt(*words, "--out", "both")
-    assert whole.out == alone.out.replace("alone/", "both/")
-    for path in Path("alone").rglob("*.json"):
-        assert (Path("both") / path.relative_to("alone")).read_bytes() == path.read_bytes()
-
-
 def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons: Path) -> None:
-    whole = kurt2rt("certify", lessons, *SHORT)
+    whole = kurt2rt("study", "certify", lessons, *SHORT)
     assert "Probability within 1 s of wall_following" in whole.out
     assert "report  made/report.html" in whole.out
     gone, *others = sorted(Path("made/results").glob("witness-*.json"))
     others += Path("made/results").glob("runs-*.json")
     before = gone.read_bytes(), [path.stat().st_mtime_ns for path in others]
     gone.unlink()
-    again = kurt2rt("certify", lessons, *SHORT)
+    again = kurt2rt("study", "certify", lessons, *SHORT)
     assert again.exit_code == 0, again.err
     assert again.out == whole.out
     assert (gone.read_bytes(), [path.stat().st_mtime_ns for path in others]) == before
@@ -66,7 +45,7 @@ ALONE = ("--set", "learning.doubt.asks=true", "--set", "learning.doubt.alone=tru
 
 
 def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: CommandLine, lessons: Path) -> None:
-    said = kurt2rt("certify", lessons, *SHORT, *ALONE)
+    said = kurt2rt("study", "certify", lessons, *SHORT, *ALONE)
     assert said.exit_code == 0, said.err
     assert "stands at a doubt without a teacher" in said.err
     assert "All runs were driven on the CAN loop" in said.out
@@ -96,5 +75,5 @@ def test_exam_repeats_a_run_with_a_broken_sensor(kurt2rt: CommandLine, lessons: 
 def test_bad_input_is_refused_in_one_line(
     kurt2rt: CommandLine, lessons: Path, words: tuple[str, ...], why: str
 ) -> None:
-    assert why in kurt2rt.refused("certify", lessons, *SHORT, *words)
+    assert why in kurt2rt.refused("study", "certify", lessons, *SHORT, *words)
     assert not Path("made").exists()

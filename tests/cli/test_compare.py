@@ -1,4 +1,4 @@
-"""`kurt2rt compare` as a user meets it."""
+"""`kurt2rt study compare` as a user meets it."""
 
 import json
 from pathlib import Path
@@ -29,7 +29,7 @@ class Never:
 
 
 def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
-    words = ("compare", "--learner", "k-nn", *SHORT)
+    words = ("study", "compare", "--learner", "k-nn", *SHORT)
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     document = json.loads(said.out)
@@ -46,14 +46,14 @@ def test_learners_are_taught_once_and_compared(kurt2rt: CommandLine) -> None:
 
 
 def test_unknown_learner_is_refused(kurt2rt: CommandLine) -> None:
-    assert "there is no such learner" in kurt2rt.refused("compare", "--learner", "deep-thought", *SHORT)
+    assert "there is no such learner" in kurt2rt.refused("study", "compare", "--learner", "deep-thought", *SHORT)
     assert not Path("made").exists()
 
 
 def test_changed_helper_of_a_learner_is_named_as_the_difference(kurt2rt: CommandLine) -> None:
     Path("my_asking.py").write_text(f"import my_helper\n{NEVER}", encoding="utf-8")
     Path("my_helper.py").write_text("HERE = 1\n", encoding="utf-8")
-    words = ("compare", "--learner", "my_asking:Never", *SHORT)
+    words = ("study", "compare", "--learner", "my_asking:Never", *SHORT)
     assert kurt2rt(*words).exit_code == 0
     Path("my_helper.py").write_text("HERE = 2\n", encoding="utf-8")
     refused = kurt2rt.refused(*words)

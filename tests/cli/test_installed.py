@@ -24,7 +24,7 @@ REFUSED = {
     "recording": ("replay", "why", "recover copies", "run --record runs", "run --live-view 0"),
     "simulation": ("run", "sim --bus shared:base", "demo", "exam base.knowledge", "knowledge graph base.knowledge"),
     "page": ("teach --phone",),
-    "studies": ("worker --to x",),
+    "studies": ("study worker --to x",),
     "export": ("export lerobot",),
     "ros": ("ros --as base",),
 }

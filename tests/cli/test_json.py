@@ -40,8 +40,8 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
 }
 REPORTING = {
     *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
-    *(("replay",), ("service", "check"), ("soak",), ("status",), ("transfer",), ("doubt",), ("why",)),
-    *(("certify",), ("results", "show"), ("compare",), ("results", "merge"), ("search",)),
+    *(("replay",), ("service", "check"), ("soak",), ("status",), ("why",)),
+    *(("study", name) for name in ("transfer", "compare", "doubt", "certify", "search")),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
     *(("plugin", "list"), ("plugin", "check"), ("export", "lerobot")),
 }

@@ -38,13 +38,3 @@ def test_lesson_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: Command
     path.write_text(path.read_text().replace('"differing":[]', '"differing":["lesson.asks"]'))
     for loop in ("batch", "bus"):
         assert "differ in lesson.asks; all results" in kurt2rt.refused(*words[:-1], loop)
-
-
-@pytest.mark.deep
-def test_lesson_on_the_bus_keeps_the_record_of_its_witnesses(kurt2rt: CommandLine) -> None:
-    words = ("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--lessons")
-    for loop in ("batch", "bus"):
-        assert kurt2rt(*words, loop, "--out", "made").exit_code == 0
-    merged = kurt2rt("results", "merge", "all", "made")
-    assert merged.exit_code == 0, merged.err
-    assert "4 of 4" in merged.out

@@ -7,7 +7,6 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.experiments.study.provenance import settings_hash
 from tests.cli.helpers import CommandLine, results_in, unknown_name
 
 COMMAND = "kurt2rt paper --seeds 100 --task short.yaml --no-plain"
@@ -40,7 +39,6 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
         "knowledge/shipped/short_circle-100.knowledge",
         "report.html",
         "results/shipped/short_circle-100.json",
-        f"studies/{settings_hash(COMMAND)}.json",
     ]
     report = Path("made/report.html").read_text()
     assert COMMAND in report

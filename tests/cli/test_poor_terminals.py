@@ -23,7 +23,6 @@ REPORTS: tuple[tuple[str, ...], ...] = (
     ("pair", "phone"),
     ("service", "show", "--bus", "can0"),
     ("status",),
-    ("results", "show", "."),
     ("knowledge", "list", "."),
     ("knowledge", "show", "taught.knowledge", "--rla", "1"),
     ("knowledge", "check", "taught.knowledge"),

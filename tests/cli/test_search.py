@@ -1,4 +1,4 @@
-"""`kurt2rt search` as a user meets it."""
+"""`kurt2rt study search` as a user meets it."""
 
 import json
 import sys
@@ -18,13 +18,13 @@ WORDS = ("--jobs", "1", "--out", "made", *SET)
 
 
 def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    said = kurt2rt("search", tiny_search(tmp_path), *WORDS)
+    said = kurt2rt("study", "search", tiny_search(tmp_path), *WORDS)
     assert said.exit_code == 0, said.err
     assert "Best trials of 3" in said.out
     assert said.out.endswith("found   made/found.yaml\nreport  made/report.html\n")
 
     found = yaml.safe_load(Path("made/found.yaml").read_text())
-    assert found["command"].startswith("kurt2rt search tiny.yaml --set teaching.supervised_s=1.5 ")
+    assert found["command"].startswith("kurt2rt study search tiny.yaml --set teaching.supervised_s=1.5 ")
     assert found["search"] == {"seeds": "3000-3001", "worlds": ["a"]}
     assert found["check"] == {"seeds": "1000-1001", "worlds": ["b"]}
     assert (found["study"], found["task"], found["trials"]) == ("tiny", "wall_following", 3)
@@ -36,12 +36,12 @@ def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tm
     assert page.images == ["Trials"]
     assert all(address.startswith("data:") for address in page.addresses)
 
-    again = kurt2rt("search", tiny_search(tmp_path), *WORDS, "--json")
+    again = kurt2rt("study", "search", tiny_search(tmp_path), *WORDS, "--json")
     told = json.loads(again.out)
     assert told["verdict"] == found["verdict"]
     assert (told["better"] is None) == (found["changes"] == {})
     assert yaml.safe_load(Path("made/found.yaml").read_text()) == found
-    assert "allowed 3" in kurt2rt.refused("search", tiny_search(tmp_path), *WORDS, "--trials", "4")
+    assert "allowed 3" in kurt2rt.refused("study", "search", tiny_search(tmp_path), *WORDS, "--trials", "4")
 
 
 @pytest.mark.parametrize(
@@ -57,12 +57,12 @@ def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tm
 def test_wrong_search_is_refused_before_anything_runs(
     kurt2rt: CommandLine, tmp_path: Path, other: dict[str, object], told: str
 ) -> None:
-    assert told in kurt2rt.refused("search", tiny_search(tmp_path, **other), *WORDS)
+    assert told in kurt2rt.refused("study", "search", tiny_search(tmp_path, **other), *WORDS)
     assert not Path("made").exists()
 
 
 def test_unknown_search_is_refused_with_those_that_are(kurt2rt: CommandLine) -> None:
-    assert unknown_name("searches", "sledging") in kurt2rt.refused("search", "sledging")
+    assert unknown_name("searches", "sledging") in kurt2rt.refused("study", "search", "sledging")
 
 
 def test_search_without_optuna_names_its_extra(
@@ -71,7 +71,7 @@ def test_search_without_optuna_names_its_extra(
     monkeypatch.setitem(sys.modules, "optuna", None)
     for name in [name for name in sys.modules if name.startswith("kurt2rt.experiments.search")]:
         monkeypatch.delitem(sys.modules, name)
-    line = kurt2rt.refused("search", tiny_search(tmp_path), *WORDS)
+    line = kurt2rt.refused("study", "search", tiny_search(tmp_path), *WORDS)
     assert "pip install 'kurt2rt[studies]'" in line
 
 

@@ -68,7 +68,7 @@ TO_READ_IT = (
     ("exam", "mine.knowledge"),
     ("run", "--knowledge", "mine.knowledge"),
     ("lesson", "--knowledge", "mine.knowledge"),
-    ("certify", "mine.knowledge"),
+    ("study", "certify", "mine.knowledge"),
     ("knowledge", "export", "mine.knowledge", "out.zip"),
     ("knowledge", "contradictions", "mine.knowledge"),
 )

@@ -1,4 +1,4 @@
-"""`kurt2rt transfer` as a user meets it."""
+"""`kurt2rt study transfer` as a user meets it."""
 
 import json
 from pathlib import Path
@@ -14,7 +14,19 @@ SHORT = (
 
 
 def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
-    words = ("transfer", "--seeds", "1100,1101", "--after", "1", "--after", "0", "--teacher", "superhuman", *SHORT)
+    words = (
+        "study",
+        "transfer",
+        "--seeds",
+        "1100,1101",
+        "--after",
+        "1",
+        "--after",
+        "0",
+        "--teacher",
+        "superhuman",
+        *SHORT,
+    )
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     document = json.loads(said.out)
@@ -30,13 +42,25 @@ def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
 
 
 def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
-    assert "world a" in kurt2rt.refused("transfer", "--world", "a", *SHORT)
+    assert "world a" in kurt2rt.refused("study", "transfer", "--world", "a", *SHORT)
     assert not Path("made").exists()
 
 
 @pytest.mark.deep
 def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
-    words = ("transfer", "--seeds", "1100", "--after", "1", "--after", "0", "--teacher", "superhuman", *SHORT[:-1])
+    words = (
+        "study",
+        "transfer",
+        "--seeds",
+        "1100",
+        "--after",
+        "1",
+        "--after",
+        "0",
+        "--teacher",
+        "superhuman",
+        *SHORT[:-1],
+    )
     for loop in ("batch", "bus"):
         told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
         assert told.exit_code == 0, told.err

@@ -20,7 +20,7 @@ _PART_OF_A_TASK = (
     "`docs/add-a-task.md` of kurt2rt explains the file.\n"
 )
 _USES = {
-    LEARNERS.group: "\n`kurt2rt compare --learner $name` teaches it and compares it with others.\n",
+    LEARNERS.group: "\n`kurt2rt study compare --learner $name` teaches it and compares it with others.\n",
     POLICIES.group: _PART_OF_A_TASK.format(key="policy"),
     JUDGES.group: _PART_OF_A_TASK.format(key="judge"),
     METRICS.group: _PART_OF_A_TASK.format(key="course"),

@@ -15,10 +15,11 @@ from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
-from kurt2rt.experiments.study.study_record import WITNESSES
 from kurt2rt.knowledge.journal.loading import read_knowledge
 
 _MOST_NAMED = 5
+_WITNESSES = "witnesses"
+"""Folder, within that of the results, of comparisons of the batch with the CAN bus."""
 
 
 class BusWitnessOutcome(Settings):
@@ -63,7 +64,7 @@ class BusWitnessJob(StudyJob):
     @property
     def stem(self) -> str:
         """Path of the result, without the top folder and the ending."""
-        return f"{WITNESSES}/{self.of.stem}"
+        return f"{_WITNESSES}/{self.of.stem}"
 
     @property
     def robot_time_s(self) -> float:
@@ -100,7 +101,7 @@ def require_no_difference(results: Results, sources: Iterable[str]) -> None:
     `sources`: hashes of the program's source whose results are wanted. Raises BatchDiffersError, StudyError.
     """
     wanted = set(sources)
-    for path in sorted((results.folder / "results" / WITNESSES).rglob("*.json")):
+    for path in sorted((results.folder / "results" / _WITNESSES).rglob("*.json")):
         try:
             outcome = BusWitnessOutcome.model_validate_json(path.read_bytes())
         except ValidationError as error:

@@ -99,7 +99,7 @@ class ClusterExecutor:
             raise ClusterError(
                 "the cluster has no worker",
                 where=self._client.scheduler.address,
-                do="start one or more: kurt2rt worker --to FILE",
+                do="start one or more: kurt2rt study worker --to FILE",
             ) from error
 
 

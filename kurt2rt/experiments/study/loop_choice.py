@@ -45,7 +45,7 @@ ALL_ON_BUS = RequestedLoops()
 
 @dataclass(frozen=True, slots=True)
 class LoopChoice:
-    """Loops of all jobs of a study. It depends on the whole study alone, and so is that of each of its shards."""
+    """Loops of all jobs of a study."""
 
     loops: Mapping[str, DriveLoops]
     """Loops by the stem of the job; jobs that are not named are driven on the CAN bus."""

@@ -67,25 +67,14 @@ class Results:
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         with (self.folder / ".lock").open("ab") as lock:
-            self._lock(lock, fcntl.LOCK_EX)
+            self._lock(lock)
             for left_over in self.folder.glob(f"{_UNFINISHED}*"):
                 shutil.rmtree(left_over)
             yield
 
-    @contextmanager
-    def unchanged(self) -> Iterator[None]:
-        """Keep other runs from writing to the folder. Raises StudyError while one writes there."""
-        path = self.folder / ".lock"
-        if not path.exists():
-            yield
-            return
-        with path.open("rb") as lock:
-            self._lock(lock, fcntl.LOCK_SH)
-            yield
-
-    def _lock(self, lock: BinaryIO, kind: int) -> None:
+    def _lock(self, lock: BinaryIO) -> None:
         try:
-            fcntl.flock(lock, kind | fcntl.LOCK_NB)
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             raise StudyError(
                 "another run writes here",

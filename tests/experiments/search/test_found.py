@@ -22,7 +22,7 @@ def written(folder: Path, passed: RateDifference) -> dict[str, object]:
     robots = (RobotScore(4, 4, 9, 0, 50), RobotScore(3, 4, 11, 0, 60))
     checked = CheckedSettings("0007", VALUES, robots, passed, RateDifference(-2.0, -3.0, -1.0))
     check = CheckResult(RECORD, robots, (checked,), "passed_then_presses")
-    write_found(tiny_plan(folder), check, "kurt2rt search tiny", folder / "found.yaml")
+    write_found(tiny_plan(folder), check, "kurt2rt study search tiny", folder / "found.yaml")
     content: dict[str, object] = yaml.safe_load((folder / "found.yaml").read_text())
     return content
 
@@ -42,7 +42,11 @@ def test_found_without_better_settings_changes_nothing(tmp_path: Path) -> None:
     found = written(tmp_path, RateDifference(0.25, -0.125, 0.375))
     assert found["changes"] == {}
     assert "the shipped settings stay" in str(found["verdict"])
-    assert (found["command"], found["date"], found["source"]) == ("kurt2rt search tiny", RECORD.date, source_hash())
+    assert (found["command"], found["date"], found["source"]) == (
+        "kurt2rt study search tiny",
+        RECORD.date,
+        source_hash(),
+    )
     assert found["shipped"] == {
         "values": {"learning.radius": 900.0, "learning.weights.0.weight": 1.5},
         "passed": 7,

@@ -12,7 +12,6 @@ from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopRequest, RequestedLoops, choose_loops
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.seeds import make_plan
-from kurt2rt.experiments.study.shard import Shard, shard_of
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.paper.outcomes import MADE_OF
 
@@ -84,14 +83,6 @@ def test_auto_names_no_task_if_nothing_is_driven_in_the_batch() -> None:
     choice = choose_loops((*jobs(4), *jobs(4, UNKNOWN)), AUTO, ROBOT)
     assert choice.loops == {}
     assert choice.refusals == ()
-
-
-def test_choice_of_a_shard_is_that_of_the_study() -> None:
-    plan = make_plan({"": KNOWN}, range(10), PARTS, loops=IN_BATCH)
-    parts = [shard_of(plan, Shard(number, 3)) for number in (1, 2, 3)]
-    together = [job for part in parts for wave in part.waves for job in wave]
-    assert {job.file for job in together} == {job.file for wave in plan.waves for job in wave}
-    assert len(together) == 10 + 3
 
 
 @pytest.mark.parametrize("asked", [AUTO, IN_BATCH])
