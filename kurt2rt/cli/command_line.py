@@ -13,40 +13,36 @@ from hal.errors import ExitCode
 
 _PANELS = {
     "Teach": {
-        "run": "Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.",
-        "teach": "Teach a robot that runs: from a browser, from a terminal, or by a script.",
-        "pair": "Pair a teacher's device with this robot, and show the code that opens its page.",
-        "ros": "Join a robot that runs to ROS 2, over zenoh; no ROS is needed here.",
-        "demo": "Teach a simulated robot from nothing, examine it without its teacher, draw the drives.",
-        "lesson": "Teach the simulated robot with a scripted teacher, in simulated time.",
+        "run": "Run the robot in real time, until Ctrl-C or SIGTERM.",
+        "teach": "Teach a running robot: by browser, terminal or script.",
+        "pair": "Pair a teacher's device, and show the code of its page.",
+        "ros": "Join a running robot to ROS 2, over zenoh, without ROS.",
+        "demo": "Teach a simulated robot from nothing, then examine it.",
+        "lesson": "Teach simulated robots with a scripted teacher.",
     },
     "Examine": {
-        "exam": "Examine knowledge: the simulated robot drives without its teacher, who drives for comparison.",
-        "why": "Explain what the robot did, and why: at a moment of a run, in a whole run, or now.",
-        "replay": "Replay a recorded run, and compare every decision and all that is known, bit for bit.",
-        "recover": "Copy what is whole of a recorded run to files that Foxglove opens.",
+        "exam": "Examine knowledge: a simulated robot drives by itself.",
+        "why": "Explain what the robot did, and why: in a run, or now.",
+        "replay": "Replay a recorded run, and compare it bit for bit.",
+        "recover": "Copy what is whole of a run to files for Foxglove.",
         "export": "Write recorded runs as data sets for other programs.",
     },
-    "Knowledge": {
-        "knowledge": "Look after what the robot was taught. A file is changed only while no robot runs on it; it is "
-        "read also while one does.",
-    },
-    "Plug-ins": {
+    "Knowledge and plug-ins": {
+        "knowledge": "Look after what the robot was taught: show, undo, merge.",
         "plugin": "List, show, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks, worlds, "
         "robots.",
     },
     "Robot and service": {
-        "status": "Tell how a running robot program is: from another terminal, or another machine.",
-        "doctor": "Check this machine: what it offers the robot, what is missing, what to do.",
-        "sim": "Simulate a KURT2 on a CAN bus, in real time: controllers, sensors and wheels in a world.",
-        "commission": "Commission a real robot: a checklist that walks you through its first day.",
-        "service": "Run the robot's program as a unit of systemd, which starts it with the machine and again "
-        "whenever it fell.",
+        "status": "Tell how a running robot program is.",
+        "doctor": "Check what this machine offers the robot, and what to do.",
+        "sim": "Simulate a KURT2 on a CAN bus, in real time.",
+        "commission": "Commission a real robot: the checklist of its first day.",
+        "service": "Run the robot's program as a unit of systemd.",
     },
     "Studies": {
-        "paper": "Teach and examine every basic task of the paper, and compare with its results.",
-        "phases": "Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.",
-        "study": "Measure what taught robots can do: new worlds, other learners, doubt, certificates, settings.",
+        "paper": "Teach the tasks of the paper, and compare the results.",
+        "phases": "Train robots through phases 1 to 5, next to controls.",
+        "study": "Measure taught robots: new worlds, doubt, certificates.",
         "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
         "soak": "Let a day of the robot pass in simulated time in which everything fails.",
         "bench": "Measure what the runtime takes, on this machine, with the simulated robot: 7 minutes.",
@@ -59,9 +55,8 @@ _PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
 
 _HELP = (
     "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
-    "Begin with `kurt2rt run --phone`: a simulated robot stands there and asks you what to do. `kurt2rt demo` lets a "
-    "scripted teacher teach it wall following and examines it, in a minute. "
-    "`kurt2rt doctor` says what this machine offers for the real one."
+    "Begin with `kurt2rt run --phone`: a simulated robot stands there and asks you what to do. "
+    "`kurt2rt demo` teaches it by itself, in a minute."
 )
 
 USAGE_ERROR: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "ClickException")

@@ -88,7 +88,7 @@ class _Options:
 
 @takes_options(_Options)
 def commission(options: _Options) -> None:
-    """Commission a real robot: a checklist that walks you through its first day.
+    """Commission a real robot: the checklist of its first day.
 
     It listens for the controller's identity and every frame, tries which speed
     mode answers, each wheel's side and direction, the emergency stop and the

@@ -48,7 +48,7 @@ class _Options:
 
 @takes_options(_Options)
 def demo(options: _Options) -> None:
-    """Teach a simulated robot from nothing, examine it without its teacher, draw the drives.
+    """Teach a simulated robot from nothing, then examine it.
 
     A scripted teacher teaches over the same commands that a person uses, in
     simulated time and as fast as this machine allows: the robot asks where it
@@ -56,8 +56,8 @@ def demo(options: _Options) -> None:
     Then it drives without a teacher in each world of the task; in all but the
     first one it has never been.
 
-    Leaves a picture and the knowledge file in the output folder. Look at the
-    file with kurt2rt knowledge show.
+    Leaves a picture of the drives and the knowledge file in the output folder.
+    Look at the file with kurt2rt knowledge show.
 
     For example:
 

@@ -21,7 +21,7 @@ def doctor(
         typer.Option(metavar="N", min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness."),
     ] = 100,
 ) -> None:
-    """Check this machine: what it offers the robot, what is missing, what to do.
+    """Check what this machine offers the robot, and what to do.
 
     Measures how late the timer is compared with asyncio.sleep, and how long the
     disk takes to keep a lesson; looks at clock, real-time priority, memory lock,

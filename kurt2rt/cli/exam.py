@@ -55,11 +55,11 @@ class _Options:
 
 @takes_options(_Options)
 def exam(options: _Options) -> None:
-    """Examine knowledge: the simulated robot drives without its teacher, who drives for comparison.
+    """Examine knowledge: a simulated robot drives by itself.
 
-    Where the robot does not know a situation it stands, as it would in
-    earnest; a robot that makes no way for long is stuck, and the exam of that
-    world ends.
+    Its teacher drives for comparison, from the same start. Where the robot does
+    not know a situation it stands, as it would in earnest; a robot that makes no
+    way for long is stuck, and the exam of that world ends.
 
     The task is that of the knowledge file.
 

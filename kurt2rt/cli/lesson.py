@@ -37,7 +37,7 @@ from kurt2rt.platform.text_table import print_whole
 
 @takes_options(LessonOptions)
 def lesson(options: LessonOptions) -> None:
-    """Teach the simulated robot with a scripted teacher, in simulated time.
+    """Teach simulated robots with a scripted teacher.
 
     One lesson lasts as long as its task says (config/tasks), in robot time.
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59;

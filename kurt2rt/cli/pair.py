@@ -54,7 +54,7 @@ def pair(
     page_address: PageAddressName = None,
     settings: _Settings = "default",
 ) -> None:
-    """Pair a teacher's device with this robot, and show the code that opens its page.
+    """Pair a teacher's device, and show the code of its page.
 
     Makes two folders with a common secret: the robot's side, which stays here,
     and the device's side, which kurt2rt teach uses. Next:

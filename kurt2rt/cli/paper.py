@@ -60,7 +60,7 @@ class _Options:
 
 @takes_options(_Options)
 def paper(options: _Options) -> None:
-    """Teach and examine every basic task of the paper, and compare with its results.
+    """Teach the tasks of the paper, and compare the results.
 
     Leaves report.html, which holds everything, the figures as PNG, and each
     robot's result and knowledge file in the output folder.

@@ -61,7 +61,7 @@ class _Options:
 
 @takes_options(_Options)
 def phases(options: _Options) -> None:
-    """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
+    """Train robots through phases 1 to 5, next to controls.
 
     The path: untaught, answers (1), corrections (2), rewards (3), a critic is
     taught (4), the robot goes on alone (5); an exam after each, and a long run

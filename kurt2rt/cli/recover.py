@@ -17,7 +17,7 @@ def recover(
     runs: RunsFolder = None,
     settings: RuntimeSettingsName = "default",
 ) -> None:
-    """Copy what is whole of a recorded run to files that Foxglove opens.
+    """Copy what is whole of a run to files for Foxglove.
 
     A file that a power cut tore lacks its index, and so does the one that a
     robot is recording to: replay and why read them, a viewer refuses them. The

@@ -48,7 +48,7 @@ def replay(
     as_json: AsJson = False,
     settings: RuntimeSettingsName = "default",
 ) -> None:
-    """Replay a recorded run, and compare every decision and all that is known, bit for bit.
+    """Replay a recorded run, and compare it bit for bit.
 
     Sensor readings, commands and settings of the run go through the same tick
     again; nothing moves, and no knowledge file is touched. Ends with 1 and tells

@@ -64,7 +64,7 @@ class _Options:
 
 @takes_options(_Options)
 def ros(options: _Options) -> None:
-    """Join a robot that runs to ROS 2, over zenoh; no ROS is needed here.
+    """Join a running robot to ROS 2, over zenoh, without ROS.
 
     It is a paired device like a phone, in a process of its own: the robot drives
     on without it, and obeys it only as it obeys any teacher.

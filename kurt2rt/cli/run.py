@@ -145,11 +145,11 @@ class _Options:
 
 @takes_options(_Options)
 def run(options: _Options) -> None:
-    """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
+    """Run the robot in real time, until Ctrl-C or SIGTERM.
 
-    The robot drives by the nearest rule that it was taught. If that one is
-    farther than R from the situation, the robot stands and asks. Each lesson
-    is in the knowledge file before it is acknowledged. A status line tells
+    100 times a second the robot decides by the nearest rule that it was taught.
+    If that one is farther than R from the situation, the robot stands and asks.
+    Each lesson is in the knowledge file before it is acknowledged. A status line tells
     once a second what drives the wheels, which rule says so, and how punctual
     the loop is.
 

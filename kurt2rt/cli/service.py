@@ -26,7 +26,7 @@ from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
 
 service = typer.Typer(
-    help="Run the robot's program as a unit of systemd, which starts it with the machine and again whenever it fell.",
+    help="Run the robot's program as a unit of systemd.\n\nIt starts with the machine, and again whenever it fell.",
     no_args_is_help=True,
 )
 

@@ -60,7 +60,7 @@ class _Options:
 
 @takes_options(_Options)
 def sim(options: _Options) -> None:
-    """Simulate a KURT2 on a CAN bus, in real time: controllers, sensors and wheels in a world.
+    """Simulate a KURT2 on a CAN bus, in real time.
 
     For all that talks to it this is the robot: it obeys CONTROL, sends telemetry
     100 times a second, and brakes by itself when CONTROL ceases for 0.2 s. What

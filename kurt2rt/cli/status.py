@@ -69,11 +69,11 @@ class _Options:
 
 @takes_options(_Options)
 def status(options: _Options) -> None:
-    """Tell how a running robot program is: from another terminal, or another machine.
+    """Tell how a running robot program is.
 
-    How late its ticks begin, what it missed, how old what it senses is, its bus,
-    its disk, what its queues threw away, and what is wrong, since when, and what
-    to do about it.
+    From another terminal, or another machine: how late its ticks begin, what it
+    missed, how old what it senses is, its bus, its disk, what its queues threw
+    away, and what is wrong, since when, and what to do about it.
 
         kurt2rt status
         kurt2rt status --watch

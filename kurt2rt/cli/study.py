@@ -10,7 +10,7 @@ from kurt2rt.cli.transfer import transfer
 from kurt2rt.cli.worker import worker
 
 study = typer.Typer(
-    help="Measure what taught robots can do: new worlds, other learners, doubt, certificates, settings.",
+    help="Measure taught robots: new worlds, doubt, certificates.\n\nAnd compare learners, and search settings.",
     no_args_is_help=True,
 )
 for _command in (transfer, compare, doubt, certify, search, worker):

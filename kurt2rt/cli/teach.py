@@ -89,7 +89,7 @@ def teach(
     while_stdin: _WhileStdin = False,
     pages_as_json: _AsJson = False,
 ) -> None:
-    """Teach a robot that runs: from a browser, from a terminal, or by a script.
+    """Teach a running robot: by browser, terminal or script.
 
     Start the robot in another terminal, then open the address that this prints:
 

@@ -84,7 +84,7 @@ def why(
     settings: RuntimeSettingsName = "default",
     as_json: AsJson = False,
 ) -> None:
-    """Explain what the robot did, and why: at a moment of a run, in a whole run, or now.
+    """Explain what the robot did, and why: in a run, or now.
 
     Of one moment: which RLA won and by how much, which was behind it, which
     features mattered, who taught it when and instead of what, how often it was

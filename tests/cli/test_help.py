@@ -144,7 +144,7 @@ def test_version_is_that_of_the_installed_package(kurt2rt: CommandLine) -> None:
 def test_help_lists_each_command_in_one_panel(kurt2rt: CommandLine) -> None:
     lines = kurt2rt("--help").out.splitlines()
     panels = [line.strip("╭─╮ ") for line in lines if line.startswith("╭")]
-    assert panels == ["Options", "Teach", "Examine", "Knowledge", "Plug-ins", "Robot and service", "Studies"]
+    assert panels == ["Options", "Teach", "Examine", "Knowledge and plug-ins", "Robot and service", "Studies"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
