@@ -149,9 +149,9 @@ def run(options: _Options) -> None:
 
     100 times a second the robot decides by the nearest rule that it was taught.
     If that one is farther than R from the situation, the robot stands and asks.
-    Each lesson is in the knowledge file before it is acknowledged. A status line tells
-    once a second what drives the wheels, which rule says so, and how punctual
-    the loop is.
+    Each lesson is in the knowledge file before it is acknowledged. A status line
+    tells once a second what drives the wheels, which rule says so, and how
+    punctual the loop is.
 
     Teach it from a browser or from another terminal:
 

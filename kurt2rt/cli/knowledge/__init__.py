@@ -12,8 +12,8 @@ from kurt2rt.cli.knowledge.show import check, lessons, show
 from kurt2rt.cli.knowledge.undo import redo, undo
 
 knowledge = typer.Typer(
-    help="Look after what the robot was taught: show, undo, merge.\n\nA file is changed only while no robot runs on it; "
-    "it is read also\nwhile one does.",
+    help="Look after what the robot was taught: show, undo, merge.\n\n"
+    "A file is changed only while no robot runs on it; it is read also while one\ndoes.",
     no_args_is_help=True,
 )
 knowledge.command("list")(list_files)
