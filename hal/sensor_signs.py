@@ -1,21 +1,12 @@
 """Signs that one infra-red sensor is broken: dead, stuck, unplugged, dark or seeing a phantom."""
 
 from collections.abc import Container
-from enum import IntEnum, StrEnum
+from enum import StrEnum
 from typing import NamedTuple
 
 from hal.odometry import WheelMotion
 from hal.sensor_beam import Beam
 from hal.sensor_ring import Neighbours
-
-
-class SensorRules(IntEnum):
-    """Version of the rules by which sensors are noticed; a recording is replayed by its own."""
-
-    NOISE = 1
-    """Rules up to 2026-11-26: the noisy signs need 4.5 s and neighbours that changed by 100 counts."""
-    MOTION = 2
-    """The motion of the wheels tells a phantom, and a pressed sensor is not dark."""
 
 
 class SensorFault(StrEnum):
@@ -52,10 +43,8 @@ QUIET_COUNTS, QUIET_RATIO = 12, 0.16
 """Width of the band that noise alone explains, in counts and as a ratio of the reading: 8 standard deviations."""
 DIFFERS_COUNTS = 60
 """Difference to both neighbours that contradicts them."""
-SEES_NOTHING_TICKS = 450
-"""Ticks of driving in such a contradiction by SensorRules.NOISE."""
 DARK_TICKS = 90
-"""Ticks of driving in such a contradiction by SensorRules.MOTION; 30 had four false alarms in 27 minutes, 45 one."""
+"""Ticks of driving in such a contradiction; 30 had four false alarms in 27 minutes, 45 one."""
 DARK_DIFFERS_COUNTS = 40
 """Difference to both neighbours that contradicts a dark sensor: they see something within 0.44 m."""
 AGREES_COUNTS = 30
@@ -77,7 +66,6 @@ class SensorLimits(NamedTuple):
     lowest: float
     highest: float
     stuck_ticks: int
-    rules: SensorRules
 
 
 class SensorSigns:
@@ -101,7 +89,6 @@ class SensorSigns:
         "_lowest",
         "_quiet_high",
         "_quiet_low",
-        "_rules",
         "_second_after",
         "_second_before",
         "_stuck_ticks",
@@ -122,7 +109,7 @@ class SensorSigns:
         self._beam = beam
         self._before, self._after = near.before, near.after
         self._second_before, self._second_after = near.second_before, near.second_after
-        self._lowest, self._highest, self._stuck_ticks, self._rules = limits
+        self._lowest, self._highest, self._stuck_ticks = limits
         self._has_witnesses = self._looks_alike = near.has_witnesses
         self.restart(0)
 
@@ -177,16 +164,10 @@ class SensorSigns:
             return SensorFault.OUT_OF_RANGE
         if driven - self.still_from >= self._stuck_ticks:
             return SensorFault.STUCK
-        if self._rules is not SensorRules.NOISE:
-            if self.agreed_ticks >= DARK_TICKS or (self.low_ticks >= DARK_TICKS and self._neighbours_change):
-                return SensorFault.SEES_NOTHING
-            if self.passes:
-                return SensorFault.SEES_A_PHANTOM
-        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
-        seems_dark = self._rules is SensorRules.NOISE and self.low_ticks >= SEES_NOTHING_TICKS
-        if swing >= SWING_COUNTS and seems_dark:
+        if self.agreed_ticks >= DARK_TICKS or (self.low_ticks >= DARK_TICKS and self._neighbours_change):
             return SensorFault.SEES_NOTHING
-        if swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS:
+        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
+        if self.passes or (swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS):
             return SensorFault.SEES_A_PHANTOM
         return None
 
@@ -212,25 +193,19 @@ class SensorSigns:
     def _compare(self, counts: tuple[int, ...], drove: int, motion: WheelMotion) -> None:
         """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
         before, after = counts[self._before], counts[self._after]
-        moves = self._rules is not SensorRules.NOISE
-        contradicts = self.low_ticks or self.high_ticks
-        if contradicts or not moves:
+        if self.low_ticks or self.high_ticks:
             self._widen(before, after)
         else:  # a neighbour that jumped before the contradiction and is stuck since is no witness
             self._before_low = self._before_high = before
             self._after_low = self._after_high = after
         nearest, high = min(before, after), self._quiet_high
         if nearest > high:
-            if nearest - high > (DARK_DIFFERS_COUNTS if moves else DIFFERS_COUNTS):
-                if moves:
-                    if high >= self._beam.dark_counts:
-                        return
-                    if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
-                        self.agreed_ticks += drove
+            if nearest - high > DARK_DIFFERS_COUNTS and high < self._beam.dark_counts:
+                if min(counts[self._second_before], counts[self._second_after]) - high > AGREES_COUNTS:
+                    self.agreed_ticks += drove
                 self.low_ticks += drove
         elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
-            if moves:
-                self._follow_obstacle(counts, motion)
+            self._follow_obstacle(counts, motion)
             self.high_ticks += drove
 
     def _widen(self, before: int, after: int) -> None:

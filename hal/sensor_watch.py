@@ -19,7 +19,6 @@ from hal.sensor_signs import (
     STUCK_TIMES,
     SensorFault,
     SensorLimits,
-    SensorRules,
     SensorSigns,
 )
 
@@ -45,9 +44,8 @@ class BrokenSensor(NamedTuple):
 class SensorWatch:
     """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
 
-    def __init__(self, robot: RobotSettings, rules: SensorRules = SensorRules.MOTION) -> None:
+    def __init__(self, robot: RobotSettings) -> None:
         infrared = robot.infrared
-        self._rules = rules
         self._odometry = WheelOdometry(robot.geometry)
         self._left_ticks = self._right_ticks = 0
         # No wheel turns farther between two looks: another node forged such encoder frames.
@@ -56,7 +54,7 @@ class SensorWatch:
         self._sensors = infrared.sensors
         lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
         self._states = [
-            SensorSigns(near, beam_of(infrared, place), SensorLimits(lowest, highest, stuck_ticks, rules))
+            SensorSigns(near, beam_of(infrared, place), SensorLimits(lowest, highest, stuck_ticks))
             for place, near in enumerate(neighbours_of(infrared.sensors))
         ]
         self._ticks = self._driven = 0
@@ -73,7 +71,7 @@ class SensorWatch:
         """
         self._ticks += 1
         # Wheels that turn while a bumper is pressed may not move the robot.
-        if not readings.bumpers or self._rules is SensorRules.NOISE:
+        if not readings.bumpers:
             self._driven += driving
             self._left_ticks += readings.encoder_left_ticks
             self._right_ticks += readings.encoder_right_ticks

@@ -8,7 +8,6 @@ from behaviors.repertoire import Repertoire
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.sensor_ring import SubstituteReadings
-from hal.sensor_signs import SensorRules
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, actions_ahead, features_ahead, set_points
@@ -83,11 +82,9 @@ class RuntimeOptions:
     tolerates_stalls: bool = False
     """True if the robot stalls with this program, because it is simulated in it."""
     checks_sensors: bool = True
-    """Notice single broken sensors and stop; False for recordings of before, and for studies of such a fault."""
-    sensor_rules: SensorRules = SensorRules.MOTION
-    """Rules by which broken sensors are noticed; those of before for recordings of before."""
+    """Notice single broken sensors and stop; False for studies of such a fault."""
     asks_at_bumper: bool = True
-    """Ask if an RLA pushes on toward what a bumper touches; False for recordings of before this question."""
+    """Ask if an RLA pushes on toward what a bumper touches; False for a teacher who cannot see a bumper."""
     appraises: bool = True
     """Compute the critic's features in each tick. False: only if the knowledge has RLAs of the critic, for a drive in
     which nothing else reads them."""
@@ -272,7 +269,7 @@ class _Assembly:
             timer=TickTimer(),
             appraisal_perception=AppraisalPerception(self.critic, self._settings) if appraises else None,
             expectations=self.expectations,
-            sensor_watch=SensorWatch(self._settings, self._options.sensor_rules) if checks else None,
+            sensor_watch=SensorWatch(self._settings) if checks else None,
             substitute=SubstituteReadings(infrared) if checks else None,
         )
 

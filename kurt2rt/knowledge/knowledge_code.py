@@ -11,6 +11,7 @@ _EXPORT_AGAIN = "export it again"
 _ROOMY_FOLDER = "give a path in a folder that may be written and has room"
 _HEALTH = "look at the disk's health"
 _LOCAL = "give a path on a local disk"
+_ITS_KURT2RT = "read it with the kurt2rt that wrote it"
 _NEW_FILE = "give the path of a new file"
 
 
@@ -57,11 +58,7 @@ class KnowledgeCode(ErrorCode):
     UNREADABLE = ("unreadable", "cannot be read ({error})", _KNOWLEDGE_FILE)
     NO_SQLITE_FILE = ("no sqlite file", "is not a knowledge file (no SQLite file)", _KNOWLEDGE_FILE)
     OTHER_PROGRAM = ("other program", "is an SQLite file of another program", _KNOWLEDGE_FILE)
-    NEWER_FORMAT = (
-        "newer format",
-        "has format {version} of a newer kurt2rt, this one knows up to {allowed}",
-        "update kurt2rt",
-    )
+    OTHER_FORMAT = ("other format", "has format {version}, this kurt2rt knows format {allowed}", _ITS_KURT2RT)
     FOREIGN_SCHEMA = (
         "foreign schema",
         "holds a {kind} {name!r} that kurt2rt did not make",
@@ -160,10 +157,10 @@ class KnowledgeCode(ErrorCode):
         _NEW_COPY,
     )
     PACKAGE_NOT_OURS = ("package not ours", "its {name} is none of kurt2rt", _PACKAGE)
-    PACKAGE_NEWER_FORMAT = (
-        "package newer format",
-        "has format {version} of a newer kurt2rt, this one knows up to {allowed}",
-        "update kurt2rt",
+    PACKAGE_OTHER_FORMAT = (
+        "package other format",
+        "has format {version}, this kurt2rt knows format {allowed}",
+        _ITS_KURT2RT,
     )
     PACKAGE_INVALID = ("package invalid", "cannot be understood ({error})", _EXPORT_AGAIN)
     PACKAGE_OTHER_FEATURES = (

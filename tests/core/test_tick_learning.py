@@ -12,7 +12,7 @@ from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
 from kurt2rt.core.tick_record import TickRecord
@@ -216,7 +216,8 @@ def test_values_continue_from_checkpoint_or_journal_credits() -> None:
     origin = Origin("r-1", "Ann", Phase.REINFORCEMENT, 5)
     events = (created(1, (float(NEAR),) * 72), RlaRewarded(1, -1, 4, origin, (Credit(1, -0.05),)))
     assert Drive(events).runtime.reinforcement.value(1) == -0.05
-    assert Drive(events, saved=Statistics(values={1: -0.08})).runtime.reinforcement.value(1) == -0.08
+    saved = Statistics(values={1: -0.08}, numbers={VALUES_INCLUDE: 2.0})
+    assert Drive(events, saved=saved).runtime.reinforcement.value(1) == -0.08
     assert Drive(events, saved=Statistics(uses={1: 7})).runtime.reinforcement.value(1) == -0.05
 
 

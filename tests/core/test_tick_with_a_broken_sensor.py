@@ -1,7 +1,6 @@
 """The tick with a broken infra-red sensor: it stops, says so, and goes on by the neighbours after a resume."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -9,7 +8,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from hal.sensor_ring import SubstituteReadings
-from hal.sensor_signs import SensorFault, SensorRules
+from hal.sensor_signs import SensorFault
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
@@ -118,19 +117,6 @@ def _facts_at(replayed: Replayed, now_s: float) -> DecisionFacts:
     return collect_facts(runtime, last.record, lambda _: "")
 
 
-def test_run_of_before_is_replayed_without_the_check(replayed: Replayed) -> None:
-    run = replace_head(replayed.run, checks_sensors=False)
-    entry, record = next(tick for tick in Replay(run) if list(compare(*tick)))
-    assert entry.tick == replayed.stopped[0].tick
-    assert record.decision.cause is not DecisionCause.STOPPED
-
-
-def replace_head(run: Run, *, checks_sensors: bool) -> Run:
-    """Return the run as an older or newer program would have recorded it."""
-    run.head = replace(run.head, checks_sensors=checks_sensors)
-    return run
-
-
 def test_noisy_phantom_stops_the_robot_and_replays(tmp_path: Path) -> None:
     infrared = load_robot().infrared
     run = read_run(
@@ -146,6 +132,3 @@ def test_noisy_phantom_stops_the_robot_and_replays(tmp_path: Path) -> None:
     (sensor,) = stopped.broken_sensors
     assert (sensor.place, sensor.fault) == (SENSOR, SensorFault.SEES_A_PHANTOM)
     assert stopped.standing.stop == ActiveStop(StopReason.SENSOR_BROKEN, TITLE)
-    run.head = replace(run.head, sensor_rules=SensorRules.NOISE)
-    entry, record = next(tick for tick in Replay(run) if list(compare(*tick)))
-    assert (entry.tick, record.broken_sensors) == (stopped.tick, ())

@@ -1,6 +1,5 @@
 """Lessons for the tests of this folder. Light to import: the killed children of test_kill.py start with it."""
 
-import json
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
@@ -22,7 +21,6 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.journal import Journal
 
 BINDING = KnowledgeBinding(
@@ -91,15 +89,6 @@ def append(path: Path, *events: TeachingEvent, binding: KnowledgeBinding = BINDI
     """Append events to the knowledge file at `path`, which is made if it is missing."""
     with Journal.open(path, binding) as journal:
         journal.append([JournalEntry(event, stamp) for event in events])
-
-
-def as_written_by(version: int, event: TeachingEvent) -> str:
-    """Return an event's text as an older kurt2rt wrote it."""
-    content = json.loads(encode_event(event)) | {"version": version}
-    for field, since in {"behaviour": 3, "level": 4, "credits": 4, "said": 4}.items():
-        if version < since:
-            content.pop(field, None)
-    return json.dumps(content, separators=(",", ":"))
 
 
 def tamper(path: Path, *statements: str) -> None:

@@ -90,19 +90,14 @@ class Reinforcement:
         InvalidEventError if an event does not fit.
         """
         saved = saved or Statistics()
-        included = len(events)
-        if self._has_saved(saved):
-            included = round(saved.numbers.get(self._rows_key, included))
-            self._replay(events[:included])
+        if self._rows_key in saved.numbers:
+            self._replay(events[: round(saved.numbers[self._rows_key])])
             self.rule.restore(self._without_deleted(saved))
         self._replay(events[self.rows :])
         self._since.clear()  # ticks of other runs
         self._punishments.clear()
         self._repair.forget_rolled_back()
-        # Older files do not tell the number of included rows: all rows.
-        tables = {VALUES_INCLUDE: saved.values, EDGE_WEIGHTS_INCLUDE: saved.edge_weights}
-        includes = {name: float(self.rows) for name, table in tables.items() if table}
-        self._saved = replace(saved, numbers={**includes, **saved.numbers})
+        self._saved = saved
 
     def snapshot(self) -> Statistics:
         """Return the teacher's values for the checkpoint; the other rule's table is unchanged."""
@@ -203,11 +198,6 @@ class Reinforcement:
     @property
     def _rows_key(self) -> str:
         return VALUES_INCLUDE if self._settings.rule == "td_lambda" else EDGE_WEIGHTS_INCLUDE
-
-    def _has_saved(self, saved: Statistics) -> bool:
-        """Return whether this rule has saved values."""
-        table = saved.values if self._settings.rule == "td_lambda" else saved.edge_weights
-        return self._rows_key in saved.numbers or bool(table)
 
     @property
     def _active_rule(self) -> ReinforcementRule:

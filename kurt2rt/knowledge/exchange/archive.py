@@ -16,7 +16,7 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 FORMAT = 1
-"""Raise it when the manifest or the files change, and keep reading older formats."""
+"""Format of the manifest and the files."""
 
 MANIFEST = "manifest.json"
 _FILES, _FORMAT = "files", "format"
@@ -117,8 +117,8 @@ def _manifest(data: bytes, path: Path) -> dict[str, Any]:
         raise KnowledgeError(KnowledgeCode.MANIFEST_DAMAGED, where=path, name=MANIFEST, error=error) from error
     if not isinstance(manifest, dict) or not isinstance(manifest.get(_FORMAT), int):
         raise KnowledgeError(KnowledgeCode.PACKAGE_NOT_OURS, where=path, name=MANIFEST)
-    if manifest[_FORMAT] > FORMAT:
-        raise KnowledgeError(KnowledgeCode.PACKAGE_NEWER_FORMAT, where=path, version=manifest[_FORMAT], allowed=FORMAT)
+    if manifest[_FORMAT] != FORMAT:
+        raise KnowledgeError(KnowledgeCode.PACKAGE_OTHER_FORMAT, where=path, version=manifest[_FORMAT], allowed=FORMAT)
     if not isinstance(manifest.get(_FILES), dict):
         raise KnowledgeError(KnowledgeCode.PACKAGE_NOT_OURS, where=path, name=MANIFEST)
     return manifest

@@ -128,10 +128,9 @@ def decode_statistics(data: bytes) -> Statistics:
                 )
                 for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
             },
-            # Recordings of before the delays were saved lack the key.
             {
                 require_text(teacher): tuple(map(require_int, took))
-                for teacher, took in content.get("answer_delays", {}).items()
+                for teacher, took in content["answer_delays"].items()
             },
         )
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

@@ -21,29 +21,12 @@ from kurt2rt.core.rla.events import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
-EVENT_VERSION = 6
-"""Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
-
-Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
-behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
-rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
-Up to version 4 no situation was named. Up to version 5 nothing was redone, and no credit told of which edge it was.
-"""
-
-_ADDED: tuple[tuple[int, str, str, object], ...] = (
-    (3, "created", "behaviour", ""),
-    (4, "created", "level", BASIC),
-    (4, "rewarded", "credits", []),
-    (4, "rewarded", "said", None),
-)
-"""(version, kind, field, value): the field came with the version; in older events it has the value."""
-
-_SINCE = {"named": 5, "redone": 6}
-"""Version that a kind of event came with; older programs cannot read it."""
+EVENT_VERSION = 1
+"""Version of the fields below."""
 
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
@@ -149,14 +132,9 @@ def _event(content: object) -> TeachingEvent:
     if not isinstance(content, dict):
         raise ValueError(f"a JSON {type(content).__name__} is no object")  # noqa: TRY004 - all problems are of one type
     version = _whole(content, "version", least=1)
-    if version > EVENT_VERSION:
-        raise _FieldError(
-            "version", f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}"
-        )
+    if version != EVENT_VERSION:
+        raise _FieldError("version", f"its version is {version}, this kurt2rt reads version {EVENT_VERSION}")
     kind = _text(content, "kind")
-    if version < _SINCE.get(kind, 1):
-        raise _FieldError("version", f"there was no {kind} in version {version}")
-    content = _as_of_now(content, kind, version)
     if kind not in _FIELDS:
         raise _FieldError("kind", f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
     foreign = sorted(content.keys() - {"version", "kind", *_FIELDS[kind]})
@@ -185,17 +163,6 @@ def _event(content: object) -> TeachingEvent:
         case "session ended":
             return SessionEnded(_whole(content, "lasted_ticks", least=0), origin)
     return _about_an_rla(kind, content, origin)
-
-
-def _as_of_now(content: dict[str, Any], kind: str, version: int) -> dict[str, Any]:
-    """Return the fields of an event that an older version wrote, completed as this version knows them."""
-    content = dict(content)
-    for since, of_kind, field, default in _ADDED:
-        if version < since and kind == of_kind:
-            if field in content:
-                raise _FieldError(field, f"{kind} has no {field!r} in version {version}")
-            content[field] = default
-    return content
 
 
 def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> TeachingEvent:

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
-from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
+from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.statistics_tables import TableChange, changes, read_statistics
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
@@ -125,7 +125,7 @@ class Journal:
         ).fetchone()
         if known is not None:
             sequence, stamped_at, written = known
-            return Receipt(command_id, sequence, stamped_at, new=False, agrees=_as_written_now(written) == text)
+            return Receipt(command_id, sequence, stamped_at, new=False, agrees=written == text)
         cursor = self._connection.execute(
             "INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)",
             (command_id, entry.stamped_at, text, checksum(command_id, entry.stamped_at, text)),
@@ -310,11 +310,3 @@ class Journal:
             yield
         except sqlite3.Error as error:
             raise from_sqlite(error, self.path) from error
-
-
-def _as_written_now(text: str) -> str | None:
-    """Return an event's text as this version writes it; None for one that cannot be read."""
-    try:
-        return encode_event(decode_event(text, "row"))
-    except KnowledgeError:
-        return None

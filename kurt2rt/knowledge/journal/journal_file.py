@@ -19,7 +19,6 @@ from kurt2rt.knowledge.journal.journal_schema import (
     require_our_mark,
     require_our_schema,
 )
-from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES, has_table
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 from kurt2rt.platform.durable_files import fsync_file, fsync_folder
@@ -246,20 +245,17 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, LevelFeatures]) -> None:
-    """Add the tables of a newer kurt2rt and the levels that the file lacks. Raises KnowledgeError.
+    """Add the levels that the file lacks. Raises KnowledgeError.
 
     A level that the file has with other features is bound to these; no lesson may be about it.
     """
     known = read_binding(connection, path).levels
     missing = {level: features for level, features in levels.items() if known.get(level) != features}
+    if not missing:
+        return
     try:
-        tables = [statement for name, statement in LATER_TABLES.items() if not has_table(connection, name)]
-        if not missing and not tables:
-            return
         connection.execute("BEGIN IMMEDIATE")
         try:
-            for statement in tables:
-                connection.execute(statement)
             connection.executemany("INSERT OR REPLACE INTO binding VALUES (?, ?)", _level_rows(missing).items())
             connection.execute("COMMIT")
         except BaseException:

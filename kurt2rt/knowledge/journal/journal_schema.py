@@ -6,7 +6,7 @@ from contextlib import closing
 from functools import lru_cache
 from pathlib import Path
 
-from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
+from kurt2rt.knowledge.journal.statistics_tables import STATISTICS_TABLES
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
@@ -28,11 +28,7 @@ CREATE TABLE lesson (
 ) STRICT;
 CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never deleted'); END;
 CREATE TRIGGER lesson_stands BEFORE UPDATE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never changed'); END;
-CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;
-CREATE TABLE transition (
-    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
-) STRICT, WITHOUT ROWID;
-"""
+{STATISTICS_TABLES}"""
 
 
 def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
@@ -46,16 +42,16 @@ def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def require_known_version(version: int, path: Path) -> None:
-    """Raise KnowledgeError for a format that only a newer kurt2rt reads."""
-    if version > FORMAT_VERSION:
-        raise KnowledgeError(KnowledgeCode.NEWER_FORMAT, where=path, version=version, allowed=FORMAT_VERSION)
+    """Raise KnowledgeError for another format."""
+    if version != FORMAT_VERSION:
+        raise KnowledgeError(KnowledgeCode.OTHER_FORMAT, where=path, version=version, allowed=FORMAT_VERSION)
 
 
 def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
     """Compare the file's schema with ours before any table is read. Raises KnowledgeError.
 
-    A view in the place of a table may have endless rows, and a foreign trigger may change what a lesson does. Tables
-    that a newer kurt2rt has added are left alone.
+    A view in the place of a table may have endless rows, and a foreign trigger may change what a lesson does. A
+    table of another name is left alone.
     """
     try:
         found = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
@@ -90,6 +86,4 @@ def new_database() -> sqlite3.Connection:
     """Return an empty knowledge file in memory, without binding. The caller closes the connection."""
     connection = sqlite3.connect(":memory:", isolation_level=None)
     connection.executescript(_SCHEMA)
-    for statement in LATER_TABLES.values():
-        connection.execute(statement)
     return connection

@@ -7,21 +7,25 @@ from typing import Any, NamedTuple
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.statistics import Statistics
 
-LATER_TABLES = {
-    "value": "CREATE TABLE value (rla_id INTEGER PRIMARY KEY, value REAL NOT NULL) STRICT",
-    "edge_weight": """CREATE TABLE edge_weight (
-        from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
-    ) STRICT, WITHOUT ROWID""",
-    "number": "CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID",
-    "expectation": """CREATE TABLE expectation (
-        rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
-        mean BLOB NOT NULL, squares BLOB NOT NULL
-    ) STRICT""",
-    "answer_delay": """CREATE TABLE answer_delay (
-        teacher TEXT NOT NULL, place INTEGER NOT NULL, ticks INTEGER NOT NULL, PRIMARY KEY (teacher, place)
-    ) STRICT, WITHOUT ROWID""",
-}
-"""Tables that files of an earlier kurt2rt lack, which are read as empty then; an earlier kurt2rt ignores them."""
+STATISTICS_TABLES = """
+CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;
+CREATE TABLE transition (
+    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE value (rla_id INTEGER PRIMARY KEY, value REAL NOT NULL) STRICT;
+CREATE TABLE edge_weight (
+    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE expectation (
+    rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
+    mean BLOB NOT NULL, squares BLOB NOT NULL
+) STRICT;
+CREATE TABLE answer_delay (
+    teacher TEXT NOT NULL, place INTEGER NOT NULL, ticks INTEGER NOT NULL, PRIMARY KEY (teacher, place)
+) STRICT, WITHOUT ROWID;
+"""
+"""SQL that creates the tables."""
 
 
 class TableChange(NamedTuple):
@@ -39,9 +43,7 @@ class _Table(NamedTuple):
     """Those of the key, then the one of the value."""
 
     def read(self, connection: sqlite3.Connection) -> dict[Any, Any]:
-        """Return the content by key (RLA id, pair of RLA ids, or name); empty if the file lacks a later table."""
-        if self.name in LATER_TABLES and not has_table(connection, self.name):
-            return {}
+        """Return the content by key (RLA id, pair of RLA ids, or name)."""
         columns, keys = ", ".join(self.columns), ", ".join(self.columns[:-1])
         rows = connection.execute(f"SELECT {columns} FROM {self.name} ORDER BY {keys}")
         return {key[0] if len(key) == 1 else tuple(key): value for *key, value in rows}
@@ -94,12 +96,6 @@ def changes(before: Statistics, after: Statistics) -> list[TableChange]:
     ]
 
 
-def has_table(connection: sqlite3.Connection, name: str) -> bool:
-    """Return whether the file has the table. Raises sqlite3.Error."""
-    found = connection.execute("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?", (name,))
-    return found.fetchone() is not None
-
-
 def _by_place(delays: Mapping[str, Sequence[int]]) -> dict[tuple[str, int], int]:
     return {(teacher, place): ticks for teacher, took in delays.items() for place, ticks in enumerate(took)}
 
@@ -116,8 +112,6 @@ def _key(key: int | str | tuple[int | str, ...]) -> tuple[int | str, ...]:
 
 
 def _read_expectations(connection: sqlite3.Connection) -> dict[int, Expectation]:
-    if not has_table(connection, "expectation"):
-        return {}
     rows = connection.execute("SELECT rla_id, lesson, count, ticks, mean, squares FROM expectation ORDER BY rla_id")
     return {rla_id: Expectation(*values) for rla_id, *values in rows}
 

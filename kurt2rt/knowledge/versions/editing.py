@@ -4,7 +4,6 @@ import math
 import os
 import uuid
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
@@ -63,12 +62,10 @@ def statistics_after(
     Raises:
         InvalidEventError: an event does not fit those before it.
     """
-    if not saved.values and VALUES_INCLUDE not in saved.numbers:
+    if VALUES_INCLUDE not in saved.numbers:
         return saved  # credits of another rule
     first_value = saved.numbers.get(FIRST_VALUE, TaughtValues().first_value)
     settings = ReinforcementSettings(with_teacher=TaughtValues(first_value=first_value, highest_value=None))
     account = Reinforcement(RlaSystem(dimensions, math.inf), DecisionHistory(dimensions), settings, period_s=0.01)
-    # An earlier kurt2rt did not save how many rows the values include: all rows of that time.
-    numbers = {VALUES_INCLUDE: float(len(before)), **saved.numbers}
-    account.restore([*before, *new], replace(saved, numbers=numbers))
+    account.restore([*before, *new], saved)
     return account.snapshot()

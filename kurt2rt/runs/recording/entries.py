@@ -51,8 +51,8 @@ class DecisionEntry(NamedTuple):
     asks_at: str
     mid: MidEntry | None
     plan: PlanStep | None
-    doubt: float | None = None
-    """None in recordings from before 2026-11-23, and if the task sets no doubt."""
+    doubt: float | None
+    """None if the task sets no doubt."""
 
 
 class OpinionEntry(NamedTuple):
@@ -76,8 +76,8 @@ class ResultEntry(NamedTuple):
     """Sentence for readers; a replay compares the code."""
     lesson: bool
     """True if the command changed knowledge; its acknowledgement then follows when it is durable."""
-    code: str | None = None
-    """Code of the outcome; None in recordings from before 2026-11-22."""
+    code: str
+    """Code of the outcome."""
 
 
 class TickEntry(NamedTuple):
@@ -110,10 +110,6 @@ class TickEntry(NamedTuple):
     """Hash of the knowledge after this tick (RlaSystem.knowledge_hash); None in ticks without it."""
     lesson_speed: float | None = None
     """Fraction of the decided speeds that was asked of the guard in a slow lesson; None at full speed."""
-
-
-RECORDED_AS = {"readings": "senses", "saving_error": "trouble"}
-"""Keys in recordings of fields that have another name in TickEntry."""
 
 
 def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:

@@ -12,7 +12,6 @@ from hal.robot_settings import RobotSettings
 from hal.settings_files import SHIPPED_DIR
 from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
@@ -97,7 +96,7 @@ class Recording:
             knowledge=str(Path(context.knowledge).resolve()) if context.knowledge else "",
             attended=context.attended,
             asked=context.asked,
-            stopped=stop_text(context.stopped),
+            stopped=context.stopped.reason if context.stopped is not None else "",
             behaviour=context.behaviour,
             fingerprints=hash_attachments(attachments),
             tolerates_stalls=context.tolerates_stalls,

@@ -29,7 +29,7 @@ TICK_SCHEMA: JsonSchema = {
     **_map(
         tick=_COUNT,
         now_s=_NUMBER,
-        senses=_map(
+        readings=_map(
             time_s=_NUMBER,
             infrared_counts=_many(_COUNT),
             infrared_age_s=_NUMBER,
@@ -41,7 +41,7 @@ TICK_SCHEMA: JsonSchema = {
         ),
         grant=_map(wheels=_WHEELS, reasons=_many(_TEXT), latched=_FLAG),
         commands=_many({"type": "object"}),
-        trouble=_TEXT,
+        saving_error=_TEXT,
         saved=_FLAG,
         lesson_speed=_NUMBER,
         decision=_map(

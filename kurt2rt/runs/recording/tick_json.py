@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, TypeVar, get_args, get_type_hints
 
-from hal.guard_reason import guard_reason
+from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.junction_event import JunctionEvent
@@ -56,7 +56,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             "number": entry.number,
             "tick": entry.tick,
             "now_s": _number(entry.now_s),
-            "senses": {
+            "readings": {
                 **({} if readings.time_s == entry.now_s else {"time_s": _number(readings.time_s)}),
                 "infrared_counts": readings.infrared_counts,
                 "infrared_age_s": _number(readings.infrared_age_s),
@@ -68,7 +68,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             },
             "grant": {"wheels": _wheels(grant.wheel_speeds), "reasons": grant.reasons, "latched": grant.latched},
             "commands": [encode_command(each) for each in entry.commands] or None,
-            "trouble": entry.saving_error,
+            "saving_error": entry.saving_error,
             "saved": entry.saved or None,
             "lesson_speed": entry.lesson_speed,
             "decision": _decision(entry.decision),
@@ -120,7 +120,7 @@ def _decision(decision: DecisionEntry) -> dict[str, Any]:
 
 
 def _entry(content: dict[str, Any]) -> TickEntry:
-    readings, grant = content["senses"], content["grant"]
+    readings, grant = content["readings"], content["grant"]
     opinion, surprise = content.get("opinion"), content.get("surprise")
     return _decoded(
         TickEntry,
@@ -132,10 +132,9 @@ def _entry(content: dict[str, Any]) -> TickEntry:
             infrared_counts=tuple(readings["infrared_counts"]),
         ),
         grant=GuardResult(
-            _decoded(WheelSpeeds, grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]
+            _decoded(WheelSpeeds, grant["wheels"]), tuple(map(GuardReason, grant["reasons"])), grant["latched"]
         ),
         commands=tuple(decode_command(each) for each in content.get("commands", ())),
-        saving_error=content.get("trouble"),
         saved=content.get("saved", False),
         decision=_decision_of(content["decision"]),
         opinion=None if opinion is None else _decoded(OpinionEntry, opinion),

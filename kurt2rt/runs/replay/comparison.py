@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.runs.recording.entries import RECORDED_AS, TickEntry, tick_entry
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 
 
 class TickDifference(NamedTuple):
@@ -32,24 +32,21 @@ def compare(entry: TickEntry, record: TickRecord) -> list[TickDifference]:
     if entry.knowledge is not None and record.knowledge is not None:
         knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))
     again = tick_entry(record, saved=entry.saved, knowledge=knowledge)
-    coded = all(each.code is not None for each in entry.results)
-    entry, again = _without_words(entry, coded=coded), _without_words(again, coded=coded)
+    entry, again = _without_words(entry), _without_words(again)
     if repr(again) == repr(entry):  # `==` takes 0.0 for -0.0 and True for 1, and NaN for another one
         return []
     return [TickDifference(entry.tick, *each) for each in _differences("", entry, again)]
 
 
-def _without_words(entry: TickEntry, *, coded: bool) -> TickEntry:
-    """Return the entry without the sentences of its results, and without codes unless they were recorded."""
-    results = (each._replace(text="", code=each.code if coded else None) for each in entry.results)
-    return entry._replace(results=tuple(results))
+def _without_words(entry: TickEntry) -> TickEntry:
+    """Return the entry without the sentences of its results."""
+    return entry._replace(results=tuple(each._replace(text="") for each in entry.results))
 
 
 def _differences(place: str, recorded: object, replayed: object) -> Iterator[tuple[str, object, object]]:
     if isinstance(recorded, tuple) and hasattr(recorded, "_fields") and type(recorded) is type(replayed):
         for name in recorded._fields:
-            recorded_name = RECORDED_AS.get(name, name)
-            below = f"{place}.{recorded_name}" if place else recorded_name
+            below = f"{place}.{name}" if place else name
             yield from _differences(below, getattr(recorded, name), getattr(replayed, name))
     elif repr(recorded) != repr(replayed):
         yield place, recorded, replayed

@@ -3,11 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from hal.sensor_signs import SensorRules
 from hal.settings import SettingsError
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
-from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
 from kurt2rt.core.rla.event_error import InvalidEventError
@@ -61,6 +60,7 @@ class Replay:
     def _build(self) -> Runtime:
         run, head = self.run, self.run.head
         try:
+            stop = ActiveStop(StopReason(head.stopped)) if head.stopped else None
             wanted = ActiveBehaviour(run.task.behaviours)
             if head.behaviour:
                 wanted.select(head.behaviour)
@@ -79,9 +79,6 @@ class Replay:
                         checkpoint=run.saved,
                         teacher_available=head.asked,
                         tolerates_stalls=head.tolerates_stalls,
-                        asks_at_bumper=head.asks_when_held,
-                        checks_sensors=head.checks_sensors,
-                        sensor_rules=SensorRules(head.sensor_rules),
                     ),
                 )
         except (SettingsError, KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
@@ -92,7 +89,6 @@ class Replay:
             raise RecordingError(f"cannot be replayed: {text_of(error.outcome)}", where=run.name) from error
         except ValueError as error:
             raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
-        stop = stop_of_text(head.stopped)
         if stop is not None:
             runtime.handler.stop(stop)
         return runtime

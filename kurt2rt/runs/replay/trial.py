@@ -88,7 +88,7 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
             if newest is None:
                 left_out.append(str(error))
             continue
-        if _taught_into(run, path, knowledge):
+        if _taught_into(run, knowledge):
             return RecentRuns((run,), tuple(left_out))
         newest = newest or run
     return RecentRuns(() if newest is None else (newest,), tuple(left_out))
@@ -115,18 +115,9 @@ def _recorded_in(folder: Path) -> list[Path]:
     return [each for each in runs_in(folder) if segments_in(each)]
 
 
-def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
-    """Return whether a run, recorded at `path`, taught into that file.
-
-    Up to 2026-11-22 the head has a path relative to the unknown working folder. The recordings usually lie below that
-    folder, so each parent of `path` is tried.
-    """
-    if not run.head.knowledge:
-        return False
-    taught, file = Path(run.head.knowledge), knowledge.resolve()
-    if taught.is_absolute():
-        return taught.resolve() == file
-    return any((folder / taught).resolve() == file for folder in path.resolve().parents)
+def _taught_into(run: Run, knowledge: Path) -> bool:
+    """Return whether a run taught into that file."""
+    return bool(run.head.knowledge) and Path(run.head.knowledge).resolve() == knowledge.resolve()
 
 
 def _incompatibility(run: Run, binding: KnowledgeBinding) -> str | None:

@@ -7,7 +7,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.teaching.commands import DeleteRla, Reward, Teach, Undo
 from tests.core.helpers import MINIMUM_TICKS, RADIUS
 from tests.core.reinforcement.helpers import CALM, SHARE, SIGNALS_ONLY, Track, deleted_ids, knows_good_from_bad
@@ -20,6 +20,11 @@ KNOWN = (created(1, (LEFT,), "a"), created(2, (RIGHT,), "b"))
 
 def track(*, phase: Phase = Phase.REINFORCEMENT, saved: Statistics | None = None) -> Track:
     return Track(*KNOWN, reinforcement=SIGNALS_ONLY, phase=phase, saved=saved)
+
+
+def saved_values(values: dict[int, float], rows: int) -> Statistics:
+    """Return values as they are after so many lessons."""
+    return Statistics(values=values, numbers={VALUES_INCLUDE: float(rows)})
 
 
 def sink(robot: Track, place: float, times: int = 3) -> None:
@@ -147,7 +152,7 @@ def test_punished_rla_is_withdrawn_and_asks_next_tick() -> None:
 
 
 def test_low_value_without_punishment_is_not_repaired() -> None:
-    robot = track(saved=Statistics(values={1: -0.9}))
+    robot = track(saved=saved_values({1: -0.9}, 3))
     robot.go(LEFT, 400)
     assert robot.learnt == []
     robot.signal(1)
@@ -253,7 +258,7 @@ def test_phase_5_enough_tries_delete_all_competitors() -> None:
 
 
 def test_correction_of_competitors_means_the_driver() -> None:
-    robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), saved=Statistics(values={1: -0.5}))
+    robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), saved=saved_values({1: -0.5}, 2))
     assert robot.go(LEFT).rla_id == 2
     assert robot.say(correct("c"), LEFT).outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=2, action="c", was="b")
     robot.go(LEFT)
@@ -261,7 +266,7 @@ def test_correction_of_competitors_means_the_driver() -> None:
 
 
 def test_competitors_with_teacher_are_deleted_last_asks() -> None:
-    saved = Statistics(values={1: 0.0, 2: -0.1})
+    saved = saved_values({1: 0.0, 2: -0.1}, 2)
     robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), reinforcement=SIGNALS_ONLY, saved=saved)
     sink(robot, LEFT, times=1)
     robot.go(LEFT)
@@ -328,7 +333,7 @@ def test_restore_saved_values_precede_credits() -> None:
     robot = track()
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
-    again = track_with(robot, Statistics(values={1: 0.1}))
+    again = track_with(robot, saved_values({1: 0.1}, 4))
     assert again.value(1) == pytest.approx(0.1)
     assert again.say(Undo("u-1", "Ann", blame.origin.command_id)).accepted
     assert again.value(1) == pytest.approx(0.1 - blame.credits[0].change)
@@ -478,7 +483,7 @@ def test_tried_actions_last_while_an_rla_is_active() -> None:
 
 
 def test_restore_drops_values_of_deleted_rlas() -> None:
-    robot = track(saved=Statistics(values={1: 0.25, 77: -0.5}))
+    robot = track(saved=saved_values({1: 0.25, 77: -0.5}, 3))
     assert robot.reinforcement.snapshot().values == {1: 0.25}
 
 

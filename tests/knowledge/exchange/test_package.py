@@ -138,7 +138,7 @@ def test_read_package_forged_parts_are_refused_by_code(exported: Path, tmp_path:
         ({MANIFEST: None}, KnowledgeCode.PACKAGE_PART_MISSING),
         ({MANIFEST: b"{}"}, KnowledgeCode.PACKAGE_NOT_OURS),
         ({MANIFEST: b"{"}, KnowledgeCode.MANIFEST_DAMAGED),
-        ({MANIFEST: json.dumps({**manifest, "format": 2}).encode()}, KnowledgeCode.PACKAGE_NEWER_FORMAT),
+        ({MANIFEST: json.dumps({**manifest, "format": 2}).encode()}, KnowledgeCode.PACKAGE_OTHER_FORMAT),
     )
     for number, (changes, code) in enumerate(cases):
         with refused(code):

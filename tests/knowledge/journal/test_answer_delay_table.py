@@ -6,7 +6,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.exchange.attachments import decode_statistics, encode_statistics
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.statistics_tables import changes
-from tests.knowledge.lessons import BINDING, tamper
+from tests.knowledge.lessons import BINDING
 
 SAVED = Statistics(answer_delays={"Ann": (120, 80, 80, 300), "Ben": (0,)})
 
@@ -25,20 +25,5 @@ def test_checkpoint_only_changed_delays_are_written() -> None:
     assert changes(SAVED, SAVED) == []
 
 
-def test_open_file_without_delays_gets_their_table(path: Path) -> None:
-    Journal.open(path, BINDING).close()
-    tamper(path, "DROP TABLE answer_delay")
-    with Journal.read_only(path) as journal:
-        assert journal.statistics() == Statistics()
-    with Journal.open(path, BINDING) as journal:
-        journal.checkpoint(SAVED)
-        assert journal.statistics() == SAVED
-
-
 def test_statistics_of_a_recording_have_the_delays() -> None:
     assert decode_statistics(encode_statistics(SAVED)) == SAVED
-
-
-def test_statistics_of_an_earlier_recording_have_no_delays() -> None:
-    earlier = encode_statistics(SAVED).replace(b'"answer_delays"', b'"a key that is not known"')
-    assert decode_statistics(earlier) == Statistics()

@@ -28,7 +28,6 @@ from kurt2rt.core.rla.rla import CRITIC, MID, Origin, Rla
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import (
-    as_written_by,
     created,
     deleted,
     origin,
@@ -103,7 +102,8 @@ def test_decode_event_foreign_text_is_refused_with_place(text: str) -> None:
 @pytest.mark.parametrize(
     ("key", "value"),
     [
-        ("version", 7),
+        ("version", 2),
+        ("version", 0),
         ("version", True),
         ("kind", "dreamt"),
         ("rla_id", 0),
@@ -155,9 +155,7 @@ def test_decode_event_wrong_field_is_named(key: str, value: object) -> None:
         (NAMED, "situation", [float("nan")]),
         (NAMED, "level", 1),
         (NAMED, "rla_id", 1),
-        (NAMED, "version", 4),
         (REDONE, "lesson", 1),
-        (REDONE, "version", 5),
         (session(10)[0], "name", None),
         (session(10)[1], "lasted_ticks", -1),
     ],
@@ -167,32 +165,6 @@ def test_decode_event_wrong_field_of_other_kinds_is_named(event: TeachingEvent, 
 
     with refused(KnowledgeCode.NOT_AN_EVENT, "row 1", key=key):
         decode_event(json.dumps(content), "row 1")
-
-
-@pytest.mark.parametrize(
-    ("event", "version", "key"),
-    [(created(1), 2, "behaviour"), (created(1), 3, "level"), (rewarded(1), 3, "credits")],
-)
-def test_decode_event_field_newer_than_its_version_is_named(event: TeachingEvent, version: int, key: str) -> None:
-    content = json.loads(encode_event(event)) | {"version": version}
-
-    with refused(KnowledgeCode.NOT_AN_EVENT, "row 1", key=key):
-        decode_event(json.dumps(content), "row 1")
-
-
-@pytest.mark.parametrize("version", [1, 2, 3])
-@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
-def test_decode_event_versions_1_to_3_are_read(event: TeachingEvent, version: int) -> None:
-    text = as_written_by(version, event)
-    assert ("behaviour" in text) == (version == 3 and isinstance(event, RlaCreated))
-    assert not any(field in text for field in ("level", "credits", "said"))
-
-    assert decode_event(text, "row 1") == event
-
-
-@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
-def test_decode_event_version_4_is_read(event: TeachingEvent) -> None:
-    assert decode_event(as_written_by(4, event), "row 1") == event
 
 
 def test_decode_event_behaviour_and_level_are_kept() -> None:

@@ -8,7 +8,7 @@ from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.statistics_tables import changes
-from tests.knowledge.lessons import BINDING, tamper
+from tests.knowledge.lessons import BINDING
 
 MEAN = np.array([1 / 3, -0.0, 5e-324, 1e150])
 
@@ -34,14 +34,3 @@ def test_checkpoint_only_changed_expectations_are_written() -> None:
     assert gone.rows == [(3,)]
     assert [row[:3] for row in written.rows] == [(2, "create-1", 8)]
     assert changes(after, after) == []
-
-
-def test_open_file_without_expectations_gets_their_table(path: Path) -> None:
-    Journal.open(path, BINDING).close()
-    tamper(path, "DROP TABLE expectation")
-    with Journal.read_only(path) as journal:
-        assert journal.statistics() == Statistics()
-    saved = Statistics(expectations={1: expectation()})
-    with Journal.open(path, BINDING) as journal:
-        journal.checkpoint(saved)
-        assert journal.statistics() == saved

@@ -6,22 +6,18 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal import journal_file
-from kurt2rt.knowledge.journal.entry import JournalEntry, checksum
-from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import ROOT, started
 from tests.knowledge.lessons import (
     BINDING,
     STAMP,
-    WITH_CRITIC,
     append,
-    as_written_by,
     begun,
     created,
     deleted,
@@ -73,47 +69,6 @@ def test_receipt_repeated_command_has_the_stamp_of_its_row(path: Path) -> None:
 
         assert (known.stamped_at, known.new, known.agrees) == (STAMP, False, True)
         assert (fresh.stamped_at, fresh.new, fresh.agrees) == (later, True, True)
-
-
-def test_append_command_of_an_older_version_is_written_once(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        written_as_version_1(journal, created(1))
-        again, another = journal.append([entry(1), JournalEntry(created(2, command_id="create-1"), STAMP)])
-
-        assert (again.sequence, again.new, again.agrees) == (1, False, True)
-        assert (another.sequence, another.new, another.agrees) == (1, False, False)
-
-
-def test_open_old_journal_is_read_and_appended_to(path: Path) -> None:
-    left = RlaCreated(replace(created(4).rla, behaviour="turn_left"))
-    with Journal.open(path, BINDING) as journal:
-        written_as_version_1(journal, created(1))
-        written_by(2, journal, created(2))
-        written_by(2, journal, replaced(1, "left", "forward"))
-        journal.append([entry(3), JournalEntry(left, STAMP)])
-
-    with Journal.read_only(path) as journal:
-        assert check_knowledge(journal) == []
-        system = fold_journal(journal, radius=1.0)
-    assert [(rla.rla_id, rla.action, rla.behaviour) for rla in system.rlas] == [
-        (1, "left", ""),
-        (2, "forward", ""),
-        (3, "forward", ""),
-        (4, "forward", "turn_left"),
-    ]
-
-
-def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
-    """Write a row as the first kurt2rt did."""
-    written_by(1, journal, event)
-
-
-def written_by(version: int, journal: Journal, event: TeachingEvent) -> None:
-    """Write a row as an older kurt2rt did."""
-    text = as_written_by(version, event)
-    command_id = event.origin.command_id
-    row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
-    journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)
 
 
 def test_append_batch_is_all_or_nothing(path: Path) -> None:
@@ -186,27 +141,7 @@ def test_append_and_checkpoint_is_one_transaction(path: Path) -> None:
         assert journal.statistics() == Statistics(values={1: 0.25})
 
 
-def before_phase_3(path: Path) -> Path:
-    """Make a knowledge file of a kurt2rt without values and critic; return its path."""
-    tamper(begun(path), *(f"DROP TABLE {name}" for name in LATER_TABLES), "INSERT INTO uses VALUES (1, 5)")
-    return path
-
-
-def test_open_file_without_later_tables_gets_them(path: Path) -> None:
-    with Journal.read_only(before_phase_3(path)) as look:
-        assert look.statistics() == Statistics({1: 5})
-        assert check_knowledge(look) == []
-        assert look.binding == BINDING
-    learnt = Statistics({1: 5}, {}, {1: 0.75}, {(1, 2): 95.0}, {BEST_SCORE: 0.5})
-    with Journal.open(path, WITH_CRITIC) as journal:
-        assert journal.binding == WITH_CRITIC
-        journal.checkpoint(learnt)
-        assert journal.statistics() == learnt
-    with Journal.read_only(path) as look:
-        assert (look.statistics(), look.binding) == (learnt, WITH_CRITIC)
-
-
-def test_statistics_missing_first_table_is_refused(path: Path) -> None:
+def test_statistics_missing_table_is_refused(path: Path) -> None:
     tamper(begun(path), "DROP TABLE uses")
     with Journal.read_only(path) as look, refused(KnowledgeCode.SQLITE_REFUSES):
         look.statistics()

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.events import Lesson, LessonRedone, LessonUndone, RlaCreat
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Rla
-from kurt2rt.core.rla.statistics import FIRST_VALUE, Statistics
+from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.core.teaching.commands import Undo
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
@@ -71,7 +71,7 @@ def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
     with Journal.open(begun(path, lessons=2), BINDING) as journal:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25),))
         journal.append([JournalEntry(blame, STAMP), JournalEntry(replaced(2, "left", "forward"), STAMP)])
-        journal.checkpoint(Statistics(values={1: 0.25}, numbers={FIRST_VALUE: 0.5}))
+        journal.checkpoint(Statistics(values={1: 0.25}, numbers={FIRST_VALUE: 0.5, VALUES_INCLUDE: 4.0}))
     undo(path, "blame-1")
     undo(path)
     assert redo(path) == LessonRecord(replaced(2, "left", "forward"))
@@ -204,7 +204,8 @@ def with_critic_lessons(path: Path) -> Path:
     with Journal.open(begun(path), BINDING) as journal:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
         journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
-        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, {(1, 2): 95.0}, {FIRST_VALUE: 0.5}))
+        numbers = {FIRST_VALUE: 0.5, VALUES_INCLUDE: 7.0}
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, {(1, 2): 95.0}, numbers))
     return path
 
 

@@ -19,7 +19,6 @@ from hal.robot import Robot
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
-from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
@@ -205,7 +204,7 @@ def record_story(
         knowledge="",
         attended=told.attended,
         asked=True,
-        stopped=stop_text(told.stopped),
+        stopped=told.stopped.reason if told.stopped else "",
         behaviour=task.behaviours[0],
         fingerprints=hash_attachments(attachments),
     )

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from mcap.records import McapRecord, Message, Metadata
+from mcap.records import McapRecord, Message
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.main import main
@@ -32,7 +32,6 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recover import _copy as copy_records
-from kurt2rt.runs.recording.run_head import RUN_METADATA
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
 from kurt2rt.runs.replay import reader, trial
@@ -265,48 +264,6 @@ def test_search_for_the_newest_run_keeps_one_run_in_memory(
     assert newest.name.endswith("20260324T094640Z-wall_following")
     assert len(read) == 5
     assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
-
-
-class Retold(SegmentReader):
-    """Reads a file as if it told of that knowledge file, as an earlier kurt2rt did."""
-
-    def __init__(self, path: Path, told: str) -> None:
-        super().__init__(path)
-        self._told = told
-
-    def records(self) -> Iterator[McapRecord]:
-        for record in super().records():
-            if isinstance(record, Metadata) and record.name == RUN_METADATA:
-                record.metadata["knowledge"] = self._told
-            yield record
-
-
-def test_run_of_an_earlier_kurt2rt_belongs_to_its_folders_file(
-    knowledge: Path, runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (own,) = runs.iterdir()
-    later = Path(shutil.copytree(own, runs / "20260321T094640Z-wall_following"))
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    shutil.copy(knowledge, elsewhere)
-    read_anew(own, lambda path: Retold(path, knowledge.name))
-    read_anew(later, lambda path: Retold(path, f"elsewhere/{knowledge.name}"))
-
-    def newest(file: Path) -> str:
-        with Journal.read_only(file) as journal:
-            (run,) = newest_compatible_run(runs, journal.binding, file).runs
-        return run.name
-
-    for working_folder in (tmp_path, elsewhere):
-        monkeypatch.chdir(working_folder)
-        assert newest(knowledge) == str(own)
-        assert newest(elsewhere / knowledge.name) == str(later)
-    monkeypatch.chdir(elsewhere)
-    assert newest(Path(knowledge.name)) == str(later)
-    read_anew(own, lambda path: Retold(path, str(elsewhere / knowledge.name)))
-    read_anew(later, lambda path: Retold(path, str(knowledge)))
-    assert newest(knowledge) == str(later)
-    assert newest(Path(knowledge.name)) == str(own)
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_replay_tells_zeros_by_sign_and_booleans_from_numbers() -> None:
     assert found.field == "decision.wheel_speeds.left_m_s"
     assert repr((found.recorded, found.replayed)) == "(-0.0, 0.0)"
     (found,) = compare(entry._replace(readings=entry.readings._replace(bumpers=False)), record)
-    assert found.field == "senses.bumpers"
+    assert found.field == "readings.bumpers"
 
 
 def test_the_runtime_is_as_it_was_at_a_time() -> None:
