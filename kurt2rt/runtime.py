@@ -194,7 +194,7 @@ class _Assembly:
         saved = options.checkpoint or Statistics()
         self.mid: MidLevel | None = None
         if mid_settings is not None:
-            situation = mid_settings.build(settings, self.statistics.transitions or saved.transitions)
+            situation = mid_settings.build(settings)
             self.mid = MidLevel(self._system, situation, mid_settings, self.active_behaviour)
         self.expectations = ExpectationTracker(self._system, self.mid, self.statistics.transitions, saved.expectations)
         self.navigator: Navigator | None = None

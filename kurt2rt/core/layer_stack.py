@@ -1,6 +1,6 @@
 """Layer stack: information goes up to the mid level, its command comes down to the basic level."""
 
-from hal.robot import STANDSTILL, SensorReadings
+from hal.robot import SensorReadings
 from kurt2rt.core.decision.decision import Decision, DecisionCause, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.plan_step import GoalStatus
@@ -27,28 +27,27 @@ class LayerStack:
         self.basic = basic
         self.mid = mid
         self.navigator = navigator
-        self._before = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
     def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks.
 
         `situation`: of the basic level. `blocking_cause`: reason to stand; None: the levels decide.
         """
-        commanded = self.mid.decide(readings, self._before)
+        commanded = self.mid.decide(readings)
         navigator = self.navigator
         if navigator is not None:
             navigator.step()
         if commanded.asks:
             decision = self._decide_below(situation, readings, blocking_cause or DecisionCause.UNKNOWN)
-            self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
+            decision = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
                 blocking_cause = blocking_cause or _STANDS.get(navigator.standing_status)
             decision = self._decide_below(situation, readings, blocking_cause)
-            self._before = decision._replace(mid=commanded)
+            decision = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:
-            self._before = self._before._replace(plan=navigator.status)
-        return self._before
+            decision = decision._replace(plan=navigator.status)
+        return decision
 
     def restart(self) -> None:
         """Reset the mid level after the robot was repositioned."""

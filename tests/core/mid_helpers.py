@@ -33,10 +33,8 @@ class Symbols:
         self.passed: JunctionEvent | None = None
         self.next: float | None = None
         self.looked = 0
-        self.befores: list[Decision] = []
 
-    def perceive(self, readings: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - it looks at nothing
-        self.befores.append(before)
+    def perceive(self, readings: SensorReadings) -> bool:  # noqa: ARG002 - it looks at nothing
         symbol, self.next = self.next, None
         self.passed = None if symbol is None else STRAIGHT
         if symbol is None:

@@ -53,14 +53,6 @@ def test_stack_blocking_cause_stands_and_still_detects_junctions(cause: Decision
     assert small.tick(1.0, cause).cause is cause  # also where the mid level would ask
 
 
-def test_the_mid_level_sees_what_was_decided_before() -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    first = small.tick()
-    small.tick()
-    assert [each.action for each in small.symbols.befores] == [None, "b"]
-    assert small.symbols.befores[1] is first
-
-
 def test_stack_faulty_basic_level_stands_while_mid_asks(monkeypatch: pytest.MonkeyPatch) -> None:
     decide = BasicLevel.decide
 
@@ -74,7 +66,3 @@ def test_stack_faulty_basic_level_stands_while_mid_asks(monkeypatch: pytest.Monk
     decision = small.tick(1.0)
     assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, DecisionCause.UNKNOWN, None)
     assert decision.asks_at == MID
-    small.tick(0.0, DecisionCause.STOPPED)
-    assert small.symbols.befores[-1] is decision
-    small.tick(0.0, DecisionCause.STOPPED)
-    assert small.symbols.befores[-1].action is None  # what stood has passed no junction

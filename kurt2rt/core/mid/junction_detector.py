@@ -80,10 +80,8 @@ class JunctionDetector:
 
     def restart(self) -> None:
         """Forget the street and the junction."""
-        self.walled = self.opened = False
-        """Return whether both walls are parallel in this tick, or a side is open; both False in between."""
-        self.turn_rad = self.rims_m = 0.0
-        """Left turn of this tick, and mean absolute motion of both wheels."""
+        self.turn_rad = 0.0
+        """Left turn of this tick."""
         self._street_rad: float | None = None
         """Direction of the present or last street."""
         self._inside = True
@@ -100,20 +98,16 @@ class JunctionDetector:
 
         Returns None in all other ticks. Call it once per tick, because it sums up the encoders.
         """
-        left_m, right_m, way_m, self.turn_rad = self._odometry.motion(
-            readings.encoder_left_ticks, readings.encoder_right_ticks
-        )
-        step_m = abs(way_m)
-        self.rims_m = (abs(left_m) + abs(right_m)) / 2
-        self._yaw_rad += self.turn_rad
+        motion = self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks)
+        step_m, self.turn_rad = abs(motion.forward_m), motion.turn_rad
+        self._yaw_rad += motion.turn_rad
         self._way_m += step_m
-        self._net_m += way_m
+        self._net_m += motion.forward_m
         wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, readings.infrared_counts
         left = [distance_m[counts[place]] for place in self._left]
         right = [distance_m[counts[place]] for place in self._right]
         if max(left) < wall_m and max(right) < wall_m:
             return self._update_walls(left, right, step_m)
-        self.walled = False
         self._between_m = 0.0
         self._update_open_sides(left, right, step_m)
         return None
@@ -121,11 +115,11 @@ class JunctionDetector:
     def _update_open_sides(self, left: list[float], right: list[float], step_m: float) -> None:
         """Process a tick without walls on all sensors; distances in m."""
         want = self._settings
-        self.opened = (
+        opened = (
             sum(each >= want.wall_m for each in left) >= want.open_sensors
             or sum(each >= want.wall_m for each in right) >= want.open_sensors
         )
-        if not self.opened:
+        if not opened:
             if not self._inside:
                 self._open_m = 0.0
             return
@@ -140,13 +134,11 @@ class JunctionDetector:
 
     def _update_walls(self, left: list[float], right: list[float], step_m: float) -> JunctionEvent | None:
         """Process a tick with walls on all sensors; distances in m."""
-        self.opened = False
         self._open_m = 0.0
         want = self._settings
         left_rad = round_portable(math.atan2(left[-1] - left[0], self._left_baseline_m))
         right_rad = round_portable(math.atan2(right[0] - right[-1], self._right_baseline_m))
-        self.walled = abs(left_rad) < want.parallel_rad and abs(right_rad) < want.parallel_rad
-        if not self.walled:
+        if abs(left_rad) >= want.parallel_rad or abs(right_rad) >= want.parallel_rad:
             self._between_m = 0.0
             return None
         if step_m == 0.0:

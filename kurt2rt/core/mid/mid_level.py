@@ -90,12 +90,12 @@ class MidLevel:
         self._match = None
         self._changes = -1
 
-    def decide(self, readings: SensorReadings, before: Decision) -> MidDecision:
-        """Return the command of this tick and activate its behaviour; `before`: decision of the last tick.
+    def decide(self, readings: SensorReadings) -> MidDecision:
+        """Return the command of this tick and activate its behaviour.
 
         The decision asks if no RLA knows the mid-level situation and no teacher overrides it.
         """
-        changed = self.situation.perceive(readings, before)
+        changed = self.situation.perceive(readings)
         event = self.situation.passed
         if event is not None:
             self._overridden = False

@@ -11,11 +11,9 @@ from pydantic import Field
 from hal.numerics import round_portable
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
-from kurt2rt.core.mid.symbols.source import Transitions
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.space import Metric
 
@@ -53,13 +51,8 @@ class PlaceSettings(MidSituationSettings):
         """Metric of places."""
         return "euclidean"
 
-    def build(
-        self,
-        detector: JunctionDetector,
-        robot: RobotSettings,
-        transitions: Transitions,  # noqa: ARG002 - needs no counts
-    ) -> MidSituation:
-        """Return the place at power-on, the origin of the dead reckoning. `transitions` are not used."""
+    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
+        """Return the place at power-on, the origin of the dead reckoning."""
         return PlaceSituation(self, detector, robot)
 
 
@@ -91,8 +84,8 @@ class PlaceSituation:
         """Distance in m that the robot drove since the situation changed last."""
         return self._way_m
 
-    def perceive(self, readings: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - decisions do not matter
-        """Process one tick; return whether the situation changed. `before`: decision of the last tick."""
+    def perceive(self, readings: SensorReadings) -> bool:
+        """Process one tick; return whether the situation changed."""
         moved, self._moved = self._moved, False
         self.passed = passed = self._detector.perceive(readings)
         self._reckon(readings)

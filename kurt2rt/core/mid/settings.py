@@ -12,7 +12,6 @@ from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.mid.situation import AnyMidSituationSettings, MidSituation
-from kurt2rt.core.mid.symbols.source import Transitions
 from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.space import Space
 
@@ -57,19 +56,17 @@ class MidSettings(Settings):
     def feature_hash(self) -> str:
         """Fingerprint of the features; mid-level RLAs with another one are refused.
 
-        Metric and radius are not part of it: they only move the borders between RLAs.
+        The radius is not part of it: it only moves the borders between RLAs.
         """
-        situation = self.situation.model_dump(mode="json")
-        situation.pop("distance", None)
-        content = {"junctions": self.junctions.model_dump(mode="json"), "situation": situation}
+        content = {
+            "junctions": self.junctions.model_dump(mode="json"),
+            "situation": self.situation.model_dump(mode="json"),
+        }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
-    def build(self, robot: RobotSettings, transitions: Transitions | None = None) -> MidSituation:
-        """Return the situation at power-on for a robot. Raises hal.settings.SettingsError.
-
-        `transitions`: (RLA id, follow-up id) -> count.
-        """
-        return self.situation.build(JunctionDetector(self.junctions, robot), robot, transitions or {})
+    def build(self, robot: RobotSettings) -> MidSituation:
+        """Return the situation at power-on for a robot. Raises hal.settings.SettingsError."""
+        return self.situation.build(JunctionDetector(self.junctions, robot), robot)
 
 
 def load_mid_level(name_or_path: str | MidSettings) -> MidSettings:

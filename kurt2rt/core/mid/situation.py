@@ -11,10 +11,8 @@ from pydantic import PlainValidator, SerializeAsAny
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from hal.settings_by_kind import KindSettings, as_its_kind
-from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.mid.symbols.source import Transitions
 from kurt2rt.core.rla.space import Metric
 
 
@@ -41,8 +39,8 @@ class MidSituation(Protocol):
         """Junction passed in the last call of `perceive`; None without one."""
         ...
 
-    def perceive(self, readings: SensorReadings, before: Decision) -> bool:
-        """Process one tick; return whether the vector changed. `before`: decision of the last tick."""
+    def perceive(self, readings: SensorReadings) -> bool:
+        """Process one tick; return whether the vector changed."""
         ...
 
     def restart(self) -> None:
@@ -75,11 +73,8 @@ class MidSituationSettings(KindSettings):
         return tuple(f"{name} {value:.2f}" for name, value in zip(self.features, vector, strict=True))
 
     @abstractmethod
-    def build(self, detector: JunctionDetector, robot: RobotSettings, transitions: Transitions) -> MidSituation:
-        """Return the situation at power-on. Raises hal.settings.SettingsError.
-
-        `transitions`: (RLA id, follow-up id) -> count so far, of all levels.
-        """
+    def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
+        """Return the situation at power-on. Raises hal.settings.SettingsError."""
 
 
 def _checked(given: object) -> MidSituationSettings:

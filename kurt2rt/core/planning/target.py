@@ -13,7 +13,7 @@ from kurt2rt.core.rla.matching import exact_distances
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.symbol_index import edit_distances, hamming_distances
+from kurt2rt.core.rla.symbol_index import hamming_distances
 
 Vector = NDArray[np.float64]
 Distance = Callable[[Vector, Vector], float]
@@ -108,11 +108,7 @@ def make_target(
 
 def distance_function(space: Space) -> Distance:
     """Return the distance function of two situations (d,) in a space."""
-    match space.metric:
-        case "hamming":
-            return lambda a, b: float(hamming_distances(a[np.newaxis], b)[0])
-        case "edit":
-            return lambda a, b: float(edit_distances(a[np.newaxis], b)[0])
-        case "euclidean":
-            weights: Vector = np.ones(space.dimensions) if space.weights is None else space.weights
-            return lambda a, b: float(exact_distances((a * weights)[np.newaxis], b * weights)[0])
+    if space.metric == "hamming":
+        return lambda a, b: float(hamming_distances(a[np.newaxis], b)[0])
+    weights: Vector = np.ones(space.dimensions) if space.weights is None else space.weights
+    return lambda a, b: float(exact_distances((a * weights)[np.newaxis], b * weights)[0])

@@ -50,4 +50,4 @@ def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
         return ConditionIndex(space.dimensions)
     if space.weights is not None:
         raise ValueError(f"symbols are equal or not: a space of metric {space.metric} takes no weights")
-    return SymbolIndex(space.dimensions, edits=space.metric == "edit")
+    return SymbolIndex(space.dimensions)

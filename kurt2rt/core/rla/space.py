@@ -5,9 +5,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Metric = Literal["euclidean", "hamming", "edit"]
-"""Distance between two points: Euclidean for measured features; for symbols the number of places that differ
-(hamming), or of insertions, deletions and changes (edit, Levenshtein)."""
+Metric = Literal["euclidean", "hamming"]
+"""Distance between two points: Euclidean for measured features; for symbols the number of places that differ."""
 
 
 class Space(NamedTuple):

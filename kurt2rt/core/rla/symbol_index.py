@@ -15,39 +15,14 @@ def hamming_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -
     return distances
 
 
-def edit_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the Levenshtein distance of each of `rows` (n, d) to `symbols` (d,), shape (n,).
-
-    Computes one line of Levenshtein's table at a time, for all rows at once. Within a line each entry may be the one
-    before it plus one insertion; relative to that slope this is a running minimum.
-    """
-    count, length = rows.shape
-    places = np.ascontiguousarray(rows.T)
-    slope = np.arange(length + 1, dtype=np.int16)[:, np.newaxis]
-    line = np.repeat(slope, count, axis=1)
-    following = np.empty_like(line)
-    for symbol in symbols:
-        np.add(line, 1, out=following)
-        changed = line[:-1] + (places != symbol)
-        np.minimum(following[1:], changed, out=following[1:])
-        following -= slope
-        np.minimum.accumulate(following, axis=0, out=line)
-        line += slope
-    distances: NDArray[np.float64] = line[-1].astype(np.float64)
-    return distances
-
-
 class SymbolIndex:
     """Conditions of symbols in one array, by age, with the methods of kurt2rt.core.rla.matching.ConditionIndex.
 
-    A history changes once in seconds, so every search compares all rows: 200 rows of 12 symbols take about 10 us by
-    hamming distance, 200 us by edit distance.
+    A history changes once in seconds, so every search compares all rows: 200 rows of 12 symbols take about 10 us.
     """
 
-    def __init__(self, dimensions: int, *, edits: bool) -> None:
-        """`edits`: use the edit distance instead of the hamming distance."""
+    def __init__(self, dimensions: int) -> None:
         self._dimensions = dimensions
-        self._distances = edit_distances if edits else hamming_distances
         self._rows = np.zeros((0, dimensions))
 
     def __len__(self) -> int:
@@ -70,7 +45,7 @@ class SymbolIndex:
 
     def distances(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the distance of each condition to `situation` (d,), shape (n,), by age."""
-        return self._distances(self._rows, situation)
+        return hamming_distances(self._rows, situation)
 
     def nearest(self, situation: NDArray[np.float64]) -> NearestCondition | None:
         """Return position and distance of the condition nearest to `situation` (d,), and of the runner-up.

@@ -1,7 +1,6 @@
 """Variants of teaching a route: the shipped one and its controls."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.phase import Phase
@@ -18,12 +17,10 @@ class Variant:
     name: str
     """Name in file names."""
     title: str
-    mid: str | None = ""
-    """Name of another mid level; None: none, the teacher commands at each junction; empty: the task's own."""
+    commanded: bool = False
+    """True if there is no mid level: the teacher commands at each junction."""
     radius: float | None = None
     """Another R of the mid level."""
-    distance: Literal["hamming", "edit"] | None = None
-    """Another distance of histories."""
     starts: int | None = None
     """Number of starts; None: the task's."""
     only_answers: bool = False
@@ -33,13 +30,11 @@ class Variant:
     def task(self, task: TaskSettings) -> TaskSettings:
         """Return a copy of the task with the changes of the variant.
 
-        Raises hal.settings.SettingsError if the variant's mid level cannot be loaded.
+        Raises hal.settings.SettingsError if the task's mid level cannot be loaded.
         """
-        if self.mid is None or task.mid is None:
+        if self.commanded or task.mid is None:
             return task.model_copy(update={"mid": None})
-        mid = load_mid_level(self.mid or task.mid)
-        if self.distance is not None:
-            mid = mid.model_copy(update={"situation": mid.situation.model_copy(update={"distance": self.distance})})
+        mid = load_mid_level(task.mid)
         if self.radius is not None:
             mid = mid.model_copy(update={"learning": mid.learning.model_copy(update={"radius": self.radius})})
         return task.model_copy(update={"mid": mid})
@@ -79,13 +74,9 @@ def _part(phases: Phases, from_s: float, to_s: float) -> Phases:
 
 TAUGHT = Variant("taught", "as shipped")
 CONTROLS = (
-    Variant("actions", "symbols: actions of the basic level, the paper's plain reading", mid="actions"),
-    Variant("low-passed", "symbols: turns and crossings, low-passed", mid="low_passed"),
-    Variant("expectations", "symbols: RLAs of the basic level that were expected to follow", mid="expectations"),
-    Variant("edit", "distance: how many edits make one history of the other", distance="edit"),
     *(Variant(f"radius-{radius}", f"R = {radius}", radius=float(radius)) for radius in (0, 2, 4, 8, 12)),
     Variant("one-start", "begun at the start once", starts=1),
     Variant("only-answers", "questions are answered, nothing is corrected", only_answers=True),
     Variant("basic-not-corrected", "the basic level is answered, and not corrected", corrects_basic=False),
-    Variant("commanded", "no mid level: a teacher commands at each junction, in the exam, too", mid=None),
+    Variant("commanded", "no mid level: a teacher commands at each junction, in the exam, too", commanded=True),
 )

@@ -8,11 +8,10 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from hal.kurt2_settings import load_kurt2
-from hal.robot import STANDSTILL, SensorReadings
+from hal.robot import SensorReadings
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, PlaceSituation, X, Y
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
@@ -23,7 +22,6 @@ from simbridge.kurt2_simulation import Kurt2Simulation
 ROBOT = load_kurt2()
 STREETS = load_task("streets")
 PLACES = load_mid_level("places")
-NOTHING = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 NOWHERE = Situation(np.zeros(1), history_frozen=False)
 
 
@@ -58,7 +56,7 @@ class Drive:
         self._tick += 1
         now_s = self._tick * ROBOT.cycle_s
         readings = self.simulation.robot.sense(now_s)
-        changed = self.place.perceive(readings, NOTHING)
+        changed = self.place.perceive(readings)
         decision = self._leader.decide(NOWHERE, readings, None)
         self.simulation.robot.drive(decision.wheel_speeds, now_s, now_s)
         self.simulation.step()
@@ -124,7 +122,7 @@ def test_place_restart_is_lost_until_localised(drive: Drive) -> None:
     drive.lead("turn_right")
     drive.place.restart()
     assert drive.place.lost
-    assert drive.place.perceive(drive.simulation.robot.sense(0.0), NOTHING)
+    assert drive.place.perceive(drive.simulation.robot.sense(0.0))
     drive.simulation.simulated_robot.place(NORTHWARD)
     while not drive.simulation.pose.y_m > 4.0:
         drive.step()
@@ -139,7 +137,7 @@ def test_place_power_on_is_the_origin() -> None:
     fresh = place()
     assert tuple(fresh.vector) == (0.0, 0.0, 1.0, 0.0, 0.5, 0.5)
     assert not fresh.lost
-    assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0), NOTHING)
+    assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0))
 
 
 def test_place_opposite_headings_are_distinct() -> None:

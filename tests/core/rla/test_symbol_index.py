@@ -12,8 +12,8 @@ from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Metric, Space
-from kurt2rt.core.rla.symbol_index import SymbolIndex, edit_distances, hamming_distances
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.symbol_index import SymbolIndex, hamming_distances
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone
 
 Symbols = tuple[float, ...]
@@ -27,19 +27,8 @@ HISTORIES = st.integers(1, 13).flatmap(
 )
 
 
-def edits(one: Symbols, other: Symbols) -> int:
-    """Levenshtein's distance, as the book has it."""
-    line = list(range(len(other) + 1))
-    for number, symbol in enumerate(one, start=1):
-        following = [number]
-        for place, theirs in enumerate(other):
-            following.append(min(line[place + 1] + 1, following[place] + 1, line[place] + (symbol != theirs)))
-        line = following
-    return line[-1]
-
-
-def index_of(histories: list[Symbols], *, by_edits: bool = False) -> SymbolIndex:
-    index = SymbolIndex(len(histories[0]), edits=by_edits)
+def index_of(histories: list[Symbols]) -> SymbolIndex:
+    index = SymbolIndex(len(histories[0]))
     for each in histories:
         index.append(each)
     return index
@@ -54,15 +43,9 @@ def test_hamming_distances_count_different_places(histories: list[Symbols]) -> N
 
 
 @given(HISTORIES)
-def test_edit_distances_of_rows_equal_single_ones(histories: list[Symbols]) -> None:
-    one, rows = histories[0], np.array(histories)
-    assert edit_distances(rows, np.array(one)).tolist() == [edits(one, other) for other in histories]
-
-
-@given(HISTORIES, st.booleans())
-def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols], by_edits: bool) -> None:
+def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols]) -> None:
     *taught, here = [*histories, histories[0]]
-    index = index_of(taught, by_edits=by_edits)
+    index = index_of(taught)
     nearest = index.nearest(np.array(here))
     assert nearest is not None
     assert (nearest.position, nearest.distance) == (0, 0.0)
@@ -74,13 +57,6 @@ def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols], by_ed
         assert nearest.runner_up == 1 + others.index(min(others))
 
 
-def test_symbol_index_shifted_row_is_one_edit() -> None:
-    before, shifted = (1.0, 2.0, 3.0) * 4, (2.0, *(1.0, 2.0, 3.0) * 4)[:12]
-    here = np.array(shifted)
-    assert index_of([before]).distances(here).tolist() == [12.0]
-    assert index_of([before], by_edits=True).distances(here).tolist() == [2.0]
-
-
 def test_symbol_index_insert_and_remove_keep_order() -> None:
     index = index_of([(1.0, 1.0), (3.0, 3.0)])
     index.insert(1, (2.0, 2.0))
@@ -89,7 +65,7 @@ def test_symbol_index_insert_and_remove_keep_order() -> None:
     index.remove(0)
     assert len(index) == 2
     assert index.distances(here).tolist() == [1.0, 1.0]
-    assert SymbolIndex(2, edits=False).nearest(here) is None
+    assert SymbolIndex(2).nearest(here) is None
 
 
 @pytest.mark.parametrize(("condition", "told"), [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "fin")])
@@ -100,8 +76,8 @@ def test_symbol_index_unfit_condition_is_refused(condition: Symbols, told: str) 
     assert len(index) == 1
 
 
-def system_of(metric: Metric, *events: TeachingEvent) -> RlaSystem:
-    system = RlaSystem(2, 5.0, others={MID: Space(4, 1.0, None, metric)})
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0, others={MID: Space(4, 1.0, None, "hamming")})
     system.apply_all(events)
     return system
 
@@ -115,7 +91,6 @@ def matched(system: RlaSystem, *here: float) -> tuple[int, float, bool]:
 
 def test_rla_system_symbol_level_takes_all_events() -> None:
     system = system_of(
-        "hamming",
         created(1, (1.0, 2.0, 3.0, 0.0), "turn_left", level=MID),
         created(2, (3.0, 2.0, 1.0, 0.0), "straight_on", level=MID),
     )
@@ -130,14 +105,8 @@ def test_rla_system_symbol_level_takes_all_events() -> None:
     assert [rla.rla_id for rla in system.rlas_at(MID)] == [1, 2]
 
 
-def test_rla_system_edit_metric_matches_shifted_history() -> None:
-    taught = created(1, (1.0, 2.0, 3.0, 4.0), "turn_left", level=MID)
-    assert matched(system_of("hamming", taught), 4.0, 1.0, 2.0, 3.0) == (1, 4.0, False)
-    assert matched(system_of("edit", taught), 4.0, 1.0, 2.0, 3.0) == (1, 2.0, False)
-
-
 def test_rla_system_changes_count_applied_events() -> None:
-    system = system_of("hamming", created(1, (0.0,) * 4, level=MID))
+    system = system_of(created(1, (0.0,) * 4, level=MID))
     before = system.changes
     system.apply(replaced(1, "turn_left", "forward"))
     assert system.changes == before + 1

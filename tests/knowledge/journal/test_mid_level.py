@@ -89,11 +89,10 @@ def test_open_other_junctions_are_refused(path: Path) -> None:
         open_for_teaching(path, ROBOT, other)
 
 
-def test_read_lessons_other_radius_or_distance_is_compatible(path: Path) -> None:
+def test_read_lessons_other_radius_is_compatible(path: Path) -> None:
     write(path, mid_rla(1, 1))
-    situation = TURNS.situation.model_copy(update={"distance": "edit"})
     learning = TURNS.learning.model_copy(update={"radius": 0.0})
-    other = TURNS.model_copy(update={"situation": situation, "learning": learning})
+    other = TURNS.model_copy(update={"learning": learning})
     assert read_lessons(path, ROBOT, ROUTE.model_copy(update={"mid": other})) == [mid_rla(1, 1)]
 
 

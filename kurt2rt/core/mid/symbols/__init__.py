@@ -1,1 +1,0 @@
-"""Kinds of symbols of a history, one per file."""
