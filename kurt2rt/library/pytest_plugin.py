@@ -15,7 +15,8 @@ import pytest
 
 # pytest loads this module in every project, so the package is imported by the fixtures alone.
 if TYPE_CHECKING:
-    from kurt2rt import Knowledge, SimulatedRobot
+    from kurt2rt.library.knowledge import Knowledge
+    from kurt2rt.library.simulated_robot import SimulatedRobot
 
 _MARK = "kurt2"
 _VCAN = "kurt2_vcan"
@@ -83,12 +84,12 @@ def kurt2_lessons(tmp_path_factory: pytest.TempPathFactory) -> Lessons:
     folder = tmp_path_factory.mktemp("kurt2")
 
     def lesson(**wanted: Any) -> "Knowledge":
-        import kurt2rt
+        from kurt2rt.library.knowledge import teach
 
         key = tuple(sorted(wanted.items()))
         if key not in taught:
             with _errors_of_one_line():
-                taught[key] = kurt2rt.teach(folder / f"{len(taught)}.knowledge", **wanted)
+                taught[key] = teach(folder / f"{len(taught)}.knowledge", **wanted)
         return taught[key]
 
     return lesson
@@ -97,11 +98,11 @@ def kurt2_lessons(tmp_path_factory: pytest.TempPathFactory) -> Lessons:
 @contextmanager
 def _opened(request: pytest.FixtureRequest, **more: Any) -> "Iterator[SimulatedRobot]":
     """Yield the robot of the test's marks."""
-    import kurt2rt
+    from kurt2rt.library.simulated_robot import SimulatedRobot
 
     marked = _marked(request)
     with _errors_of_one_line():
-        robot = kurt2rt.SimulatedRobot(**{name: marked[name] for name in _ROBOT if name in marked}, **more)
+        robot = SimulatedRobot(**{name: marked[name] for name in _ROBOT if name in marked}, **more)
     with robot:
         yield robot
 
@@ -109,14 +110,14 @@ def _opened(request: pytest.FixtureRequest, **more: Any) -> "Iterator[SimulatedR
 @contextmanager
 def _errors_of_one_line() -> Iterator[None]:
     """Fail the test with the line of a kurt2rt.Error; skip it if the kernel has no vcan interface."""
-    import kurt2rt
+    from hal.errors import UserError
     from kurt2rt.library.named_bus import NoVcanError
 
     try:
         yield
     except NoVcanError as error:
         raise pytest.skip.Exception(str(error)) from None
-    except kurt2rt.Error as error:
+    except UserError as error:
         raise pytest.fail.Exception(str(error), pytrace=False) from None
 
 

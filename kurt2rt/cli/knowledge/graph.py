@@ -30,7 +30,8 @@ def graph(
         kurt2rt knowledge graph var/streets.knowledge --level mid --out net.graphml
     """
     # Late import: networkx is in the extra `simulation`, and every command is loaded where --help is said.
-    from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network, write_network
+    from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network
+    from kurt2rt.knowledge.graph.picture import write_network
 
     if out.suffix not in FORMATS:
         raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")

@@ -5,7 +5,6 @@ Nodes are RLAs, edges their successors, with percentages.
 
 import math
 from collections.abc import Iterable, Mapping
-from pathlib import Path
 from typing import NoReturn, TypeAlias
 
 import networkx as nx
@@ -117,16 +116,3 @@ def _refuse(journal: Journal, system: RlaSystem, level: str, behaviour: str | No
         raise KnowledgeError(KnowledgeCode.NO_RLA_AT_LEVEL, where=journal.path, level=level, found=found)
     found = ", ".join(sorted({rla.behaviour or "one without a name" for rla in system.rlas_at(level)}))
     raise KnowledgeError(KnowledgeCode.NO_RLA_OF_BEHAVIOUR, where=journal.path, behaviour=behaviour, found=found)
-
-
-def write_network(network: RlaNetwork, title: str, path: Path) -> None:
-    """Write the network in the format of the file's ending, one of FORMATS; make the folder. Raises OSError."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if path.suffix == GRAPHML:
-        network.graph["title"] = title
-        nx.write_graphml(network, path)
-        return
-    # Not at the top: matplotlib is an extra, and a robot does without it.
-    from kurt2rt.knowledge.graph.picture import draw_network
-
-    draw_network(network, title, path)

@@ -1,4 +1,4 @@
-"""Picture of the RLA network: nodes coloured by action, with an area by uses; edges with percentages."""
+"""File of the RLA network: GraphML, or a picture with nodes coloured by action and edges with percentages."""
 
 import math
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from kurt2rt.knowledge.graph.graph import RlaNetwork
+from kurt2rt.knowledge.graph.graph import GRAPHML, RlaNetwork
 from kurt2rt.knowledge.graph.layout import Places, compute_layout, span
 
 _INCHES_PER_UNIT = 0.62
@@ -26,7 +26,17 @@ _LABELLED_PERCENT = 10.0
 """Rarer edges have no label: with 130 RLAs the labels would cover each other."""
 
 
-def draw_network(network: RlaNetwork, title: str, path: Path) -> None:
+def write_network(network: RlaNetwork, title: str, path: Path) -> None:
+    """Write the network in the format of the file's ending, one of FORMATS; make the folder. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == GRAPHML:
+        network.graph["title"] = title
+        nx.write_graphml(network, path)
+    else:
+        _draw_network(network, title, path)
+
+
+def _draw_network(network: RlaNetwork, title: str, path: Path) -> None:
     """Write a picture, SVG or PNG by the file's ending. Raises OSError.
 
     Each behaviour has a panel: commands lead from one to another, so there are no edges between panels.

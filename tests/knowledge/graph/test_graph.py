@@ -11,7 +11,8 @@ from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network, write_network
+from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
+from kurt2rt.knowledge.graph.picture import write_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.core.rla.helpers import created
