@@ -307,6 +307,17 @@ def test_added_sensor_is_a_feature_of_the_taught_run(kurt2rt: CommandLine) -> No
         assert len(journal.binding.feature_names) == 74
 
 
+def test_printed_tests_of_plug_ins_pass(folder: Path) -> None:
+    text = "".join(
+        (ROOT / "docs" / name).read_text(encoding="utf-8") for name in ("add-a-learner.md", "add-a-policy.md")
+    )
+    files = re.findall(r"^\$ pytest (my_\w+\.py)$", text, re.MULTILINE)
+    assert len(files) == 2
+    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *files]
+    done = subprocess.run(words, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) -> None:
     assert len(Path("my_learner.py").read_text(encoding="utf-8").splitlines()) <= 40
     words = ("study", "compare", "--learner", "my_learner:Nearest", "--seeds", "3901", "--after", "2", "--jobs", "1")
@@ -316,10 +327,10 @@ def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) 
     assert [row[1] for row in success["rows"]] == ["RLA, as shipped", "my_learner:Nearest"]
 
 
-def test_added_policy_is_checked_refused_and_taught_as_printed(kurt2rt: CommandLine) -> None:
+def test_added_policy_is_refused_and_taught_as_printed(kurt2rt: CommandLine) -> None:
     text = (ROOT / "docs/add-a-policy.md").read_text(encoding="utf-8")
     printed = re.findall(r"^\$ kurt2rt (.+)\n((?:(?!\$|```).+\n)*)", text, re.MULTILINE)
-    assert len(printed) == 9
+    assert len(printed) == 5
     for command, output in printed:
         said = kurt2rt(*shlex.split(command))
         if output.startswith("kurt2rt: "):
@@ -332,15 +343,13 @@ def test_added_policy_is_checked_refused_and_taught_as_printed(kurt2rt: CommandL
     assert Path("results/demo/fleeing-0.knowledge").is_file()
 
 
-def test_robot_of_the_docs_is_made_checked_and_taught(kurt2rt: CommandLine, plugin_folder: Path) -> None:
+def test_robot_of_the_docs_is_made_and_taught(kurt2rt: CommandLine, plugin_folder: Path) -> None:
     text = (ROOT / "docs/teach-another-robot.md").read_text(encoding="utf-8")
     made, installed, checked, taught = re.findall(r"^\$ (.+)$", text, re.MULTILINE)[:4]
-    assert kurt2rt(*shlex.split(made)[1:]).exit_code == 0
+    assert kurt2rt(*shlex.split(made)[1:]).out.endswith(f"next: {checked}\n")
     assert installed == "pip install -e rover"
     project = tomllib.loads(Path("rover/pyproject.toml").read_text(encoding="utf-8"))["project"]
     install(plugin_folder / "rover" / "src", "rover", {"robots": project["entry-points"]["kurt2rt.robots"]})
-    said = kurt2rt(*shlex.split(checked)[1:])
-    assert f"$ {checked}\n{said.out}" in text
     short = ("teaching.supervised_s=5", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
     said = kurt2rt(*shlex.split(taught)[1:], *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
@@ -357,6 +366,7 @@ def test_the_demo_runs_as_it_stands(tmp_path: Path) -> None:
 
 
 def test_examples_in_python_run(tmp_path: Path) -> None:
+    write_printed_modules(tmp_path)
     for block in blocks("python"):
         (tmp_path / "example.py").write_text(block.text, encoding="utf-8")
         with started("example", folder=tmp_path) as example:

@@ -29,8 +29,7 @@ _PANELS = {
     },
     "Knowledge and plug-ins": {
         "knowledge": "Look after what the robot was taught: show, undo, merge.",
-        "plugin": "List, show, begin and check plug-ins: learners, policies, judges, metrics, actions, tasks, worlds, "
-        "robots.",
+        "plugin": "List, show and begin plug-ins: parts of other authors.",
     },
     "Robot and service": {
         "status": "Tell how a running robot program is.",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kurt2rt.library.knowledge import Knowledge
     from kurt2rt.library.simulated_robot import SimulatedRobot
 
+pytest.register_assert_rewrite("kurt2rt.checks.plugins")  # the tests that plug-ins inherit tell what they compared
 _MARK = "kurt2"
 _VCAN = "kurt2_vcan"
 _ROBOT = ("task", "world", "seed", "robot")

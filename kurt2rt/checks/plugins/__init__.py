@@ -1,1 +1,1 @@
-"""Plug-ins of all kinds: which there are, and whether they keep the promises of their kind."""
+"""Plug-ins of all kinds: which there are, and tests that those of other authors inherit."""

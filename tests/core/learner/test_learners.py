@@ -5,14 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from kurt2rt.core.learner.conformance import broken_promises
+from kurt2rt.checks.plugins.learner_tests import LearnerTests
 from kurt2rt.core.learner.learner import Learner, LearnerSetting, Why
 from kurt2rt.core.learner.learners import find_learner, learner_names
-from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.learner_setting import learner_setting
-from tests.experiments.helpers import ROBOT
 
-SETTING = learner_setting(load_task("wall_following"), ROBOT, seed=7)
 FLAT = LearnerSetting(2, np.ones(2), 10.0, 0.5, 0.1, ("a", "b", "c"), 1)
 NEVER_ASK = ("1-nn", "tree")
 
@@ -28,11 +24,18 @@ def says(learner: Learner, x: float, y: float, *, teacher: bool = False) -> str 
     return learner.decide(np.array([x, y]), taught=teacher)
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.deep] if name == "svm" else []) for name in learner_names()]
-)
-def test_each_learner_keeps_all_promises(name: str) -> None:
-    assert broken_promises(find_learner(name), SETTING) == []
+class TestPromises(LearnerTests):
+    """Each learner keeps the promises of all."""
+
+    @pytest.fixture(
+        autouse=True,
+        params=[pytest.param(name, marks=[pytest.mark.deep] if name == "svm" else []) for name in learner_names()],
+    )
+    def named(self, request: pytest.FixtureRequest) -> None:
+        self.name = str(request.param)
+
+    def make(self, setting: LearnerSetting) -> Learner:
+        return find_learner(self.name)(setting)
 
 
 GROUPS: Sequence[tuple[float, float, str]] = [

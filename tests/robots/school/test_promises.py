@@ -1,4 +1,4 @@
-"""The promises of every robot (kurt2rt.checks.plugins.robot_promises) hold in memory and on a pseudo-terminal."""
+"""The school robot passes the tests of every robot, in memory and on a pseudo-terminal."""
 
 import time
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
 from hal.serial_port import SerialPort
 from hal.simulation import SimulationFactory
-from kurt2rt.checks.plugins.robot_promises import broken_of_robot
+from kurt2rt.checks.plugins.robot_tests import RobotTests
 from kurt2rt.robots.school.kind import SCHOOL, SchoolKind
 from kurt2rt.robots.school.lines import BIT_RATE_BIT_S
 from kurt2rt.robots.school.link import SchoolLink
@@ -52,10 +52,10 @@ class SchoolOnPty(SchoolKind):
         return LinkSimulationFactory(settings, open_link=PtyLine)
 
 
-def test_school_robot_in_memory_keeps_all_promises() -> None:
-    assert broken_of_robot(SCHOOL, "school") == []
+class TestSchoolRobot(RobotTests):
+    kind = SCHOOL
 
 
 @pytest.mark.deep
-def test_school_robot_on_pty_keeps_all_promises() -> None:
-    assert broken_of_robot(SchoolOnPty(), "school") == []
+class TestSchoolRobotOnPty(RobotTests):
+    kind = SchoolOnPty()

@@ -1,10 +1,11 @@
-"""Promises of a robot: KURT2 keeps all, and a robot that is careless in one respect breaks the one about it."""
+"""The inherited tests of a robot: KURT2 passes, and one that is careless in one respect fails the test about it."""
 
 import dataclasses
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
@@ -12,12 +13,10 @@ from config import CONFIG_DIR
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_kind import RobotKind
-from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
+from hal.robot_settings import RobotSettings, load_robot
 from hal.simulation import Simulation, SimulationFactory
 from hal.tap import Tap
-from kurt2rt.checks.plugins.robot_promises import broken_of_robot
+from kurt2rt.checks.plugins.robot_tests import RobotTests
 from kurt2rt.robots.kurt2 import KURT2
 
 
@@ -168,36 +167,45 @@ class CarelessKind:
         return KURT2.serve(settings, address)
 
 
-def test_kurt2_keeps_all_promises() -> None:
-    assert broken_of_robot(KURT2, "kurt2") == []
+class TestKurt2(RobotTests):
+    kind = KURT2
 
 
 @pytest.mark.parametrize(
     ("careless", "promise"),
     [
-        (LosesASensor, "senses with each sensor"),
-        (CreepsWithoutCommand, "stands unless it is told"),
-        (CountsTwice, "encoders count the way"),
-        (SwapsSides, "turns it to the left"),
-        (AppliesAnything, "passes the guard's limits"),
-        (TakesNanForSlow, "not a number"),
-        (TakesOldForNew, "too old"),
-        (IgnoresSilence, "senses are silent"),
-        (ReleasesItself, "lasts until it is released"),
-        (ReversesItsTable, "in the order of the table"),
-        (SendsNoBrake, "a stop sends the brake"),
-        (FeelsTheOtherEnd, "a front bumper that touches"),
-        (FeelsTheOtherEnd, "a rear bumper that touches"),
-        (CannotBeClosedTwice, "closed, which may be twice"),
+        (LosesASensor, "it_senses_with_each_sensor_of_its_table_in_counts"),
+        (CreepsWithoutCommand, "it_stands_unless_it_is_told_to_drive"),
+        (CountsTwice, "equal_set_points_drive_it_ahead_and_its_encoders_count_the_way"),
+        (SwapsSides, "a_quicker_right_side_turns_it_to_the_left"),
+        (AppliesAnything, "no_set_point_passes_the_limits_of_the_guard"),
+        (TakesNanForSlow, "it_stands_for_a_set_point_that_is_not_a_number"),
+        (TakesOldForNew, "it_stands_for_a_command_that_is_too_old"),
+        (IgnoresSilence, "it_stands_when_its_senses_are_silent"),
+        (ReleasesItself, "a_stop_lasts_until_it_is_released"),
+        (ReversesItsTable, "its_readings_are_those_of_its_sensors_in_the_order_of_the_table"),
+        (SendsNoBrake, "a_stop_sends_the_brake"),
+        (FeelsTheOtherEnd, "a_front_bumper_that_touches_blocks_that_way"),
+        (FeelsTheOtherEnd, "a_rear_bumper_that_touches_blocks_that_way"),
     ],
 )
-def test_careless_robot_breaks_the_promise(careless: type[Wrapped], promise: str) -> None:
-    kind: RobotKind = CarelessKind(careless)
-    (broken,) = broken_of_robot(kind, "careless", only=promise)
-    assert promise in broken
+def test_careless_robot_fails_the_test_about_it(careless: type[Wrapped], promise: str) -> None:
+    tests = RobotTests()
+    tests.kind = CarelessKind(careless)
+    with tests.opened(load_robot()) as drive, pytest.raises(AssertionError):
+        getattr(tests, f"test_{promise}")(drive)
+
+
+def test_robot_that_cannot_be_closed_twice_fails() -> None:
+    tests = RobotTests()
+    tests.kind = CarelessKind(CannotBeClosedTwice)
+    with pytest.raises(RuntimeError, match="closed already"), tests.opened(load_robot()) as drive:
+        tests.test_it_stands_after_it_was_closed_which_may_be_twice(drive)
 
 
 def test_robot_without_settings_is_refused(tmp_path: Path) -> None:
-    kind: RobotKind = CarelessKind(Wrapped, folder=tmp_path)
-    with pytest.raises(SettingsError, match="has no settings"):
-        broken_of_robot(kind, "empty")
+    tests = RobotTests()
+    tests.kind = CarelessKind(Wrapped, folder=tmp_path)
+    wanting = SimpleNamespace(fixturenames=["settings"])
+    with pytest.raises(AssertionError, match="holds no settings of a robot"):
+        tests.pytest_generate_tests(cast("pytest.Metafunc", wanting))

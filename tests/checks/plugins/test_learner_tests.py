@@ -1,19 +1,43 @@
-import inspect
+"""The inherited tests of a learner: the RLA system passes, and one that breaks a promise fails the test about it."""
+
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kurt2rt.core.learner.conformance import broken_promises
-from kurt2rt.core.learner.learner import LearnerSetting, Why
+from kurt2rt.checks.plugins.learner_tests import LearnerTests, decision_time_ms, made_up
+from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
 from kurt2rt.core.learner.rla_learner import RlaLearner
 from tests.core.learner.helpers import SETTING, Parrot
 
 WIDE = SETTING._replace(dimensions=12, weights=np.ones(12), radius=300.0)
 
 
-def test_rla_learner_keeps_all_promises() -> None:
-    assert broken_promises(RlaLearner, WIDE) == []
+class TestRlaLearner(LearnerTests):
+    def make(self, setting: LearnerSetting) -> Learner:
+        return RlaLearner(setting)
+
+
+class TestParrot(LearnerTests):
+    def make(self, setting: LearnerSetting) -> Learner:
+        return Parrot(setting)
+
+    def setting(self) -> LearnerSetting:
+        return SETTING
+
+
+class Made(LearnerTests):
+    """Tests of any learner."""
+
+    def __init__(self, factory: LearnerFactory) -> None:
+        self._factory = factory
+
+    def make(self, setting: LearnerSetting) -> Learner:
+        return self._factory(setting)
+
+    def setting(self) -> LearnerSetting:
+        return WIDE
 
 
 def test_restore_of_foreign_bytes_is_refused() -> None:
@@ -84,50 +108,36 @@ class Moody(Parrot):
         return self.said[-1] if len(self.said) == 1 else "abc"[self._mood % 3] if self.said else None
 
 
-class Failing(Parrot):
-    """Raises an error in its third lesson."""
-
-    def lesson(self, situation: NDArray[np.float64], action: str, why: Why) -> None:
-        super().lesson(situation, action, why)
-        if len(self.said) == 3:
-            raise RuntimeError("full")
-
-
 @pytest.mark.parametrize(
     ("learner", "promise"),
     [
-        (Eager, "`decide` returns None before the first lesson: it does not"),
-        (Fickle, "`decide` changes nothing: it does not"),
-        (Hoarder, "`restore` forgets all that is not in the snapshot: it does not"),
-        (Forgetful, "`restore` gives the decisions of `snapshot`, also after further lessons: it does not"),
-        (Inventive, "`decide` names an action of the setting, or None: it does not"),
-        (Late, "`decide` follows the first lesson in its situation: it does not"),
-        (Moody, "the same lessons give the same decisions: it does not"),
+        (Eager, "decide_asks_before_the_first_lesson"),
+        (Fickle, "decide_changes_nothing"),
+        (Hoarder, "restore_forgets_all_that_is_not_in_the_snapshot"),
+        (Forgetful, "restore_gives_the_decisions_of_the_snapshot_also_after_further_lessons"),
+        (Inventive, "decide_names_an_action_of_the_setting_or_asks"),
+        (Late, "decide_follows_the_first_lesson_in_its_situation"),
+        (Moody, "the_same_lessons_give_the_same_decisions"),
     ],
 )
-def test_broken_promise_is_named(learner: type[Parrot], promise: str) -> None:
-    assert promise in broken_promises(learner, WIDE)
+def test_broken_promise_fails_its_test(learner: LearnerFactory, promise: str) -> None:
+    with pytest.raises(AssertionError):
+        getattr(Made(learner), f"test_{promise}")()
 
 
-def test_parrot_keeps_all_promises() -> None:
-    assert broken_promises(Parrot, WIDE._replace(dimensions=1)) == []
+def taking(milliseconds: float) -> Iterator[int]:
+    """Yield times in ns of a clock that goes on by so much in each decision, and fifty times that in the first."""
+    now_ns = 0
+    for place in range(1_000):
+        yield now_ns
+        yield (now_ns := now_ns + round(milliseconds * 1e6) * (50 if place == 0 else 1))
 
 
-def test_error_of_many_promises_is_told_once_with_its_line() -> None:
-    source, first = inspect.getsourcelines(Failing)
-    line = first + next(place for place, text in enumerate(source) if "raise" in text)
-    (told,) = broken_promises(Failing, WIDE)
-    raised = f"raised RuntimeError: full ({__file__}, line {line})"
-    assert told == f"`decide` names an action of the setting, or None, and 4 more: {raised}"
+def test_time_to_decide_is_the_median_but_for_the_first() -> None:
+    assert decision_time_ms(Parrot(WIDE), made_up(WIDE), taking(0.25).__next__) == pytest.approx(0.25)
 
 
-class Asking(Parrot):
-    """Calls a library with what it does not take."""
-
-    def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
-        return super().decide(situation.reshape(7, 7), taught=taught)
-
-
-def test_error_in_a_library_is_told_with_the_line_of_its_caller() -> None:
-    (told,) = broken_promises(Asking, WIDE)
-    assert told.endswith(f"({__file__}, line {inspect.getsourcelines(Asking.decide)[1] + 1})")
+def test_slow_learner_fails_the_test_about_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kurt2rt.checks.plugins.learner_tests.decision_time_ms", lambda *_: 20.1)
+    with pytest.raises(AssertionError, match="a robot would stand"):
+        Made(Parrot).test_decide_takes_less_than_two_ticks()
