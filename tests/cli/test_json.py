@@ -43,7 +43,7 @@ REPORTING = {
     *(("replay",), ("service", "check"), ("soak",), ("status",), ("why",)),
     *(("study", name) for name in ("transfer", "compare", "doubt", "certify", "search")),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
-    *(("plugin", "list"), ("plugin", "check"), ("export", "lerobot")),
+    *(("plugin", "list"), ("export", "lerobot")),
 }
 
 
