@@ -55,9 +55,9 @@ def doubt(options: _Options) -> None:
     """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
 
     Each robot drives without a teacher in each world once for each response:
-    doubt that is only told, avoiding the obstacles that it remembers, doubt
-    that stops it, and doubt that stops it and lets it turn. In a world with
-    SEED in its name each robot drives in another one.
+    doubt that is only told, doubt that stops it, and doubt that stops it and
+    lets it turn. In a world with SEED in its name each robot drives in
+    another one.
 
     For example:
 

@@ -1,25 +1,11 @@
-"""Times at which a robot avoids obstacles, and forgets them."""
+"""Times at which a robot forgets obstacles."""
 
 import pytest
 
-from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from tests.core.test_tick import Corridor
-from tests.teacher.helpers import set_phase, teach
-
-
-@pytest.mark.parametrize("phase", Phase)
-def test_robot_avoids_obstacles_except_while_it_is_taught(phase: Phase) -> None:
-    corridor = Corridor()
-    corridor.run(100, set_phase(phase))
-    assert corridor.level.avoids is (phase not in {Phase.SUPERVISED, Phase.CORRECTIONS})
-
-
-def test_robot_without_a_teacher_avoids_obstacles() -> None:
-    corridor = Corridor(asked=False)
-    corridor.run(100)
-    assert corridor.level.avoids
+from tests.teacher.helpers import teach
 
 
 @pytest.mark.parametrize(

@@ -84,13 +84,10 @@ def reasons() -> Iterator[tuple[str, str]]:
         "rla, passes over a guess": facts(replace(KNOWN, passed_over=replace(ELSE, distance=3.0))),
         "rla, passes over a withdrawn one": facts(replace(KNOWN, passed_over=replace(WITHDRAWN, distance=3.0))),
         "rla, doubts a little": replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8)),
-        "avoids, turns on the spot": replace(AVOIDED, doubt=replace(CONTACT, turns=True)),
-        "avoids, turns without a contact": replace(AVOIDED, doubt=replace(OBSTACLE, turns=True)),
-        "avoids, gets away": replace(
-            AVOIDED, basic=replace(AVOIDED.basic, driver=None), action="back", doubt=replace(CONTACT, turns=True)
-        ),
+        "avoids, without a contact": replace(AVOIDED, doubt=OBSTACLE),
+        "avoids, by no RLA": replace(AVOIDED, basic=replace(AVOIDED.basic, driver=None), action="back", doubt=CONTACT),
         "rla, meets an obstacle": replace(facts(KNOWN), doubt=CONTACT),
-        "avoids, of an unknown obstacle": AVOIDED,
+        "avoids, of an unknown doubt": AVOIDED,
         "rla, usual doubt": replace(facts(KNOWN), doubt=DoubtFacts(0.9, 2.8)),
         "rla, sensor broken": replace(facts(KNOWN), broken_sensors=("front left edge (s15)",)),
         "rla, alarm": replace(facts(KNOWN), granted=STOOD, reasons=("bus lost",), latched=True),

@@ -96,7 +96,6 @@ _DOUBT = MapOf(
     reads=NAME,
     taught=NAME,
     contact=MayLack(OrNone(_CONTACT)),
-    turns=MayLack(Flag()),
 )
 
 _FACTS = MapOf(

@@ -33,7 +33,7 @@ _RLA, _HELD, _AVOIDS = DecisionCause.RLA, DecisionCause.HELD, DecisionCause.AVOI
 
 
 _CANDIDATES = 64
-"""Nearest RLAs among which one is sought whose action meets no obstacle: 0.2 ms in a tick in which the robot avoids."""
+"""Nearest RLAs among which one is sought whose action meets no obstacle: 0.2 ms in a tick in which it gets away."""
 
 
 def _named(behaviour: str) -> str:
@@ -77,7 +77,7 @@ class BasicLevel:
             minimum_action_ticks: ticks before another RLA's action may replace the driving one.
             active_behaviour: only its RLAs compete.
             choice: chooses among RLAs on the same condition; without it the oldest answers.
-            doubt: score by which the robot stands, asks or avoids inside the radius; None: it never doubts.
+            doubt: score by which the robot stands, asks or gets away inside the radius; None: it never doubts.
             period_s: time of a tick.
 
         Raises:
@@ -98,14 +98,10 @@ class BasicLevel:
         self._memory = None if doubt is None else doubt.memory
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
-        self.avoids = False
-        """Drive by another RLA if the nearest one's action would meet a remembered obstacle."""
         self.counts = True
         """Whether this tick counts for the minimum time of an action; a slow lesson leaves out some."""
         self.held_action = ""
         """Action whose minimum time was not over at the last decision; empty if any action could drive."""
-        self._avoiding = False
-        """Whether another RLA than the nearest drives because of an obstacle."""
         self.turning = False
         """Whether the robot turns away, because it stood alone in doubt for long enough."""
         self._decisions = 0
@@ -208,17 +204,12 @@ class BasicLevel:
         score = doubts.meter.score(situation.vector, match, action, self._behaviour)
         if doubts.update(score, alone=self.skip_withdrawn) or (
             # It looks farther before it drives on: readings flicker while it stands, too.
-            (self.turning or doubts.stood) and doubts.meter.meets_obstacle(match, action, avoiding=cause is not _HELD)
+            (self.turning or doubts.stood) and doubts.meter.meets_obstacle(match, action, farther=cause is not _HELD)
         ):
             return self._doubt(situation, readings, doubts, match, score)
         if cause is not _HELD:
             self.turning = False
             doubts.drive_on()
-        if self.avoids and doubts.avoids and doubts.meter.meets_obstacle(match, action, avoiding=self._avoiding):
-            other = self._free_rla(situation)
-            if other is not None:
-                return self._avoid(readings, other, match, score)
-        self._avoiding = self._avoiding and cause is _HELD
         return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score)
 
     def _doubt(
@@ -230,7 +221,7 @@ class BasicLevel:
             other = self._free_turn(situation, driving)
             if other is not None:
                 self.turning = True
-                return self._avoid(readings, other, match, score)
+                return self._turn_away(readings, other, match, score)
             action = self._free_way_off()
             if action is not None:
                 self.turning = True
@@ -249,14 +240,14 @@ class BasicLevel:
         """
         memory = self._memory
         assert memory is not None
-        free = [rla for rla in self._nearest_rlas(situation) if memory.is_free(rla.action, avoiding=True)]
+        free = [rla for rla in self._nearest_rlas(situation) if memory.is_free(rla.action)]
         return min(free, key=lambda rla: (rla.action not in self._on_the_spot, rla.action != driving), default=None)
 
     def _free_way_off(self) -> str | None:
         """Return an action that backs or turns on the spot and meets nothing, taught or not; None without one."""
         memory = self._memory
         assert memory is not None
-        return next((name for name in self._ways_off if memory.is_free(name, avoiding=True)), None)
+        return next((name for name in self._ways_off if memory.is_free(name)), None)
 
     def _back_off(self, situation: Situation, readings: SensorReadings, match: Match) -> Decision:
         """Go on with an action that no RLA says, unless it would meet something by now."""
@@ -272,23 +263,11 @@ class BasicLevel:
         nearest = self.system.nearest_first(situation.vector, self._behaviour, limit=_CANDIDATES)
         return [rla for rla in (self.system.get(rla_id) for rla_id, _ in nearest) if rla is not None]
 
-    def _free_rla(self, situation: Situation) -> Rla | None:
-        """Return the nearest RLA whose action is free for long, or else for a short time; None without one."""
-        memory = self._memory
-        assert memory is not None
-        rlas = self._nearest_rlas(situation)
-        for avoiding in (True, False):
-            for rla in rlas:
-                if memory.is_free(rla.action, avoiding=avoiding):
-                    return rla
-        return None
-
-    def _avoid(self, readings: SensorReadings, rla: Rla, match: Match, score: float) -> Decision:
+    def _turn_away(self, readings: SensorReadings, rla: Rla, match: Match, score: float) -> Decision:
         """Drive by the action of an RLA that is not the nearest, at once."""
         self._held.allow_switch()
         self._held.select(rla.action)
         self._driver, self._drivers_condition = rla, None
-        self._avoiding = True
         # Outside its lesson, so it gets no reward.
         wheel_speeds = self._held.step(readings, counts=self.counts)
         return Decision(wheel_speeds, _AVOIDS, rla.action, rla.rla_id, match, doubt=score)
@@ -308,7 +287,7 @@ class BasicLevel:
     def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:
         """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
-        self._avoiding = self.turning = False
+        self.turning = False
         if self._doubts is not None:
             self._doubts.end()
         return Decision(STANDSTILL, cause, None, None, match)

@@ -197,14 +197,14 @@ class DoubtMeter:
             score += self.settings.threshold
         return score
 
-    def meets_obstacle(self, match: Match, action: str, *, avoiding: bool = False) -> bool:
+    def meets_obstacle(self, match: Match, action: str, *, farther: bool = False) -> bool:
         """Return whether the outline would soon meet a remembered obstacle if `action` drove.
 
         `match`: False if it is a lesson about this very situation, because its teacher saw the obstacle, too.
-        `avoiding`: whether the robot avoids an obstacle already; it then looks farther ahead.
+        `farther`: whether to look farther ahead, as a robot does that stood in doubt or gets away.
         """
         memory = self.memory
-        if memory is None or not memory.meets(action, avoiding=avoiding):
+        if memory is None or not memory.meets(action, farther=farther):
             return False
         return self._share(match) > self._usual * _VERY_SITUATION
 
@@ -265,8 +265,6 @@ class DoubtWatch:
         settings = meter.settings
         self._threshold, self._release = settings.threshold, settings.threshold * _RELEASE
         self._asks, self._stands_alone = settings.asks, settings.asks and settings.alone
-        self.avoids = settings.contact is not None and settings.contact.avoids
-        """Whether the robot avoids the obstacles that it remembers, instead of only telling its doubt."""
         turns_after_s = settings.turns_after_s
         self._turns_after = None if turns_after_s is None else round(turns_after_s / period_s)
         self.stood = 0

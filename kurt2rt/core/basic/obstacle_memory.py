@@ -32,15 +32,13 @@ class ContactSettings(Settings):
     within_s: Annotated[float, Field(ge=_STEP_S, le=1)]
     """An action runs into an obstacle if its outline meets the obstacle within this time."""
     free_s: Annotated[float, Field(ge=_STEP_S, le=2)]
-    """An action is free of obstacles, for a robot that avoids one, if it meets none within this time."""
+    """An action is free of obstacles, for a robot that gets away from one, if it meets none within this time."""
     farthest_m: Annotated[float, Field(gt=0, le=1)]
     """Distance from a sensor up to which a reading is an obstacle."""
     margin_m: Annotated[float, Field(ge=0, le=0.1)]
     """Distance from the outline at which an obstacle is met."""
-    look_s: Annotated[float, Field(ge=0.05, le=0.2)] = 0.05
-    """Time between two looks. The default is that of recordings of before 2026-11-26, which do not name it."""
-    avoids: bool = False
-    """Drive by the nearest RLA whose action meets no obstacle, except while the robot is taught; False only tells."""
+    look_s: Annotated[float, Field(ge=0.05, le=0.2)]
+    """Time between two looks."""
 
     @model_validator(mode="after")
     def _is_free_for_longer(self) -> Self:
@@ -139,21 +137,21 @@ class ObstacleMemory:
                 self._move()
             self._look(readings.infrared_counts)
 
-    def meets(self, action: str, *, avoiding: bool = False) -> bool:
+    def meets(self, action: str, *, farther: bool = False) -> bool:
         """Return whether an action meets an obstacle within `within_s`; False if it has no set points.
 
-        `avoiding`: within `free_s`, so that a robot that avoids an obstacle does not turn back to it at once.
+        `farther`: within `free_s`, so that a robot that gets away from an obstacle does not turn back to it at once.
         """
-        steps = self._free if avoiding else self._within
+        steps = self._free if farther else self._within
         met = self._met.get((action, steps))
         if met is None:
             sweep = self._sweeps.get((action, steps))
             met = self._met[action, steps] = sweep is not None and self._is_met(sweep)
         return met
 
-    def is_free(self, action: str, *, avoiding: bool = False) -> bool:
-        """Return whether an action has set points and meets no obstacle; `avoiding` as in `meets`."""
-        return (action, self._free) in self._sweeps and not self.meets(action, avoiding=avoiding)
+    def is_free(self, action: str) -> bool:
+        """Return whether an action has set points and meets no obstacle within `free_s`."""
+        return (action, self._free) in self._sweeps and not self.meets(action, farther=True)
 
     def remembers_within(self, distance_m: float) -> bool:
         """Return whether an obstacle is remembered inside the outline or this close to it."""

@@ -18,7 +18,7 @@ class DecisionCause(StrEnum):
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
     AVOIDS = "avoids"
-    """The nearest RLA's action would meet a remembered obstacle, or is doubted; the nearest free RLA drives."""
+    """The robot stood alone in doubt for long enough; it gets away by an action that meets no remembered obstacle."""
     TEACHER = "teacher"
     """A teacher drives by hand, or a reference policy drives."""
     UNKNOWN = "unknown"

@@ -172,8 +172,8 @@ class CommandHandler:
     def before_decision(self, tick: int, *, was_driving: bool, turned: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
-        Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner,
-        and avoids no obstacles. The decisions of ticks in which a wheel turned are kept for a teacher who rewinds.
+        Without a teacher to ask, the level skips RLAs whose action was withdrawn. A robot that is taught asks sooner.
+        The decisions of ticks in which a wheel turned are kept for a teacher who rewinds.
 
         `was_driving`: whether an action drove in the tick before. `turned`: whether a wheel turned in it.
         """
@@ -183,8 +183,6 @@ class CommandHandler:
         self._level.counts = self.lesson_speed.counts
         taught = self.is_taught
         self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
-        # A teacher is to see what the robot would do by its lessons alone.
-        self._level.avoids = not taught
         if self._learner is not None:
             self._learner.counts, self._learner.taught = self.lesson_speed.counts, taught
         authority = self.authority

@@ -33,8 +33,6 @@ class DoubtResponse(StrEnum):
     """Response of the robot to its doubt, without a teacher."""
 
     TELLS = "only told"
-    AVOIDS = "avoids"
-    """It drives by the nearest RLA whose action meets no remembered obstacle."""
     STANDS = "stands"
     TURNS = "turns"
     """It stands for a moment, then turns on the spot until it is free to drive on."""
@@ -60,12 +58,10 @@ def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
     doubt = task.learning.doubt
     if doubt is None:
         raise SettingsError("sets no doubt", where=f"task {task.name}: learning.doubt", do="give its scales there")
-    turns, contact = response is DoubtResponse.TURNS, doubt.contact
+    turns = response is DoubtResponse.TURNS
     stands = turns or response is DoubtResponse.STANDS
-    if contact is not None:
-        contact = contact.model_copy(update={"avoids": response is DoubtResponse.AVOIDS})
     after_s = _TURNS_AFTER_S if turns else None
-    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "contact": contact, "turns_after_s": after_s})
+    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "turns_after_s": after_s})
     return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
 
 

@@ -1,4 +1,4 @@
-"""Jobs of the doubt study: one robot in one world, which tells its doubt, avoids what it remembers, or stands."""
+"""Jobs of the doubt study: one robot in one world, which tells its doubt, stands, or turns away."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -77,8 +77,6 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
     """Check that a batch can drive exams of a task. Raises BatchRefusedError."""
     doubt = task.learning.doubt
     require_known_task(task, by_policy=all(setup.teacher_policy for setup in setups))
-    if doubt is not None and doubt.contact is not None and doubt.contact.avoids:
-        raise refused(task, "a robot that avoids obstacles that it remembers")
     if doubt is not None and doubt.asks and doubt.alone:
         raise refused(task, "a robot that stands at a doubt without a teacher")
     if any(setup.broken for setup in setups):

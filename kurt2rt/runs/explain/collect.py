@@ -110,13 +110,13 @@ def _doubt(runtime: Runtime, decision: Decision, vector: NDArray[np.float64]) ->
     meter, score, match = runtime.level.doubt, decision.doubt, decision.match
     if meter is None or score is None or match is None:
         return None
-    contact, turns = _contact(runtime, _doubted_action(runtime, decision, match)), runtime.level.turning
+    contact = _contact(runtime, _doubted_action(runtime, decision, match))
     new = runtime.level.new_obstacle(match, vector)
     if new is None:
-        return DoubtFacts(score, meter.settings.threshold, contact=contact, turns=turns)
+        return DoubtFacts(score, meter.settings.threshold, contact=contact)
     words, name = words_for(runtime.robot.infrared), runtime.definition.names[new.feature]
     reads, taught = words.reading(name, new.here), words.reading(name, new.taught)
-    return DoubtFacts(score, meter.settings.threshold, words.place(name), reads, taught, contact, turns)
+    return DoubtFacts(score, meter.settings.threshold, words.place(name), reads, taught, contact)
 
 
 def _doubted_action(runtime: Runtime, decision: Decision, match: Match) -> str:

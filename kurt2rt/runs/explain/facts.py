@@ -149,8 +149,6 @@ class DoubtFacts:
     """Reading that all such lessons but at most one reach or stay beyond, in words."""
     contact: ContactFacts | None = None
     """Remembered obstacle that the action would meet; None without one."""
-    turns: bool = False
-    """True if the robot turns away, because it stood alone in doubt for long enough."""
 
 
 @dataclass(frozen=True, slots=True)

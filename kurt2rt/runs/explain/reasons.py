@@ -184,18 +184,18 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
 
 def _avoids(level: LevelFacts, doubt: DoubtFacts | None, action: str | None) -> list[str]:
     leader, driver = level.leader, level.driver
-    if leader is None or doubt is None or not (doubt.turns or (doubt.contact and driver)):
-        return ["The nearest RLA's action would meet an obstacle, so another RLA drives."]
+    if leader is None or doubt is None:
+        return ["The robot doubts the nearest RLA's action, so it gets away."]
     because = _format_contact(doubt.contact) if doubt.contact else f"the robot doubts it: {_why_doubt(doubt)}"
     if driver is None:
         return [
             f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
             f"No RLA's action is free, so the robot gets away by an action that was not taught for it: {action}.",
         ]
-    that = "that turns on the spot and meets nothing" if doubt.turns else "whose action meets nothing"
     return [
         f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
-        f"{format_rla(driver)} is the nearest {that}, at {format_nearness(driver)}, so it drives.",
+        f"{format_rla(driver)} is the nearest that turns on the spot and meets nothing, "
+        f"at {format_nearness(driver)}, so it drives.",
     ]
 
 

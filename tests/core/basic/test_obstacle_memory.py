@@ -1,4 +1,4 @@
-"""Memory of obstacles: what it keeps, forgets and foresees, and the level that avoids what it remembers."""
+"""Memory of obstacles: what it keeps, forgets and foresees, and the level that doubts by it."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ from tests.core.rla.helpers import created
 
 ROBOT = load_robot()
 SENSORS = ROBOT.infrared.names
-SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0, avoids=True)
+SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0, look_s=0.05)
 REPERTOIRE = {
     "forward": MotorPrimitive(WheelSpeeds(0.3, 0.3)),
     "spin": MotorPrimitive(WheelSpeeds(0.3, -0.3)),
@@ -57,10 +57,10 @@ def test_obstacle_ahead_is_met_by_an_action_that_drives_there() -> None:
     assert not memory.meets("forward")
     look(memory, s11=0.15)
     assert not memory.meets("forward")  # 12 cm in 0.4 s
-    assert memory.meets("forward", avoiding=True)
+    assert memory.meets("forward", farther=True)
     look(memory, way_m=0.07, s11=0.10)
     assert memory.meets("forward")
-    assert not memory.meets("back", avoiding=True)
+    assert not memory.meets("back", farther=True)
 
 
 def test_obstacle_between_two_beams_is_remembered() -> None:
@@ -87,10 +87,10 @@ def test_obstacle_near_the_outline_is_remembered_there() -> None:
 def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
     memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02}))
     look(memory, s1=0.10)
-    assert not memory.meets("spin", avoiding=True)
+    assert not memory.meets("spin", farther=True)
     look(memory, way_m=0.16)
-    assert memory.meets("spin", avoiding=True)
-    assert not memory.meets("forward", avoiding=True)
+    assert memory.meets("spin", farther=True)
+    assert not memory.meets("forward", farther=True)
 
 
 def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
@@ -99,7 +99,7 @@ def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
     looks = []
     for _ in range(4):
         look(memory, way_m=0.001)
-        looks.append(memory.meets("forward", avoiding=True))
+        looks.append(memory.meets("forward", farther=True))
     assert looks == [True, True, True, False]
 
 
@@ -109,28 +109,28 @@ def test_standing_robot_forgets_nothing_until_it_is_told() -> None:
     look(memory, way_m=0.01)
     for _ in range(100):
         look(memory)
-    assert memory.meets("forward", avoiding=True)
+    assert memory.meets("forward", farther=True)
     memory.clear()
-    assert not memory.meets("forward", avoiding=True)
+    assert not memory.meets("forward", farther=True)
     assert memory.contact("forward") is None
 
 
 def test_far_readings_and_unknown_actions_meet_nothing() -> None:
     memory = memory_of(SETTINGS.model_copy(update={"farthest_m": 0.12}))
     look(memory, s11=0.14)
-    assert not memory.meets("forward", avoiding=True)
+    assert not memory.meets("forward", farther=True)
     look(memory, s11=0.10)
-    assert memory.meets("forward", avoiding=True)
-    assert (memory.meets("dance"), memory.is_free("dance", avoiding=False)) == (False, False)
+    assert memory.meets("forward", farther=True)
+    assert (memory.meets("dance"), memory.is_free("dance")) == (False, False)
     assert memory.contact("dance") is None
 
 
 def test_free_time_below_the_time_to_contact_is_refused() -> None:
     with pytest.raises(ValidationError, match="free_s must be at least within_s"):
-        ContactSettings(memory_s=2.0, within_s=0.3, free_s=0.2, farthest_m=0.45, margin_m=0.0)
+        ContactSettings(memory_s=2.0, within_s=0.3, free_s=0.2, farthest_m=0.45, margin_m=0.0, look_s=0.05)
 
 
-class Avoider:
+class Doubter:
     """A basic level over two readings that remembers obstacles, and one tick in a call."""
 
     def __init__(
@@ -155,7 +155,7 @@ class Avoider:
         self.memory = ObstacleMemory(contact, ROBOT, ACTIONS)
         meter = DoubtMeter(system, settings, (1,), actions_ahead(REPERTOIRE), self.memory)
         self.level = BasicLevel(system, REPERTOIRE, 10, ActiveBehaviour(("",)), doubt=meter)
-        self.level.avoids = self.level.skip_withdrawn = True
+        self.level.skip_withdrawn = True
 
     def at(self, seen: SensorReadings, side: float = 200.0) -> Decision:
         return self.level.decide(Situation(np.array([side, 70.0]), history_frozen=False), seen, None)
@@ -172,70 +172,33 @@ LESSONS = (
 )
 
 
-def test_avoiding_robot_drives_by_the_nearest_free_rla() -> None:
-    avoider = Avoider(*LESSONS)
-    before = [avoider.at(readings()) for _ in range(LOOK_TICKS)][-1]
-    assert (before.cause, before.action) == (DecisionCause.RLA, "forward")
-    decision = avoider.after_a_look()
-    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
-    assert decision.wheel_speeds == WheelSpeeds(0.3, -0.3)
-    assert decision.match is not None
-    assert decision.match.rla.rla_id == 1
-    assert not decision.answers
-    assert decision.doubt == pytest.approx(2.0)
-    held = avoider.at(readings(s11=0.10))
-    assert (held.cause, held.action) == (DecisionCause.HELD, "spin")
+def test_lesson_about_this_very_situation_is_followed() -> None:
+    decision = Doubter(*LESSONS).after_a_look(side=110.0)
+    assert (decision.cause, decision.action, decision.doubt) == (DecisionCause.RLA, "forward", 0.0)
 
 
-def test_robot_that_avoids_looks_farther_before_it_drives_on() -> None:
-    avoider = Avoider(*LESSONS)
-    assert avoider.after_a_look().cause is DecisionCause.AVOIDS
-    avoider.memory.clear()
-    # 15 cm ahead: met in 0.6 s, not in 0.4 s.
-    causes = [avoider.at(readings(s11=0.15)).cause for _ in range(12)]
-    assert causes == [DecisionCause.HELD] * 9 + [DecisionCause.AVOIDS] + [DecisionCause.HELD] * 2
-    avoider.memory.clear()
-    assert {avoider.at(readings()).action for _ in range(20)} == {"spin", "forward"}
-
-
-@pytest.mark.parametrize("lessons", [LESSONS[:1], (*LESSONS[:1], created(2, (400.0, 70.0)))])
-def test_robot_without_a_free_action_drives_by_the_nearest(lessons: tuple[TeachingEvent, ...]) -> None:
-    decision = Avoider(*lessons).after_a_look()
+def test_robot_that_only_tells_drives_on() -> None:
+    decision = Doubter(*LESSONS).after_a_look()
     assert (decision.cause, decision.action) == (DecisionCause.RLA, "forward")
     assert decision.doubt == pytest.approx(2.0)
 
 
-def test_lesson_about_this_very_situation_is_followed() -> None:
-    decision = Avoider(*LESSONS).after_a_look(side=110.0)
-    assert (decision.cause, decision.action, decision.doubt) == (DecisionCause.RLA, "forward", 0.0)
-
-
-def test_taught_robot_and_one_that_only_tells_do_not_avoid() -> None:
-    taught = Avoider(*LESSONS)
-    taught.level.avoids = False
-    only_tells = Avoider(*LESSONS, contact=SETTINGS.model_copy(update={"avoids": False}))
-    for avoider in (taught, only_tells):
-        decision = avoider.after_a_look()
-        assert (decision.cause, decision.action) == (DecisionCause.RLA, "forward")
-        assert decision.doubt == pytest.approx(2.0)
-
-
 def test_robot_that_asks_stands_instead() -> None:
-    decision = Avoider(*LESSONS, asks=True).after_a_look()
+    decision = Doubter(*LESSONS, asks=True).after_a_look()
     assert decision.cause is DecisionCause.DOUBT
 
 
 def test_restarted_level_remembers_no_obstacle() -> None:
-    avoider = Avoider(*LESSONS)
-    avoider.after_a_look()
-    avoider.level.restart()
-    assert not avoider.memory.meets("forward", avoiding=True)
+    robot = Doubter(*LESSONS)
+    robot.after_a_look()
+    robot.level.restart()
+    assert not robot.memory.meets("forward", farther=True)
 
 
-def turner(*events: TeachingEvent, margin_m: float = 0.0) -> Avoider:
+def turner(*events: TeachingEvent, margin_m: float = 0.0) -> Doubter:
     """Return a level that stands alone at a doubt, and turns away after 0.05 s."""
-    contact = SETTINGS.model_copy(update={"avoids": False, "margin_m": margin_m})
-    return Avoider(*events, contact=contact, turns_after_s=0.05)
+    contact = SETTINGS.model_copy(update={"margin_m": margin_m})
+    return Doubter(*events, contact=contact, turns_after_s=0.05)
 
 
 def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
@@ -245,6 +208,8 @@ def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
     assert {each.cause for each in standing} == {DecisionCause.DOUBT}
     turning = robot.at(readings(s11=0.10))
     assert (turning.cause, turning.action, turning.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
+    assert turning.match is not None
+    assert (turning.match.rla.rla_id, turning.answers) == (1, False)
     actions = [robot.at(readings(s11=0.15)).action for _ in range(30)]  # still met in 0.6 s
     assert actions == ["spin"] * 30
     robot.memory.clear()
@@ -268,7 +233,7 @@ def test_robot_without_a_free_way_off_stands_on() -> None:
     assert {robot.at(readings(**close)).cause for _ in range(100)} == {DecisionCause.DOUBT}
 
 
-def look_all(robot: Avoider, near_m: dict[str, float]) -> None:
+def look_all(robot: Doubter, near_m: dict[str, float]) -> None:
     for _ in range(LOOK_TICKS):
         robot.at(readings(**near_m))
 

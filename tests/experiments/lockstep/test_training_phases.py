@@ -10,7 +10,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.rla.events import Appraised, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
@@ -132,7 +132,7 @@ def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bo
         simulation = STAGE.open("a", 1, "exam")
         events = [knows_only("stand"), rival("forward")]
         # What a teacher had said of them does not count there.
-        saved = Statistics(values={2: -0.05})
+        saved = Statistics(values={2: -0.05}, numbers={VALUES_INCLUDE: 2.0})
         try:
             setup = ExamSetup("a", 1, saved=saved, autonomous_values=alone)
             exam = await examine(simulation, ROBOT, task, events, setup, lambda _: None)

@@ -1,6 +1,6 @@
 """Recorded run of a robot that doubts: replayed bit for bit, and explained."""
 
-from functools import partial
+import re
 from pathlib import Path
 
 from hal.simulation import Pose
@@ -52,8 +52,8 @@ def test_run_with_doubts_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -
     assert any(sensors)  # an obstacle ahead, not a far lesson alone
 
 
-def drives_to_a_wall_alone(scene: Scene, record: TickRecord, *, phase: Phase = Phase.REINFORCEMENT) -> None:
-    """Teach forward far from walls and a turn with a wall on the right; then drive to a wall in a phase."""
+def drives_to_a_wall_alone(scene: Scene, record: TickRecord) -> None:
+    """Teach forward far from walls and a turn with a wall on the right; then drive to a wall in phase 5."""
     inbox, tick = scene.runtime.inbox, record.tick
     if tick == 1:
         scene.simulation.put(Pose(2.0, 2.0, 0.0))
@@ -68,40 +68,22 @@ def drives_to_a_wall_alone(scene: Scene, record: TickRecord, *, phase: Phase = P
     if tick == 70:
         scene.simulation.put(Pose(2.0, 2.0, 0.0))
         scene.runtime.reposition()
-        inbox.put(SetPhase("alone", NAME, phase))
+        inbox.put(SetPhase("alone", NAME, Phase.AUTONOMOUS))
 
 
-def test_run_that_avoids_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
-    contact = "{memory_s: 2.0, within_s: 1.0, free_s: 1.0, farthest_m: 0.45, margin_m: 0.005, avoids: true}"
-    task = load_task("wall_following", changes={"learning.doubt.contact": contact, "learning.radius": "2000"})
+TURNS_ALONE = {
+    "learning.radius": "2000",
+    "learning.doubt.asks": "true",
+    "learning.doubt.alone": "true",
+    "learning.doubt.turns_after_s": "0.5",
+    "learning.doubt.contact.within_s": "1.0",
+    "learning.doubt.contact.free_s": "1.0",
+}
+
+
+def test_run_that_turns_alone_is_replayed_and_explained(tmp_path: Path) -> None:
+    task = load_task("wall_following", changes=TURNS_ALONE)
     run = read_run(record_story("walls", tmp_path, seconds=9, other=drives_to_a_wall_alone, task=task))
-    explained = set[str]()
-    replay = Replay(run)
-    for entry, record in replay:
-        assert compare(entry, record) == []
-        if entry.decision.cause is DecisionCause.AVOIDS:
-            assert entry.decision.action == "spin_right"
-            facts = collect_facts(replay.runtime, record, lambda _: "")
-            assert facts.doubt is not None
-            assert facts.doubt.contact is not None
-            assert facts.doubt.contact.action == "forward"
-            explained.add(facts.doubt.contact.sensor)
-            assert facts_of_plain(plain_of_facts(facts)) == facts
-            assert len(format_reasons(facts)) == 2
-    assert any("front" in sensor for sensor in explained)
-
-
-def test_run_that_turns_alone_is_replayed_bit_for_bit(tmp_path: Path) -> None:
-    changes = {
-        "learning.doubt.contact": "{memory_s: 2.0, within_s: 1.0, free_s: 1.0, farthest_m: 0.45, margin_m: 0.005}",
-        "learning.radius": "2000",
-        "learning.doubt.asks": "true",
-        "learning.doubt.alone": "true",
-        "learning.doubt.turns_after_s": "0.5",
-    }
-    story = partial(drives_to_a_wall_alone, phase=Phase.AUTONOMOUS)
-    task = load_task("wall_following", changes=changes)
-    run = read_run(record_story("walls", tmp_path, seconds=9, other=story, task=task))
     causes = list[DecisionCause]()
     replay = Replay(run)
     for entry, record in replay:
@@ -110,9 +92,9 @@ def test_run_that_turns_alone_is_replayed_bit_for_bit(tmp_path: Path) -> None:
         if entry.decision.cause is DecisionCause.AVOIDS:
             assert entry.decision.action == "spin_right"
             facts = collect_facts(replay.runtime, record, lambda _: "")
-            assert facts.doubt is not None
-            assert facts.doubt.turns
             assert facts_of_plain(plain_of_facts(facts)) == facts
-            assert "turns on the spot and meets nothing" in format_reasons(facts)[1]
+            leader, driver = format_reasons(facts)
+            assert re.search(r"forward would meet in .* what front", leader)
+            assert "turns on the spot and meets nothing" in driver
     first = causes.index(DecisionCause.AVOIDS)
     assert causes[first - 50 : first] == [DecisionCause.DOUBT] * 50

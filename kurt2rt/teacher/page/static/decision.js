@@ -46,7 +46,7 @@ export function sentence(state) {
     case "held":
       return `RLA ${state.rla} keeps ${words(state.action)} for its shortest time; RLA ${state.nearest} is nearest now`;
     case "avoids":
-      return `RLA ${state.rla} does ${words(state.action)}; RLA ${state.nearest} is nearest, but would meet an obstacle`;
+      return `I doubt RLA ${state.nearest}${of(state)} here, so I get away: ${words(state.action)}`;
     case "teacher":
       return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
