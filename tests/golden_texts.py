@@ -20,7 +20,6 @@ from pathlib import Path
 from tests.texts import (
     access,
     commission,
-    complaints,
     doctor,
     health,
     knowledge,
@@ -69,8 +68,6 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "malformed requests": wire.refusals,
         "faults of a commissioning": commission.faults,
         "skipped steps of a commissioning": commission.skips,
-        "complaints of fault drill and soak": complaints.complaints,
-        "checks of a soak": complaints.soak_checks,
         "errors of knowledge": knowledge.knowledge_errors,
         "differences of features": knowledge.differences,
         "findings of the doctor": doctor.findings,

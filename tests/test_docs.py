@@ -75,8 +75,6 @@ LONG: dict[str, Shorten] = {
     "run": lambda words: shortened_run(words),
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
-    "faults": lambda _: ["faults"],
-    "soak": lambda words: [*words, "--hours", "0.01"],
     "doctor": lambda words: [*words, "--ticks", "5"],
     "bench": lambda words: [*words, "--quick"],
 }

@@ -20,7 +20,6 @@ from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.settings import Settings, SettingsError, content_of, load_settings
 from hal.settings_by_kind import find_kind
 from hal.settings_files import find_config
-from kurt2rt.checks.faults.table import FaultTable
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
@@ -38,7 +37,6 @@ SCHEMAS: dict[str, type[Settings]] = {
     "situations": SituationDefinition,
     "repertoires": RepertoireSettings,
     "worlds": WorldSettings,
-    "faults": FaultTable,
     "critics": CriticSettings,
     "mid_levels": MidSettings,
     "searches": SearchSettings,

@@ -1,1 +1,1 @@
-"""Checks of a robot and of this software: doctor, commission, faults, soak, bench."""
+"""Checks of a robot and of this software: doctor, commission, bench, plug-ins."""

@@ -42,8 +42,6 @@ _PANELS = {
         "paper": "Teach the tasks of the paper, and compare the results.",
         "phases": "Train robots through phases 1 to 5, next to controls.",
         "study": "Measure taught robots: new worlds, doubt, certificates.",
-        "faults": "Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.",
-        "soak": "Let a day of the robot pass in simulated time in which everything fails.",
         "bench": "Measure what the runtime takes, on this machine, with the simulated robot: 7 minutes.",
     },
 }

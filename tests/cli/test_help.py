@@ -71,8 +71,6 @@ def test_every_command_is_found() -> None:
             "certify",
             "worker",
             "search",
-            "faults",
-            "soak",
             "why",
             "recover",
             "bench",

@@ -18,7 +18,6 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     ("lesson", *SHORT): {"lesson", "task", "exams", "knowledge"},
     ("lesson", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher"},
     ("exam", "mine.knowledge", "--world", "a", *SHORT[-2:]): {"knowledge", "seed", "task", "exams"},
-    ("faults", "--target", "tick", "--kind", "stuck"): {"stop_times", "trials"},
     ("why", WALLS, "--at", "1"): {"run", "at_s", "facts", "tips", "difference", "trouble", "picture"},
     ("why", WALLS, "--to", "5", "--picture", "made.svg"): {
         *("run", "task", "from_s", "to_s", "ticks", "missed", "stretches", "notes", "trouble", "picture")
@@ -39,8 +38,8 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
 }
 REPORTING = {
-    *(("bench",), ("demo",), ("doctor",), ("exam",), ("faults",), ("lesson",), ("pair",), ("paper",), ("phases",)),
-    *(("replay",), ("service", "check"), ("soak",), ("status",), ("why",)),
+    *(("bench",), ("demo",), ("doctor",), ("exam",), ("lesson",), ("pair",), ("paper",), ("phases",)),
+    *(("replay",), ("service", "check"), ("status",), ("why",)),
     *(("study", name) for name in ("transfer", "compare", "doubt", "certify", "search")),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
     *(("plugin", "list"), ("export", "lerobot")),
@@ -87,14 +86,6 @@ def test_rlas_come_with_conditions_and_teachers(kurt2rt: CommandLine) -> None:
     whole = json.loads(kurt2rt("knowledge", "show", "mine.knowledge", "--rla", "1", "--json").out)
     assert whole["condition"] == first["condition"]
     assert kurt2rt("knowledge", "show", "mine.knowledge", "--limit", "1", "--json").out.count('"rla":') == 1
-
-
-def test_json_with_a_file_writes_it_and_prints_the_table(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    said = kurt2rt("faults", "--target", "tick", "--kind", "stuck", "--json", "results.json")
-    assert said.exit_code == 0, said.err
-    assert "1 cases, 1 trials" in said.out
-    assert set(json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))) == {"stop_times", "trials"}
-    assert "unexpected argument" in kurt2rt.misused("faults", "results.json")
 
 
 def test_no_number_is_one_that_json_does_not_have() -> None:

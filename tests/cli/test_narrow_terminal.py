@@ -14,7 +14,6 @@ from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.report import print_report as print_commissioning
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.report import print_report as print_doctor
-from kurt2rt.checks.soak.report import print_report as print_soak
 from kurt2rt.cli.status import as_rich as health_as_rich
 from kurt2rt.experiments.lockstep.report import render_curriculum, render_seeds
 from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
@@ -24,7 +23,6 @@ from kurt2rt.experiments.route.tables import all_tables as route_tables
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 from tests.checks.bench.test_report import MACHINE, RESULTS
-from tests.checks.soak.test_checks import RESULT as SOAKED
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import short_task
 from tests.experiments.navigation.test_goals import settings
@@ -58,7 +56,6 @@ def printing(*parts: RenderableType) -> Print:
 REPORTS: dict[str, Print] = {
     "bench": lambda console: print_bench(RESULTS, MACHINE, console),
     "doctor": lambda console: print_doctor(FOUND, console),
-    "soak": lambda console: print_soak(SOAKED, console),
     "commission": lambda console: print_commissioning(Progress(name="x", base="kurt2", bus="can0"), STEPS, console),
     "status": printing(health_as_rich(ILL)),
     "exam": printing(render_curriculum(curriculum_result(7, 88, exam_result("rooms-9007", stuck=True)), short_task())),
@@ -108,7 +105,6 @@ def test_reports_break_no_word_at_80_columns(report: Print) -> None:
         ("pair", "--list"),
         ("why", WALLS, "--to", "30"),
         ("why", WALLS, "--at", "1"),
-        ("faults", "--target", "tick", "--kind", "stuck", "--kind", "intermittent"),
     ],
     ids=" ".join,
 )

@@ -28,7 +28,6 @@ REPORTS: tuple[tuple[str, ...], ...] = (
     ("knowledge", "check", "taught.knowledge"),
     ("why", WALLS, "--at", "1"),
     ("why", WALLS, "--to", "5"),
-    ("faults", "--target", "tick", "--kind", "stuck"),
     ("exam", "taught.knowledge", "--world", "nowhere-\udcff"),
 )
 

@@ -14,8 +14,8 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.can_line import CanLine
-from simbridge.faults.cable import SOUND, Cable, CableFaults, CableInterface
 from simbridge.kurt2_simulation import Kurt2Simulation
+from tests.faults.cable import SOUND, Cable, CableFaults, CableInterface
 from tests.simbridge.rig import CODEC, ROBOT
 
 TURN = WheelSpeeds(0.2, -0.2)

@@ -1,1 +1,0 @@
-"""Faults injected between the robot's parts and the notebook, in simulated time."""

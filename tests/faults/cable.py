@@ -1,0 +1,151 @@
+"""Cable without transmission time, sound or poor; timestamps and confirmations are SocketCAN's."""
+
+import copy
+import random
+from collections import deque
+from collections.abc import Callable, Set
+from typing import NamedTuple
+
+import can
+
+from hal.bus_frame import is_heard
+from hal.frame import Frame
+
+_MOST_WAITING = 4096
+
+
+class CableFaults(NamedTuple):
+    """Faults of a poor cable; a share is a probability, drawn for each receiver."""
+
+    delay_s: float = 0.0
+    """Longest time on the way; each frame takes a random part of it, and none overtakes another."""
+    lost: float = 0.0
+    lost_ids: Set[int] = frozenset()
+    """Identifiers of which every frame is lost."""
+    doubled: float = 0.0
+    overtaken: float = 0.0
+    """Share of frames that arrive after the next one."""
+
+
+SOUND = CableFaults()
+
+
+class Cable:
+    """Cable between its ends; equal seeds and calls give equal faults."""
+
+    def __init__(
+        self, now_s: Callable[[], float], faults: CableFaults = SOUND, chance: random.Random | None = None
+    ) -> None:
+        """Args: `now_s`: returns the time in s; `chance`: of the faults, which a sound cable does without."""
+        self.now_s = now_s
+        self._faults = faults
+        self._chance = chance or random.Random(0)
+        self._carried_at_s = 0.0
+        self._ends: list[CableInterface] = []
+
+    def open(self) -> "CableInterface":
+        """Return a new end; it receives the frames that are carried from now on."""
+        return self.join(CableInterface(self))
+
+    def join(self, end: "CableInterface") -> "CableInterface":
+        """Let an end of this cable receive the frames that are carried from now on."""
+        self._ends.append(end)
+        return end
+
+    def carry(self, frame: can.Message, sender: "CableInterface") -> None:
+        """Deliver a copy of a frame to every end; the sender gets it once, as its confirmation."""
+        at_s = self._arrival_s()
+        for end in self._ends:
+            if not is_heard(frame, end.accepted_ids):
+                continue
+            if end is sender or self._faults is SOUND:
+                end.deliver(frame, at_s, own=end is sender)
+            else:
+                self._deliver_poorly(frame, end, at_s)
+
+    def leave(self, end: "CableInterface") -> None:
+        """Remove an end; repeated calls do nothing."""
+        if end in self._ends:
+            self._ends.remove(end)
+
+    def _arrival_s(self) -> float:
+        if self._faults.delay_s:
+            at_s = self.now_s() + self._chance.uniform(0.0, self._faults.delay_s)
+            self._carried_at_s = max(self._carried_at_s, at_s)
+            return self._carried_at_s
+        return self.now_s()
+
+    def _deliver_poorly(self, frame: can.Message, end: "CableInterface", at_s: float) -> None:
+        faults = self._faults
+        if frame.arbitration_id in faults.lost_ids or self._happens(faults.lost):
+            return
+        overtaken, end.overtaken = end.overtaken, None
+        if overtaken is None and self._happens(faults.overtaken):
+            end.overtaken = frame
+            return
+        for _ in range(2 if self._happens(faults.doubled) else 1):
+            end.deliver(frame, at_s, own=False)
+        if overtaken is not None:
+            end.deliver(overtaken, at_s, own=False)
+
+    def _happens(self, share: float) -> bool:
+        return share > 0.0 and self._chance.random() < share
+
+
+class CableInterface:
+    """End of a cable (hal.can_interface.CanInterface)."""
+
+    receives_own_frames = True
+
+    def __init__(self, cable: Cable) -> None:
+        self._cable = cable
+        self._waiting: deque[can.Message] = deque()
+        """Frames in the order of their arrival, also those that are still on the way."""
+        self.accepted_ids: frozenset[int] | None = None
+        """Accepted identifiers; None accepts all."""
+        self.overtaken: can.Message | None = None
+        """Frame that arrives after the next one."""
+        self._open = True
+        self.overruns = 0
+        """Number of frames dropped because the queue was full."""
+
+    def now_s(self) -> float | None:
+        """Return the cable's time in s."""
+        return self._cable.now_s()
+
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
+        """Accept only these standard identifiers and error frames; applies to queued frames too."""
+        self.accepted_ids = frame_ids
+        self._waiting = deque(frame for frame in self._waiting if is_heard(frame, frame_ids))
+
+    def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - it never waits
+        """Return the oldest frame or None without waiting `timeout` s. Raises can.CanOperationError after shutdown."""
+        self._check_open()
+        if self._waiting and self._waiting[0].timestamp <= self._cable.now_s():
+            return self._waiting.popleft()
+        return None
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:  # noqa: ARG002
+        """Send a frame without waiting `timeout` s. Raises can.CanOperationError after shutdown."""
+        self._check_open()
+        self._cable.carry(msg, self)
+
+    def shutdown(self) -> None:
+        """Unplug the end; repeated calls do nothing."""
+        self._open = False
+        self._cable.leave(self)
+
+    def deliver(self, frame: can.Message, at_s: float, *, own: bool) -> None:
+        """Queue a copy of a frame that arrives at `at_s`, in s, and is so stamped; `own`: whether this end sent it."""
+        if len(self._waiting) >= _MOST_WAITING:
+            self.overruns += 1
+            return
+        # Half the time of copy.copy, which first looks the method up.
+        mine = frame.__copy__() if isinstance(frame, Frame) else copy.copy(frame)
+        mine.timestamp = at_s
+        mine.is_rx = not own
+        self._waiting.append(mine)
+
+    def _check_open(self) -> None:
+        if not self._open:
+            raise can.CanOperationError("this end of the cable is shut down")

@@ -1,0 +1,169 @@
+"""Motion envelope judged from CAN frames alone, independent of the guard.
+
+It shares no code with the guard or the guard's codec, so that an error of one cannot hide an error of the other.
+"""
+
+import struct
+from typing import NamedTuple
+
+from tests.faults.table import Limits
+
+_SPEED_CM, _RAW = 2, 0
+_SET_POINT = struct.Struct(">HhhH")
+_BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
+"""RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
+_ROUNDING = 1e-6
+_MOST_UNDER_WAY = 2048
+"""Frames in transit that are remembered; an older frame counts as lost."""
+
+
+class WheelCommand(NamedTuple):
+    """Command of a CONTROL frame to the wheels."""
+
+    left_m_s: float
+    right_m_s: float
+    brake: bool
+
+    @property
+    def standing(self) -> bool:
+        """Return whether both sides are commanded to stand."""
+        return self.left_m_s == 0.0 and self.right_m_s == 0.0
+
+
+_BRAKE = WheelCommand(0.0, 0.0, brake=True)
+
+
+def decode_command(payload: bytes) -> WheelCommand | None:
+    """Return the command of a payload; None if the robot or this guard does not use it."""
+    if payload == _BRAKE_PAYLOAD:
+        return _BRAKE
+    if len(payload) != _SET_POINT.size:
+        return None
+    mode, left_cm_s, right_cm_s, _ = _SET_POINT.unpack(payload)
+    return WheelCommand(left_cm_s / 100.0, right_cm_s / 100.0, brake=False) if mode == _SPEED_CM else None
+
+
+class _SentFrame(NamedTuple):
+    at_s: float
+    age_s: float
+    told: WheelCommand | None
+    bumper_pressed: bool
+
+
+class Envelope:
+    """Check of all frames of one driver; `violations` holds the frames beyond the limits."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.violations: list[str] = []
+        self.frames = 0
+        """Frames handed to the bus."""
+        self.old_frames = 0
+        """Set points that exceeded the age limit on arrival at the robot."""
+        self.unintelligible = 0
+        """Garbled frames that arrived; the robot ignores them."""
+        self.clock_is_faulty = False
+        """True while the driver's clock jumps: each frame may change speed by the longest step."""
+        self.bumper_pressed = False
+        """True while the driver reads a pressed bumper: the blocked wheels stop and may reverse at once."""
+        self._limits = limits
+        self._in_transit: dict[int, _SentFrame] = {}
+        self._last_put: _SentFrame | None = None
+        self._last_arrived: _SentFrame | None = None
+        self._arrived_number = 0
+
+    def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
+        """Check a frame that the driver hands to its bus; a violation is appended to `violations`.
+
+        `number`: of the frame, in order. `at_s`: simulated time in s. `age_s`: time in s since its decision began.
+        `latched`: whether the guard keeps the robot stopped.
+        """
+        self.frames += 1
+        told = decode_command(payload)
+        put = _SentFrame(at_s, age_s, told, self.bumper_pressed)
+        self._in_transit[number] = put
+        self._in_transit.pop(number - _MOST_UNDER_WAY, None)
+        if told is None:
+            self._complain(at_s, f"no set point and no brake: {payload.hex(' ')}")
+            return
+        if not told.standing and not age_s <= self._limits.command_age_s + _ROUNDING:
+            self._complain(at_s, f"a command {age_s * 1000:.1f} ms old")
+        if latched and not told.brake:
+            self._complain(at_s, "no brake though the robot is to stay stopped")
+        self._require_slow(at_s, told)
+        if self._last_put is not None and self._last_put.told is not None:
+            longest_s = self._limits.longest_step_s
+            by_frame = self.clock_is_faulty or self._last_put.told.brake
+            elapsed_s = longest_s if by_frame else at_s - self._last_put.at_s
+            self._require_smooth(at_s, self._last_put.told, put, told, min(elapsed_s, longest_s))
+        self._last_put = put
+
+    def on_arrived(self, number: int, at_s: float, payload: bytes) -> WheelCommand | None:
+        """Check a frame that arrives at the robot; return its command, None for an unknown payload.
+
+        `number`: as in `on_sent`. `at_s`: simulated time in s.
+        """
+        told = decode_command(payload)
+        if told is None:
+            self.unintelligible += 1
+            return None
+        put = self._in_transit.pop(number, None)
+        if put is None:
+            self._complain(at_s, f"frame {number} arrives twice, or after {_MOST_UNDER_WAY} others")
+            return told
+        if not told.standing and put.age_s + at_s - put.at_s > self._limits.command_age_s + _ROUNDING:
+            self.old_frames += 1
+        self._require_slow(at_s, told)
+        if self._last_arrived is not None and self._last_arrived.told is not None:
+            # By the times at which they were made: what was held up may come in a heap.
+            elapsed_s = put.at_s - self._last_arrived.at_s
+            longest_s = self._limits.longest_step_s
+            if self._last_arrived.told.brake:
+                # The first step after a brake may be the longest, two cycles, and may be one of those that were lost.
+                elapsed_s = max(elapsed_s + longest_s / 2, longest_s)
+            elif self.clock_is_faulty:
+                elapsed_s = max(elapsed_s, longest_s)
+            # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
+            follows = number == self._arrived_number + 1
+            self._require_smooth(at_s, self._last_arrived.told, put, told, elapsed_s, follows=follows)
+        self._last_arrived = put
+        self._arrived_number = number
+        return told
+
+    def _require_slow(self, at_s: float, told: WheelCommand) -> None:
+        fastest_m_s = max(abs(told.left_m_s), abs(told.right_m_s))
+        if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
+            self._complain(at_s, f"{fastest_m_s:.2f} m/s")
+
+    def _require_smooth(
+        self,
+        at_s: float,
+        before: WheelCommand,
+        put: _SentFrame,
+        told: WheelCommand,
+        elapsed_s: float,
+        *,
+        follows: bool = True,
+    ) -> None:
+        limits = self._limits
+        for side, old_m_s, new_m_s in (
+            ("left", before.left_m_s, told.left_m_s),
+            ("right", before.right_m_s, told.right_m_s),
+        ):
+            if new_m_s == 0.0:
+                continue  # to stand is allowed at once
+            if not follows and (old_m_s * new_m_s < 0.0 or abs(new_m_s) < abs(old_m_s)):
+                continue
+            if old_m_s * new_m_s < 0.0 and put.bumper_pressed:
+                old_m_s = 0.0
+            if old_m_s * new_m_s < 0.0:
+                self._complain(at_s, f"{side} turns round from {old_m_s:.2f} to {new_m_s:.2f} m/s without a rest")
+                continue
+            gained_m_s = abs(new_m_s) - abs(old_m_s)
+            limit_m_s2 = limits.acceleration_m_s2 if gained_m_s > 0 else limits.braking_m_s2
+            allowed_m_s = limit_m_s2 * elapsed_s + limits.resolution_m_s
+            if abs(gained_m_s) > allowed_m_s + _ROUNDING:
+                within = f"in {elapsed_s * 1000:.0f} ms, allowed are {allowed_m_s:.3f} m/s"
+                self._complain(at_s, f"{side} jumps from {old_m_s:.2f} to {new_m_s:.2f} m/s {within}")
+
+    def _complain(self, at_s: float, text: str) -> None:
+        self.violations.append(f"at {at_s:.3f} s: {text}")

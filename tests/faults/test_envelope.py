@@ -1,0 +1,187 @@
+"""The observer: what it lets pass, and that it would see a guard that lets go."""
+
+import struct
+from pathlib import Path
+
+import pytest
+
+from hal.control import Mode, SpeedControl, control_frame, encode_brake
+from tests.faults.drill import drilled
+from tests.faults.envelope import Envelope, decode_command
+from tests.faults.judge import judge
+from tests.faults.rig import ROBOT
+from tests.faults.table import TABLE, Kind, Target, case_of
+
+BRAKE = bytes(encode_brake().data)
+
+
+def set_point(left_cm_s: int, right_cm_s: int | None = None) -> bytes:
+    right_cm_s = left_cm_s if right_cm_s is None else right_cm_s
+    return struct.pack(">HhhH", 2, left_cm_s, right_cm_s, 1)
+
+
+class Drive:
+    """Frames handed to the bus one after the other, that arrive at once unless told otherwise."""
+
+    def __init__(self) -> None:
+        self.envelope = Envelope(TABLE.envelope)
+        self.number = 0
+        self.now_s = 0.0
+
+    def on_sent(
+        self,
+        payload: bytes,
+        *,
+        after_s: float = 0.01,
+        age_s: float = 0.0,
+        latched: bool = False,
+        late_s: float | None = 0.0,
+    ) -> "Drive":
+        self.number += 1
+        self.now_s += after_s
+        self.envelope.on_sent(self.number, self.now_s, payload, age_s, latched=latched)
+        if late_s is not None:
+            self.envelope.on_arrived(self.number, self.now_s + late_s, payload)
+        return self
+
+    def to(self, cm_s: int) -> "Drive":
+        """Speed up to `cm_s` as a good guard does, one cm/s in a cycle."""
+        for speed in range(cm_s + 1):
+            self.on_sent(set_point(speed))
+        return self
+
+    @property
+    def violations(self) -> list[str]:
+        return self.envelope.violations
+
+
+def test_it_reads_what_the_robot_reads() -> None:
+    told = decode_command(bytes(control_frame(SpeedControl(Mode.SPEED_CM, -12, 34)).data))
+    assert told is not None
+    assert (told.left_m_s, told.right_m_s, told.brake) == (-0.12, 0.34, False)
+    brake = decode_command(BRAKE)
+    assert brake is not None
+    assert brake.brake
+    assert brake.standing
+    assert decode_command(bytes(8)) is None
+    assert decode_command(b"\0\2") is None
+
+
+def test_a_good_drive_passes() -> None:
+    drive = (
+        Drive()
+        .to(60)
+        .on_sent(set_point(0))
+        .to(30)
+        .on_sent(BRAKE, latched=True)
+        .on_sent(set_point(3))
+        .on_sent(set_point(0))
+    )
+    drive.on_sent(set_point(-1)).on_sent(set_point(-2), after_s=0.1)
+    assert not drive.violations
+    assert drive.envelope.frames > 90
+
+
+@pytest.mark.parametrize(
+    ("drive", "complaint"),
+    [
+        (Drive().to(60).on_sent(set_point(61)), "0.61 m/s"),
+        (Drive().to(10).on_sent(set_point(13)), "left jumps from 0.10 to 0.13"),
+        (Drive().to(10).on_sent(set_point(10, 13)), "right jumps from 0.10 to 0.13"),
+        (Drive().on_sent(set_point(0)).on_sent(set_point(5), after_s=0.5), "left jumps from 0.00 to 0.05"),
+        (Drive().on_sent(BRAKE).on_sent(set_point(5)), "left jumps from 0.00 to 0.05"),
+        (Drive().to(30).on_sent(set_point(25)), "left jumps from 0.30 to 0.25"),
+        (Drive().to(1).on_sent(set_point(-1)), "left turns round from 0.01 to -0.01"),
+        (Drive().to(10).on_sent(set_point(10), age_s=0.021), "a command 21.0 ms old"),
+        (Drive().on_sent(struct.pack(">HhhH", 1, 10, 10, 1)), "no brake: 00 01 00 0a 00 0a 00 01"),
+        (Drive().on_sent(bytes(7)), "no brake: 00 00 00 00 00 00 00"),
+        (Drive().on_sent(set_point(0), latched=True), "at 0.010 s: no brake though"),
+    ],
+)
+def test_drive_beyond_the_limits_is_a_complaint(drive: Drive, complaint: str) -> None:
+    assert any(complaint in each for each in drive.violations)
+
+
+def test_a_frame_that_arrives_twice_is_a_complaint() -> None:
+    drive = Drive().on_sent(set_point(0))
+    drive.envelope.on_arrived(1, drive.now_s, set_point(0))
+    assert "arrives twice" in drive.violations[0]
+
+
+def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
+    drive = Drive().on_sent(set_point(0))
+    drive.on_sent(set_point(1), late_s=None).on_sent(set_point(2), late_s=None).on_sent(set_point(3))
+    assert not drive.violations
+    drive = Drive().on_sent(set_point(0)).on_sent(set_point(1), late_s=None).on_sent(set_point(2), late_s=None)
+    drive.envelope.on_arrived(3, drive.now_s, set_point(9))
+    assert "left jumps from 0.00 to 0.09" in drive.violations[0]
+
+
+@pytest.mark.parametrize(("cm_s", "allowed"), [(6, True), (8, False)])
+def test_envelope_allows_the_longest_step_among_lost_frames(cm_s: int, allowed: bool) -> None:
+    drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), late_s=None).on_sent(set_point(4), late_s=None)
+    assert drive.violations == []
+    drive.on_sent(set_point(cm_s))
+    heard = [each for each in drive.violations if "in 30 ms" in each or "in 40 ms" in each]
+    assert (heard == []) is allowed
+
+
+def test_envelope_allows_an_early_longest_step_after_a_brake() -> None:
+    drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), after_s=0.002)
+    assert drive.violations == []
+
+
+def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
+    slows = Drive().on_sent(set_point(5)).on_sent(set_point(0), late_s=None).on_sent(set_point(1))
+    turns = Drive().on_sent(set_point(1)).on_sent(set_point(0), late_s=None).on_sent(set_point(-1))
+    assert not slows.violations
+    assert not turns.violations
+
+
+def test_envelope_arrival_reversal_needs_a_rest() -> None:
+    assert "turns round" in Drive().on_sent(set_point(1)).on_sent(set_point(-1)).violations[0]
+
+
+def test_envelope_pressed_bumper_allows_reversal_but_no_jump() -> None:
+    drive = Drive().on_sent(set_point(1)).on_sent(set_point(2)).on_sent(set_point(3))
+    drive.envelope.bumper_pressed = True
+    assert not drive.on_sent(set_point(-1)).violations
+    assert "left jumps from 0.00 to 0.09" in drive.on_sent(set_point(9)).violations[0]
+
+
+def test_envelope_faulty_clock_frames_are_judged_one_by_one() -> None:
+    drive = Drive()
+    drive.envelope.clock_is_faulty = True
+    drive.on_sent(set_point(1)).on_sent(set_point(4), after_s=0.003)
+    assert not drive.violations
+    assert "left jumps from 0.04 to 0.09" in drive.on_sent(set_point(9), after_s=0.003).violations[0]
+
+
+def test_it_counts_what_arrives_too_late_and_what_is_garbled() -> None:
+    drive = (
+        Drive().on_sent(set_point(1), late_s=0.019).on_sent(set_point(2), late_s=0.03).on_sent(set_point(0), late_s=0.5)
+    )
+    assert drive.envelope.old_frames == 1
+    drive.envelope.on_arrived(1, 1.0, b"\xff" * 8)
+    assert drive.envelope.unintelligible == 1
+    assert not drive.violations
+
+
+@pytest.mark.parametrize(
+    ("target", "kind", "limits", "complaint"),
+    [
+        ("tick", "wrong", {"maximum_speed_m_s": 0.9}, ": 0.61 m/s"),
+        ("tick", "wrong", {"acceleration_m_s2": 4.0}, "in 10 ms, allowed are 0.025 m/s"),
+        ("tick", "slow", {"command_age_s": 0.05}, ": a command 30.0 ms old"),
+        ("sensor_board_1", "off", {"stale_infrared_s": 0.2}, "must stand within 60 ms"),
+        ("tick", "stuck", {"ticks_ceased_s": 0.5}, "must stand within 110 ms"),
+        ("left_motor", "off", {"wheel_error_s": 10.0}, "must stay stopped because of wheels disobey"),
+    ],
+)
+async def test_a_guard_that_lets_go_is_seen_in_the_drills(
+    target: Target, kind: Kind, limits: dict[str, float], complaint: str, tmp_path: Path
+) -> None:
+    careless = ROBOT.model_copy(update={"guard": ROBOT.guard.model_copy(update=limits)})
+    case = case_of(target, kind)
+    said = judge(case.must, await drilled(case, tmp_path, robot=careless))
+    assert any(complaint in each for each in said), said

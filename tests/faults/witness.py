@@ -1,0 +1,142 @@
+"""Witness at both ends of the bus and of every tick: envelope, standing until told, and the ticks' accounts."""
+
+from typing import NamedTuple
+
+from hal.robot import STANDSTILL, Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.platform.ledger import TickTimer
+from tests.faults.envelope import Envelope, WheelCommand
+from tests.faults.rig import Rig
+from tests.faults.table import TABLE
+
+_ROUNDING_S = 1e-6
+
+
+class Stand(NamedTuple):
+    """Time span in which the robot had to stand."""
+
+    from_s: float
+    to_s: float
+
+
+class Witness(RobotProxy):
+    """Robot of the tick that sees what the driver sends, what arrives at the robot, and what each tick did."""
+
+    def __init__(self, rig: Rig) -> None:
+        self.envelope = Envelope(TABLE.envelope)
+        self.complaints = self.envelope.violations
+        """Complaints about envelope, standstill and ticks."""
+        self.resumes = 0
+        """Accepted commands to resume."""
+        self.latched: tuple[float, str] | None = None
+        """Time and reason of the guard's first latch since `watch`; None without one."""
+        self.drove_at_s: list[float] = []
+        """Times of ticks with moving set points since `watch`."""
+        self._rig, self._time = rig, rig.time
+        self._arrivals: list[tuple[float, WheelCommand]] = []
+        self._causes: list[tuple[float, tuple[str, ...]]] = []
+        self._watches = False
+        self._sensed_at_s = 0.0
+        self._must_stand = ""
+        rig.ends.on_sent, rig.ends.on_arrived = self._on_sent, self._on_arrived
+
+    def begin_program(self, robot: Robot) -> None:
+        """Observe the driver of a new program, which must stand until it is resumed."""
+        self._robot = robot
+        self._must_stand = "the program was started"
+
+    def watch(self) -> None:
+        """Remember from now on what the robot was told and why, until `rest`."""
+        self.rest()
+        self._watches = True
+
+    def rest(self) -> None:
+        """Remember no more, so that a long run takes no memory."""
+        self._watches, self.latched = False, None
+        del self._arrivals[:-1]
+        self._causes.clear()
+        self.drove_at_s.clear()
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """Return the driver's readings; the age of the next decision counts from this call."""
+        self._sensed_at_s = self._time.now_s()
+        self.envelope.clock_is_faulty = self._rig.injection.of("clock") is not None
+        readings = super().sense(now_s)
+        self.envelope.bumper_pressed = readings.bumpers != 0
+        return readings
+
+    def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float, period_s: float) -> None:
+        """Check a tick of a loop that began at `begun_s` on its own clock."""
+        now_s, cause = self._time.now_s(), record.decision.cause
+        moves = record.guard_result.wheel_speeds != STANDSTILL
+        if moves and not record.decision.driving:
+            self._complain(f"drives though {cause}")
+        accepted = {result.command_id for result in record.results if result.accepted}
+        if any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands):
+            self._must_stand = ""
+            self.resumes += 1
+        # A teacher's hand tells it to drive, until it lets go.
+        if moves and self._must_stand and cause is not DecisionCause.TEACHER:
+            self._complain(f"drives though {self._must_stand}, without a resume")
+        if record.guard_result.latched:
+            self._must_stand = ", ".join(record.guard_result.reasons) or "stopped for good"
+        if ledger.ticks + 1 + ledger.missed_ticks != record.tick:
+            self._complain(f"tick {record.tick}: {ledger.ticks + 1} and {ledger.missed_ticks} missed are not as many")
+        late_s = record.now_s - begun_s - record.tick * period_s
+        if not -_ROUNDING_S <= late_s < period_s + _ROUNDING_S and not self.envelope.clock_is_faulty:
+            self._complain(f"tick {record.tick} is {late_s:.6f} s off its deadline")
+        if self._watches and moves:
+            self.drove_at_s.append(now_s)
+        elif self._watches:
+            # A layer that wants to drive is not why the robot stands.
+            self._causes.append((now_s, (*(() if record.decision.driving else (cause,)), *record.guard_result.reasons)))
+
+    def standstills(self, begin_s: float, end_s: float) -> list[Stand]:
+        """Return the spans in which the robot had to stand: it was told to, or its own watchdog had expired."""
+        stands: list[Stand] = []
+        state, since_s, heard_at_s = True, 0.0, 0.0
+        heard = [(at_s, told.standing) for at_s, told in self._arrivals if at_s < end_s]
+        for at_s, standing in (*heard, (end_s, True)):
+            if not state and at_s - heard_at_s >= TABLE.envelope.controller_watchdog_s:
+                state, since_s = True, heard_at_s + TABLE.envelope.controller_watchdog_s
+            if at_s == end_s:
+                break
+            if standing != state:
+                if state:
+                    stands.append(Stand(since_s, at_s))
+                state, since_s = standing, at_s
+            heard_at_s = at_s
+        if state:
+            stands.append(Stand(since_s, end_s))
+        return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
+
+    def causes_from(self, time_s: float) -> tuple[str, ...]:
+        """Return the causes of the first standstill command from `time_s` on; empty without one."""
+        first_s = next((at_s for at_s, _ in self._causes if at_s >= time_s), None)
+        return tuple(dict.fromkeys(word for at_s, words in self._causes if at_s == first_s for word in words))
+
+    def slowest_m_s(self, begin_s: float, end_s: float) -> float:
+        """Return the slowest set point of a side in a span of time."""
+        told = (each for at_s, each in self._arrivals if begin_s <= at_s < end_s)
+        return min((min(abs(each.left_m_s), abs(each.right_m_s)) for each in told), default=0.0)
+
+    def _on_sent(self, number: int, payload: bytes) -> None:
+        now_s, robot = self._time.now_s(), self._rig.robot
+        latched = None if robot is None else robot.health.latched
+        if latched is not None and self._watches:
+            self.latched = self.latched or (now_s, latched)
+            self._causes.append((now_s, (latched,)))
+        self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+
+    def _on_arrived(self, number: int, payload: bytes, at_s: float) -> None:
+        told = self.envelope.on_arrived(number, at_s, payload)
+        if told is not None:
+            if not self._watches:
+                self._arrivals.clear()
+            self._arrivals.append((at_s, told))
+
+    def _complain(self, text: str) -> None:
+        self.complaints.append(f"at {self._time.now_s():.3f} s: {text}")
