@@ -9,7 +9,7 @@ import pytest
 
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import Rla
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -29,7 +29,7 @@ def taught(path: Path) -> list[RlaCreated]:
             for number in range(1, LESSONS + 1)
         ]
         journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
-        journal.checkpoint(Statistics({1: 5, 2: 7}, {(1, 2): 3}, {1: 0.25}, {(1, 2): 90.0}))
+        journal.checkpoint(Statistics({1: 5, 2: 7}, {(1, 2): 3}, {1: 0.25}, {BEST_SCORE: 90.0}))
     return lessons
 
 

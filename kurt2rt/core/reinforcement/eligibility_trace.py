@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -13,13 +12,8 @@ LEAST_SHARE = 0.001
 """Least share: smaller ones have no visible effect and would fill the journal."""
 
 
-class EligibilityTrace(NamedTuple):
-    """Eligibility of RLAs and transitions for a reward about one tick."""
-
-    shares: Mapping[int, float]
-    """RLA id -> share of the reward. The sum is at most 1, less after standstill or outside all radii."""
-    transitions: tuple[tuple[int, int], ...]
-    """(RLA id, follow-up RLA id), newest first."""
+EligibilityTrace = Mapping[int, float]
+"""RLA id -> share of a reward about one tick. The sum is at most 1, less after standstill or outside all radii."""
 
 
 def make_trace(
@@ -27,7 +21,6 @@ def make_trace(
     tick: int,
     *,
     trace_ticks: float,
-    most_transitions: int,
     since: Mapping[int, int],
 ) -> EligibilityTrace:
     """Return the trace at a tick, from the stored decisions up to it.
@@ -36,7 +29,6 @@ def make_trace(
         recent: stored decisions.
         tick: rewarded tick.
         trace_ticks: time constant in ticks.
-        most_transitions: greatest number of transitions.
         since: RLA id -> tick in which it got its action; earlier decisions had another action and do not count.
     """
     decay = round_portable(math.exp(-1.0 / trace_ticks))
@@ -50,17 +42,4 @@ def make_trace(
     np.multiply.accumulate(fading, out=fading)  # powers by multiplication: the same on every processor
     weights = (1.0 - decay) * fading[np.minimum(tick - ticks, reach)]
     sums = np.bincount(rlas, weights)
-    shares = {int(rla_id): float(sums[rla_id]) for rla_id in np.flatnonzero(sums >= LEAST_SHARE) if rla_id != 0}
-    return EligibilityTrace(shares, _last_transitions(ticks.tolist(), rlas.tolist(), most_transitions))
-
-
-def _last_transitions(ticks: list[int], rlas: list[int], most: int) -> tuple[tuple[int, int], ...]:
-    """Return the last transitions, newest first; ticks without an answering RLA separate transitions."""
-    found: list[tuple[int, int]] = []
-    for place in range(len(rlas) - 1, 0, -1):
-        if len(found) == most:
-            break
-        before, after = rlas[place - 1], rlas[place]
-        if before and after and before != after and ticks[place] - ticks[place - 1] == 1:
-            found.append((before, after))
-    return tuple(found)
+    return {int(rla_id): float(sums[rla_id]) for rla_id in np.flatnonzero(sums >= LEAST_SHARE) if rla_id != 0}

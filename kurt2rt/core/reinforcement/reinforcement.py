@@ -11,12 +11,10 @@ from typing import NamedTuple
 
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.edge_weights import EdgeWeights
 from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, make_trace
 from kurt2rt.core.reinforcement.repair import OriginOf, Repair
-from kurt2rt.core.reinforcement.rule import CreditUpdate, ReinforcementRule
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
-from kurt2rt.core.reinforcement.td_lambda import TdLambda
+from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, TdLambda
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import (
     ActionReplaced,
@@ -31,7 +29,7 @@ from kurt2rt.core.rla.events import (
 from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.statistics import EDGE_WEIGHTS_INCLUDE, FIRST_VALUE, VALUES_INCLUDE, Statistics
+from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 
 
 class _Punishment(NamedTuple):
@@ -57,7 +55,7 @@ class Reinforcement:
         self._value_settings: ValueSettings = settings.with_teacher
         self.rule = self._make_rule(settings.with_teacher)
         """Teacher's values."""
-        self._autonomous: ReinforcementRule | None = None
+        self._autonomous: TdLambda | None = None
         """Autonomous values; None outside phase 5."""
         self.choice = EpsilonGreedy(
             self.value,
@@ -75,7 +73,7 @@ class Reinforcement:
         """RLA id -> tick of this run in which it got its action."""
         self._punishments: list[_Punishment] = []
         self._saved = Statistics()
-        """Statistics saved before this run: the other rule's table is saved unchanged."""
+        """Statistics saved before this run."""
         self.rows = 0
         """Number of teaching events: the number of journal rows once all are written."""
 
@@ -90,8 +88,8 @@ class Reinforcement:
         InvalidEventError if an event does not fit.
         """
         saved = saved or Statistics()
-        if self._rows_key in saved.numbers:
-            self._replay(events[: round(saved.numbers[self._rows_key])])
+        if VALUES_INCLUDE in saved.numbers:
+            self._replay(events[: round(saved.numbers[VALUES_INCLUDE])])
             self.rule.restore(self._without_deleted(saved))
         self._replay(events[self.rows :])
         self._since.clear()  # ticks of other runs
@@ -100,12 +98,9 @@ class Reinforcement:
         self._saved = saved
 
     def snapshot(self) -> Statistics:
-        """Return the teacher's values for the checkpoint; the other rule's table is unchanged."""
-        numbers = {**self._saved.numbers, self._rows_key: float(self.rows)}
-        if self._settings.rule == "td_lambda":
-            numbers[FIRST_VALUE] = self._settings.with_teacher.first_value
-            return replace(self._saved, values=dict(self.rule.values), numbers=numbers)
-        return replace(self._saved, edge_weights=dict(self.rule.edge_weights), numbers=numbers)
+        """Return the teacher's values for the checkpoint."""
+        numbers = {VALUES_INCLUDE: float(self.rows), FIRST_VALUE: self._settings.with_teacher.first_value}
+        return replace(self._saved, values=dict(self.rule.values), numbers={**self._saved.numbers, **numbers})
 
     def set_phase(self, phase: Phase) -> None:
         """Use the thresholds of a phase; entering phase 5 starts new autonomous values."""
@@ -121,7 +116,7 @@ class Reinforcement:
         """Return the values that the robot learnt by itself in phase 5; empty outside phase 5."""
         if self._autonomous is None:
             return Statistics()
-        return Statistics(values=dict(self._autonomous.values), edge_weights=dict(self._autonomous.edge_weights))
+        return Statistics(values=dict(self._autonomous.values))
 
     def restore_autonomous(self, values: Statistics, rla_ids: Collection[int]) -> None:
         """Restore the values of some RLAs in phase 5, from a result of `autonomous_values`."""
@@ -196,23 +191,16 @@ class Reinforcement:
                 self.on_event(event)
 
     @property
-    def _rows_key(self) -> str:
-        return VALUES_INCLUDE if self._settings.rule == "td_lambda" else EDGE_WEIGHTS_INCLUDE
-
-    @property
-    def _active_rule(self) -> ReinforcementRule:
+    def _active_rule(self) -> TdLambda:
         """Return the rule whose values count in this phase."""
         return self.rule if self._autonomous is None else self._autonomous
 
     @property
-    def _rules(self) -> tuple[ReinforcementRule, ...]:
+    def _rules(self) -> tuple[TdLambda, ...]:
         return (self.rule,) if self._autonomous is None else (self.rule, self._autonomous)
 
-    def _make_rule(self, values: ValueSettings) -> ReinforcementRule:
-        settings = self._settings
-        if settings.rule == "td_lambda":
-            return TdLambda(settings, values, self._period_s)
-        return EdgeWeights(settings)
+    def _make_rule(self, values: ValueSettings) -> TdLambda:
+        return TdLambda(self._settings, values, self._period_s)
 
     def _origins(self, punishment: _Punishment, phase: Phase, tick: int) -> OriginOf:
         def origin_of(word: str) -> Origin:
@@ -229,29 +217,22 @@ class Reinforcement:
             self.recent,
             tick,
             trace_ticks=seconds / self._period_s,
-            most_transitions=len(self._settings.factors),
             since=self._since,
         )
-        shares = {rla_id: share for rla_id, share in trace.shares.items() if self._is_active(rla_id)}
-        return EligibilityTrace(shares, tuple(each for each in trace.transitions if all(map(self._is_active, each))))
+        return {rla_id: share for rla_id, share in trace.items() if self._is_active(rla_id)}
 
     def _is_active(self, rla_id: int) -> bool:
         return self._system.get(rla_id) is not None
 
     def _without_deleted(self, saved: Statistics) -> Statistics:
-        return replace(
-            saved,
-            values={rla_id: value for rla_id, value in saved.values.items() if self._is_active(rla_id)},
-            edge_weights={
-                edge: weight for edge, weight in saved.edge_weights.items() if all(map(self._is_active, edge))
-            },
-        )
+        values = {rla_id: value for rla_id, value in saved.values.items() if self._is_active(rla_id)}
+        return replace(saved, values=values)
 
     def _add_punishment(self, value: int, trace: EligibilityTrace, signal: str, teacher: str) -> None:
         if value < 0:
             self.choice.reset()
             least = self._value_settings.blamed_share
-            punished = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
+            punished = tuple(rla_id for rla_id, share in trace.items() if share >= least)
             self._punishments.append(_Punishment(punished, signal, teacher))
 
     def _on_undone(self, lesson: str, origin: Origin) -> None:
@@ -307,11 +288,11 @@ class Reinforcement:
                 self._repair.on_created(rla)
 
 
-def _depths(account: ReinforcementRule, credits_: Iterable[Credit]) -> tuple[int, ...]:
+def _depths(account: TdLambda, credits_: Iterable[Credit]) -> tuple[int, ...]:
     """Return the depth of each credit: that of its RLA's present action."""
     return tuple(account.depth(credit.rla_id) for credit in credits_)
 
 
-def _credit_updates(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[CreditUpdate, ...]:
+def _credit_updates(account: TdLambda, credits_: Sequence[Credit]) -> tuple[CreditUpdate, ...]:
     """Return credits with the depths of their RLAs' present actions."""
     return tuple(map(CreditUpdate, credits_, _depths(account, credits_)))

@@ -1,6 +1,6 @@
 """Settings of reinforcement: the section `reinforcement` of `config/tasks/*.yaml`."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import Field
 
@@ -48,8 +48,6 @@ class AutonomousValues(ValueSettings):
 class ReinforcementSettings(Settings):
     """Settings of reinforcement; the defaults were found in simulation."""
 
-    rule: Literal["td_lambda", "edge_weights"] = "td_lambda"
-    """Reinforcement rule: values of RLAs, or weights of transitions."""
     trace_s: _Seconds = 0.7
     """Time constant of the eligibility trace of a teacher's reward."""
     alpha: _Share = 0.3
@@ -58,12 +56,6 @@ class ReinforcementSettings(Settings):
     """Discount of the next RLA's value per step."""
     step_s: _Seconds = 0.1
     """Time between two steps of temporal difference learning."""
-    factors: Annotated[tuple[Annotated[float, Field(gt=0, le=1)], ...], Field(min_length=1, max_length=100)] = (
-        0.9,
-        0.95,
-        0.97,
-    )
-    """Edge weights: factors of the last transitions, newest first; +1 multiplies, -1 divides."""
     with_teacher: TaughtValues = TaughtValues()
     """Values of phases 1 to 4."""
     alone: AutonomousValues = AutonomousValues()

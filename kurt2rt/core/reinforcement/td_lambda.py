@@ -9,18 +9,26 @@ autonomous phases, which have separate values.
 
 import math
 from collections.abc import Collection, Iterable, Mapping
+from typing import NamedTuple
 
 from hal.numerics import power, round_portable
 from kurt2rt.core.reinforcement.eligibility_trace import LEAST_SHARE, EligibilityTrace
-from kurt2rt.core.reinforcement.rule import CreditUpdate
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
 from kurt2rt.core.reinforcement.value_history import ValueHistory
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
 
+class CreditUpdate(NamedTuple):
+    """Credit with the action of its RLA that it belongs to."""
+
+    credit: Credit
+    depth: int
+    """Result of `depth` when the reward was given."""
+
+
 class TdLambda:
-    """Values of RLAs, and the eligibility trace of those that drive (ReinforcementRule)."""
+    """Values of RLAs, and the eligibility trace of those that drive. An undo subtracts credits only."""
 
     def __init__(self, settings: ReinforcementSettings, values: ValueSettings, period_s: float) -> None:
         """`values`: first and highest value; `period_s`: duration of a tick in s."""
@@ -28,7 +36,7 @@ class TdLambda:
         self._value_settings = values
         self._decay = round_portable(math.exp(-period_s / settings.trace_s))
         self._step_ticks = max(1, round(settings.step_s / period_s))
-        self._history = ValueHistory[float]()
+        self._history = ValueHistory()
         """V minus the first value."""
         self._trace: dict[int, float] = {}
         """Trace divided by `_scale`, so that a tick changes one entry only."""
@@ -57,25 +65,23 @@ class TdLambda:
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """Return each RLA's share of a reward of -1 or +1, limited by the highest value; nothing is changed."""
         alpha = self._settings.alpha
-        changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
+        changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.items())
         return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
         """Add alpha r e_i(t) to the value V_i of each RLA of a trace; `value` is the reward r, -1 or +1."""
-        for rla_id, change, _ in self.credits_for(value, trace):
+        for rla_id, change in self.credits_for(value, trace):
             self._add(rla_id, change)
 
     def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
-        """Add credits to values (`sign` +1), or subtract them (-1)."""
-        for (rla_id, change, before), depth in updates:
-            if before is not None:  # a credit of edge weights
-                continue
+        """Add credits of the journal to values (`sign` +1), or subtract them from existing values (-1)."""
+        for (rla_id, change), depth in updates:
             earned = self._history.get(rla_id, depth)
             if earned is not None or sign > 0:
                 self._history.set(rla_id, depth, (earned or 0.0) + sign * change)
 
     def value(self, rla_id: int) -> float:
-        """Return V of an RLA, a score of about -1 to 1."""
+        """Return V of an RLA's present action, a score of about -1 to 1; more is better."""
         return self._value_settings.first_value + self._history.present.get(rla_id, 0.0)
 
     def depth(self, rla_id: int) -> int:
@@ -106,14 +112,9 @@ class TdLambda:
 
     @property
     def values(self) -> Mapping[int, float]:
-        """V of each RLA that differs from the first value."""
+        """V of each RLA that differs from the first value, for the checkpoint."""
         first_value = self._value_settings.first_value
         return {rla_id: first_value + change for rla_id, change in self._history.present.items()}
-
-    @property
-    def edge_weights(self) -> Mapping[tuple[int, int], float]:
-        """Empty: this rule has no edge weights."""
-        return {}
 
     def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
         """Restore saved values of all RLAs, or of `only` some."""

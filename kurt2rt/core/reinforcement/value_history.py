@@ -1,18 +1,15 @@
 """History of values: of each RLA's present action, and of its earlier actions for an undo."""
 
 from collections.abc import Collection, Mapping
-from typing import Generic, TypeVar
-
-EarnedT = TypeVar("EarnedT")
 
 
-class ValueHistory(Generic[EarnedT]):
+class ValueHistory:
     """Values by RLA id, as a stack per RLA: a new action or a deletion pushes, its undo pops."""
 
     def __init__(self) -> None:
-        self.present: dict[int, EarnedT] = {}
+        self.present: dict[int, float] = {}
         """Value of each RLA's present action, if rewards changed it."""
-        self._former: dict[int, list[EarnedT | None]] = {}
+        self._former: dict[int, list[float | None]] = {}
 
     def depth(self, rla_id: int) -> int:
         """Return the number of earlier actions of an RLA whose values are kept."""
@@ -35,7 +32,7 @@ class ValueHistory(Generic[EarnedT]):
         self.present.pop(rla_id, None)
         self._former.pop(rla_id, None)
 
-    def restore(self, saved: Mapping[int, EarnedT], only: Collection[int] | None) -> None:
+    def restore(self, saved: Mapping[int, float], only: Collection[int] | None) -> None:
         """Restore saved present values by RLA id: of all RLAs, or of `only` some."""
         if only is None:
             self.present = dict(saved)
@@ -45,13 +42,13 @@ class ValueHistory(Generic[EarnedT]):
             if rla_id in saved:
                 self.present[rla_id] = saved[rla_id]
 
-    def get(self, rla_id: int, depth: int) -> EarnedT | None:
-        """Return the value of an RLA's action at a depth, 0 the first action; None without rewards."""
+    def get(self, rla_id: int, depth: int) -> float | None:
+        """Return the value (dimensionless) of an RLA's action at a depth, 0 the first action; None without rewards."""
         former = self._former.get(rla_id, [])
         return former[depth] if depth < len(former) else self.present.get(rla_id)
 
-    def set(self, rla_id: int, depth: int, earned: EarnedT) -> None:
-        """Replace the value of an RLA's action at a depth, 0 the first action."""
+    def set(self, rla_id: int, depth: int, earned: float) -> None:
+        """Replace the value (dimensionless) of an RLA's action at a depth, 0 the first action."""
         former = self._former.get(rla_id, [])
         if depth < len(former):
             former[depth] = earned

@@ -3,26 +3,24 @@
 import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import starmap
 from typing import NamedTuple, overload
 
-_ROW = struct.Struct("=IdI")
-"""Id, change, id of the predecessor (0: none)."""
+_ROW = struct.Struct("=Id")
 _MAX_ID = 2**32 - 1
 
 
 class Credit(NamedTuple):
-    """Share of one RLA, or of one edge of the RLA network, in a reward."""
+    """Share of one RLA in a reward."""
 
     rla_id: int
     change: float
-    """Change of the RLA's value; of the edge's weight if `before` is set."""
-    before: int | None = None
-    """Predecessor RLA of a changed edge; None for a change of a value."""
+    """Change of the RLA's value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PackedCredits(Sequence[Credit]):
-    """Tuple of credits in 16 bytes each, where objects take 120. Equals and hashes as the tuple."""
+    """Tuple of credits in 12 bytes each, where objects take 120. Equals and hashes as the tuple."""
 
     packed: bytes
 
@@ -30,7 +28,7 @@ class PackedCredits(Sequence[Credit]):
         return len(self.packed) // _ROW.size
 
     def __iter__(self) -> Iterator[Credit]:
-        return (Credit(rla_id, change, before or None) for rla_id, change, before in _ROW.iter_unpack(self.packed))
+        return starmap(Credit, _ROW.iter_unpack(self.packed))
 
     @overload
     def __getitem__(self, place: int) -> Credit: ...
@@ -55,17 +53,13 @@ def pack_credits(credits_: Sequence[Credit]) -> Sequence[Credit]:
     """Return equal credits in less memory; return an empty sequence, or one of other types, unchanged."""
     if not credits_ or not all(map(_can_be_packed, credits_)):
         return credits_
-    return PackedCredits(b"".join(_ROW.pack(rla_id, change, before or 0) for rla_id, change, before in credits_))
+    return PackedCredits(b"".join(starmap(_ROW.pack, credits_)))
 
 
 def _can_be_packed(credit: object) -> bool:
     return (
         type(credit) is Credit
         and type(credit.change) is float
-        and _is_id(credit.rla_id)
-        and (credit.before is None or _is_id(credit.before))
+        and type(credit.rla_id) is int
+        and 1 <= credit.rla_id <= _MAX_ID
     )
-
-
-def _is_id(value: object) -> bool:
-    return type(value) is int and 1 <= value <= _MAX_ID

@@ -6,8 +6,7 @@ from dataclasses import dataclass, field
 from kurt2rt.core.rla.expectation import Expectation
 
 VALUES_INCLUDE = "rows that the values include"
-EDGE_WEIGHTS_INCLUDE = "rows that the edge weights include"
-"""Number of journal rows included in that table when it was saved; credits of later rows are applied at the start."""
+"""Number of journal rows included in the saved values; credits of later rows are applied at the start."""
 FIRST_VALUE = "first value"
 """Value of a newly taught action in the table of values."""
 BEST_SCORE = "best score"
@@ -25,8 +24,6 @@ class Statistics:
     """(RLA id, follow-up RLA id) -> number of transitions: edges of the RLA network (paper, III)."""
     values: Mapping[int, float] = field(default_factory=dict)
     """RLA id -> value, as rewards changed it."""
-    edge_weights: Mapping[tuple[int, int], float] = field(default_factory=dict)
-    """(RLA id, follow-up RLA id) -> weight of an edge that rewards changed; smaller is better."""
     numbers: Mapping[str, float] = field(default_factory=dict)
     """Single numbers by the names above."""
     expectations: Mapping[int, Expectation] = field(default_factory=dict)

@@ -95,7 +95,6 @@ def encode_statistics(statistics: Statistics) -> bytes:
             "uses": list(statistics.uses.items()),
             "transitions": [[*key, value] for key, value in statistics.transitions.items()],
             "values": list(statistics.values.items()),
-            "edge_weights": [[*key, value] for key, value in statistics.edge_weights.items()],
             "numbers": dict(statistics.numbers),
             "expectations": [
                 [rla_id, each.lesson, each.count, each.ticks, _text(each.packed_mean), _text(each.packed_squares)]
@@ -117,10 +116,6 @@ def decode_statistics(data: bytes) -> Statistics:
                 for before, after, count in content["transitions"]
             },
             {require_int(rla_id): require_number(value) for rla_id, value in content["values"]},
-            {
-                (require_int(before), require_int(after)): require_number(weight)
-                for before, after, weight in content["edge_weights"]
-            },
             {require_text(name): require_number(value) for name, value in content["numbers"].items()},
             {
                 require_int(rla_id): Expectation(

@@ -108,7 +108,7 @@ def _content(event: TeachingEvent) -> dict[str, Any]:
                 "rla_id": rla_id,
                 "value": value,
                 "decided_at_tick": decided_at_tick,
-                "credits": [[*credit] if credit.before is not None else [*credit[:2]] for credit in credits_],
+                "credits": [[*credit] for credit in credits_],
                 "said": said,
             }
         case Appraised(appraisal, value, decided_at_tick, _):
@@ -191,16 +191,11 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
 
 def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
     rows = _value(content, "credits")
-    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) in (2, 3) for row in rows):
-        raise _FieldError("credits", "credits must be a list of (RLA's id, number) or (RLA's id, number, id before it)")
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) == 2 for row in rows):
+        raise _FieldError("credits", "credits must be a list of (RLA's id, number)")
     return tuple(
-        Credit(_id_of_credit(rla_id), _number(change, "credits"), *map(_id_of_credit, before))
-        for rla_id, change, *before in rows
+        Credit(_whole({"credits": rla_id}, "credits", least=1), _number(change, "credits")) for rla_id, change in rows
     )
-
-
-def _id_of_credit(value: object) -> int:
-    return _whole({"credits": value}, "credits", least=1)
 
 
 def _opinion(content: dict[str, Any], key: str) -> int:

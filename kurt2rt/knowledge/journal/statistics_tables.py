@@ -13,9 +13,6 @@ CREATE TABLE transition (
     from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
 ) STRICT, WITHOUT ROWID;
 CREATE TABLE value (rla_id INTEGER PRIMARY KEY, value REAL NOT NULL) STRICT;
-CREATE TABLE edge_weight (
-    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
-) STRICT, WITHOUT ROWID;
 CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID;
 CREATE TABLE expectation (
     rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
@@ -64,7 +61,6 @@ class _Table(NamedTuple):
 _USES = _Table("uses", ("rla_id", "count"))
 _TRANSITIONS = _Table("transition", ("from_rla", "to_rla", "count"))
 _VALUES = _Table("value", ("rla_id", "value"))
-_EDGE_WEIGHTS = _Table("edge_weight", ("from_rla", "to_rla", "weight"))
 _NUMBERS = _Table("number", ("name", "value"))
 _ANSWER_DELAYS = _Table("answer_delay", ("teacher", "place", "ticks"))
 """Place 0 is a teacher's oldest time."""
@@ -76,7 +72,6 @@ def read_statistics(connection: sqlite3.Connection) -> Statistics:
         _USES.read(connection),
         _TRANSITIONS.read(connection),
         _VALUES.read(connection),
-        _EDGE_WEIGHTS.read(connection),
         _NUMBERS.read(connection),
         _read_expectations(connection),
         _read_answer_delays(connection),
@@ -89,7 +84,6 @@ def changes(before: Statistics, after: Statistics) -> list[TableChange]:
         *_USES.changes(before.uses, after.uses),
         *_TRANSITIONS.changes(before.transitions, after.transitions),
         *_VALUES.changes(before.values, after.values),
-        *_EDGE_WEIGHTS.changes(before.edge_weights, after.edge_weights),
         *_NUMBERS.changes(before.numbers, after.numbers),
         *_expectation_changes(before.expectations, after.expectations),
         *_ANSWER_DELAYS.changes(_by_place(before.answer_delays), _by_place(after.answer_delays)),

@@ -63,7 +63,7 @@ def statistics_after(
         InvalidEventError: an event does not fit those before it.
     """
     if VALUES_INCLUDE not in saved.numbers:
-        return saved  # credits of another rule
+        return saved  # no robot has saved values yet: the first one computes them from the credits
     first_value = saved.numbers.get(FIRST_VALUE, TaughtValues().first_value)
     settings = ReinforcementSettings(with_teacher=TaughtValues(first_value=first_value, highest_value=None))
     account = Reinforcement(RlaSystem(dimensions, math.inf), DecisionHistory(dimensions), settings, period_s=0.01)

@@ -129,14 +129,10 @@ class _Merger:
         if not self._is_as_there(lesson.rla_id):
             return None
         if isinstance(lesson, RlaRewarded):
-            kept = tuple(filter(None, map(self._credit, lesson.credits)))
+            credits_ = (credit for credit in lesson.credits if self._is_as_there(credit.rla_id))
+            kept = tuple(Credit(self._ids[rla_id], change) for rla_id, change in credits_)
             return replace(lesson, rla_id=self._ids[lesson.rla_id], credits=kept, origin=origin)
         return replace(lesson, rla_id=self._ids[lesson.rla_id], origin=origin)
-
-    def _credit(self, credit: Credit) -> Credit | None:
-        if not all(map(self._is_as_there, filter(None, (credit.rla_id, credit.before)))):
-            return None
-        return Credit(self._ids[credit.rla_id], credit.change, credit.before and self._ids[credit.before])
 
     def _is_as_there(self, rla_id: int) -> bool:
         here, there = self._here.get(self._ids.get(rla_id, 0)), self._there.get(rla_id)

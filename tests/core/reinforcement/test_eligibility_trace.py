@@ -32,54 +32,47 @@ def remember(recent: DecisionHistory, tick: int, rla_id: int | None, *, answers:
 
 
 def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = None) -> EligibilityTrace:
-    return make_trace(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
+    return make_trace(recent, tick, trace_ticks=TRACE_TICKS, since=since or {})
 
 
 def test_trace_decays_with_age() -> None:
-    shares = trace(drives(7, 7, 8), 3).shares
+    shares = trace(drives(7, 7, 8), 3)
     assert shares == {7: pytest.approx((1 - D) * (D + D * D)), 8: pytest.approx(1 - D)}
 
 
 def test_trace_long_drive_has_nearly_all() -> None:
-    shares = trace(drives(*[7] * 1000), 1000).shares
+    shares = trace(drives(*[7] * 1000), 1000)
     assert shares == {7: pytest.approx(1.0, abs=0.002)}
 
 
 def test_trace_late_signal_means_its_tick() -> None:
     recent = drives(*[7] * 100, *[8] * 100)
-    assert trace(recent, 100).shares.keys() == {7}
-    assert trace(recent, 101).shares[8] == pytest.approx(1 - D)
+    assert trace(recent, 100).keys() == {7}
+    assert trace(recent, 101)[8] == pytest.approx(1 - D)
 
 
 def test_trace_standstill_and_unknown_have_no_share() -> None:
-    assert trace(drives(None, None, None), 3) == EligibilityTrace({}, ())
-    assert trace(drives(7, 8, 7, answers=False), 3) == EligibilityTrace({}, ())
+    assert trace(drives(None, None, None), 3) == {}
+    assert trace(drives(7, 8, 7, answers=False), 3) == {}
 
 
 def test_trace_standstill_decays_earlier_shares() -> None:
-    shares = trace(drives(*[7] * 50, *[None] * 20), 70).shares
+    shares = trace(drives(*[7] * 50, *[None] * 20), 70)
     assert shares == {7: pytest.approx((1 - D**50) * D**20)}
 
 
 def test_trace_starts_with_the_present_action() -> None:
     recent = drives(*[7] * 100)
-    assert trace(recent, 100, {7: 91, 8: 500}).shares == {7: pytest.approx(1 - D**10)}
-    assert trace(recent, 90, {7: 91}).shares == {}
+    assert trace(recent, 100, {7: 91, 8: 500}) == {7: pytest.approx(1 - D**10)}
+    assert trace(recent, 90, {7: 91}) == {}
 
 
 def test_trace_forgotten_or_missed_ticks_have_no_share() -> None:
     recent = drives(*[7] * 10)
     remember(recent, 20, 8)
-    shares = trace(recent, 20).shares
+    shares = trace(recent, 20)
     assert shares == {7: pytest.approx((1 - D**10) * D**10), 8: pytest.approx(1 - D)}
-    assert trace(recent, 1015).shares == {}
-
-
-def test_trace_transitions_newest_first_end_at_standstill() -> None:
-    recent = drives(1, 1, 2, 3, None, 4, 4, 5, 6, 6, 7)
-    assert trace(recent, 11).transitions == ((6, 7), (5, 6), (4, 5))
-    assert trace(recent, 7).transitions == ((2, 3), (1, 2))
-    assert trace(recent, 2).transitions == ()
+    assert trace(recent, 1015) == {}
 
 
 @given(st.lists(st.sampled_from([None, 1, 2, 3]), min_size=1, max_size=200), st.integers(0, 199))
@@ -89,7 +82,7 @@ def test_trace_equals_the_sum_over_ticks(rlas: list[int | None], back: int) -> N
     for k, rla_id in enumerate(rlas[:tick], 1):
         if rla_id is not None:
             expected[rla_id] = expected.get(rla_id, 0.0) + (1 - D) * D ** (tick - k)
-    shares = trace(drives(*rlas), tick).shares
+    shares = trace(drives(*rlas), tick)
     assert sum(shares.values()) <= 1.0 + 1e-12
     for rla_id, share in expected.items():
         assert shares.get(rla_id, 0.0) == pytest.approx(share, abs=0.001)

@@ -4,7 +4,6 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
@@ -368,44 +367,8 @@ def test_restore_answer_after_checkpoint_starts_fresh() -> None:
     assert again.value(1) == robot.value(1) == 0.5
 
 
-def test_restore_other_rule_keeps_the_table() -> None:
-    robot = track()
-    robot.go(LEFT, 400)
-    robot.signal(-1)
-    robot.go(RIGHT, 400)
-    robot.signal(-1)
-    saved = robot.reinforcement.snapshot()
-    other = Track(*robot.events, reinforcement=ReinforcementSettings(rule="edge_weights"), saved=saved)
-    other.go(RIGHT, 20)
-    other.go(LEFT, 20)
-    other.say(correct("c", "c-1"), RIGHT)
-    then = other.reinforcement.snapshot()
-    assert then.values == saved.values
-    assert then.edge_weights == {(2, 1): 100.0}
-    back = Track(*other.events, reinforcement=SIGNALS_ONLY, saved=then)
-    assert (back.value(1), back.value(2)) == pytest.approx((robot.value(1), 0.5))  # the second one was corrected
-    assert back.reinforcement.snapshot().edge_weights == then.edge_weights
-
-
 def track_with(robot: Track, saved: Statistics) -> Track:
     return Track(*robot.events, reinforcement=SIGNALS_ONLY, saved=saved)
-
-
-def test_edge_weights_rule_withdraws_too() -> None:
-    settings = ReinforcementSettings(rule="edge_weights")
-    robot = Track(*KNOWN, reinforcement=settings)
-    robot.go(RIGHT, 20)
-    robot.go(LEFT, 20)
-    assert shares(robot.signal(1)).keys() == {1}
-    robot.go(RIGHT, 20)
-    robot.go(LEFT, 20)
-    assert shares(robot.signal(-1)).keys() == {1, 2}
-    assert robot.value(1) == pytest.approx(1 - 1 / 0.97)  # blamed as the newest, and as the third one back
-    robot.signal(-1)
-    assert robot.value(1) < -0.1
-    robot.go(LEFT)
-    assert 1 in {event.rla_id for event in robot.learnt if isinstance(event, ActionWithdrawn)}
-    assert robot.go(LEFT).asking
 
 
 STEPS = SIGNALS_ONLY.model_copy(update={"step_s": 0.1})
@@ -446,13 +409,11 @@ def test_phase_5_teachers_reward_changes_both_values() -> None:
     assert robot.reinforcement.autonomous_values() == Statistics()
 
 
-@pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
-def test_undone_creation_is_dropped_deletion_is_kept(rule: str) -> None:
-    robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"rule": rule}))
+def test_undone_creation_is_dropped_deletion_is_kept() -> None:
+    robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY)
 
     def kept() -> set[int]:
-        saved = robot.reinforcement.snapshot()
-        return {*saved.values, *(rla_id for edge in saved.edge_weights for rla_id in edge)}
+        return {*robot.reinforcement.snapshot().values}
 
     assert robot.say(teach("c", "t-1"), 20.0).accepted
     for place in (LEFT, RIGHT, 20.0):

@@ -4,10 +4,8 @@ import math
 
 import pytest
 
-from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
-from kurt2rt.core.reinforcement.rule import CreditUpdate
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtValues
-from kurt2rt.core.reinforcement.td_lambda import TdLambda
+from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, TdLambda
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
@@ -15,7 +13,7 @@ ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
 D = math.exp(-0.01 / TRACE_S)
 WORTHS = TaughtValues(first_value=V0, highest_value=None)
 SETTINGS = ReinforcementSettings(alpha=ALPHA, gamma=GAMMA, trace_s=TRACE_S, step_s=0.1, with_teacher=WORTHS)
-HALF_EACH = EligibilityTrace({1: 0.5, 2: 0.25}, ())
+HALF_EACH = {1: 0.5, 2: 0.25}
 
 
 def rule() -> TdLambda:
@@ -80,11 +78,11 @@ def test_td_lambda_apply_credits_adds_and_subtracts() -> None:
 
 def test_td_lambda_reset_and_restore_previous() -> None:
     learner = rule()
-    learner.learn(-1, EligibilityTrace({1: 1.0}, ()))
+    learner.learn(-1, {1: 1.0})
     assert learner.depth(1) == 0
     learner.reset(1)
     assert (learner.value(1), learner.depth(1)) == (V0, 1)
-    learner.learn(1, EligibilityTrace({1: 1.0}, ()))
+    learner.learn(1, {1: 1.0})
     learner.apply_credits([CreditUpdate(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
     assert learner.value(1) == pytest.approx(V0 + ALPHA)
     learner.restore_previous(1)
@@ -104,7 +102,7 @@ def test_td_lambda_restore_continues_saved_values() -> None:
     learner = rule()
     learner.learn(-1, HALF_EACH)
     again = rule()
-    again.restore(Statistics(values=dict(learner.values), edge_weights=dict(learner.edge_weights)))
+    again.restore(Statistics(values=dict(learner.values)))
     assert [again.value(rla_id) for rla_id in (1, 2, 3)] == [learner.value(rla_id) for rla_id in (1, 2, 3)]
 
 
@@ -122,7 +120,7 @@ CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
 def test_td_lambda_teacher_reward_stops_at_highest() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     assert learner.credits_for(1, HALF_EACH) == ()
-    learner.learn(-1, EligibilityTrace({1: 0.2}, ()))
+    learner.learn(-1, {1: 0.2})
     assert learner.credits_for(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
     learner.learn(1, HALF_EACH)
     assert (learner.value(1), learner.value(2)) == (0.0, 0.0)
@@ -130,17 +128,17 @@ def test_td_lambda_teacher_reward_stops_at_highest() -> None:
 
 def test_td_lambda_autonomous_reward_raises_value() -> None:
     learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
-    learner.learn(-1, EligibilityTrace({1: 0.5}, ()))
+    learner.learn(-1, {1: 0.5})
     assert (learner.value(1), learner.value(2)) == pytest.approx((0.35, 0.5))
-    learner.learn(1, EligibilityTrace({1: 0.5, 2: 1.0}, ()))
+    learner.learn(1, {1: 0.5, 2: 1.0})
     assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
 
 
 def test_td_lambda_restore_only_some() -> None:
     learner = rule()
-    learner.learn(-1, EligibilityTrace({1: 1.0, 2: 1.0}, ()))
+    learner.learn(-1, {1: 1.0, 2: 1.0})
     then = Statistics(values=dict(learner.values))
-    learner.learn(-1, EligibilityTrace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
+    learner.learn(-1, {1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0})
     learner.restore(then, {1, 3, 5})
     assert [learner.value(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
 
@@ -148,9 +146,9 @@ def test_td_lambda_restore_only_some() -> None:
 def test_td_lambda_punishment_counts_from_highest() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: 0.3}))
-    assert learner.credits_for(1, EligibilityTrace({1: 1.0}, ())) == ()
-    (credit,) = learner.credits_for(-1, EligibilityTrace({1: 1.0}, ()))
-    learner.learn(-1, EligibilityTrace({1: 1.0}, ()))
+    assert learner.credits_for(1, {1: 1.0}) == ()
+    (credit,) = learner.credits_for(-1, {1: 1.0})
+    learner.learn(-1, {1: 1.0})
     assert learner.value(1) == pytest.approx(-ALPHA)
     learner.apply_credits([CreditUpdate(credit, 0)], -1)
     assert learner.value(1) == pytest.approx(0.3)

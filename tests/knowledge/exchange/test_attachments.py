@@ -99,7 +99,7 @@ def test_decode_lessons_have_their_stamps() -> None:
 
 def test_decode_statistics_are_exact_and_in_order() -> None:
     expectation = Expectation("ann-1", 1, 0.1, b"\x00\xff", b"")
-    saved = Statistics({7: 1, 2: 3}, {(7, 2): 1}, {2: 1 / 3}, {(2, 7): -0.1}, {"best score": 0.3}, {2: expectation})
+    saved = Statistics({7: 1, 2: 3}, {(7, 2): 1}, {2: 1 / 3, 7: -0.1}, {"best score": 0.3}, {2: expectation})
     again = decode_statistics(encode_statistics(saved))
     assert repr(again) == repr(saved)
     with pytest.raises(ValueError, match="statistics"):

@@ -47,7 +47,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
         blame = RlaRewarded(1, -1, 390, origin("blame"), (Credit(1, -0.1 - 0.2),))
         events = (first, second, replaced(1, "left", "forward"), blame, undone("create-2"))
         journal.append([JournalEntry(event, STAMP) for event in events])
-        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.1 + 0.2}, {(1, 2): 1e-17}, {"first value": 0.5}))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.1 + 0.2, 2: 1e-17}, {"first value": 0.5}))
     return path
 
 
@@ -230,7 +230,7 @@ def test_import_knowledge_misfit_lessons_are_refused(exported: Path, tmp_path: P
 
 
 NOTHING: dict[str, object] = {
-    "uses": [], "transitions": [], "values": [], "edge_weights": [], "numbers": {}, "expectations": []
+    "uses": [], "transitions": [], "values": [], "numbers": {}, "expectations": [], "answer_delays": {}
 }  # fmt: skip
 
 
@@ -246,7 +246,7 @@ NOTHING: dict[str, object] = {
         {**NOTHING, "transitions": [[1, 2]]},
         {**NOTHING, "values": [[1, "a"]]},
         {**NOTHING, "values": [[1, float("nan")]]},
-        {**NOTHING, "edge_weights": [[1, 2, 10**400]]},
+        {**NOTHING, "values": [[1, 10**400]]},
         {**NOTHING, "numbers": []},
         {**NOTHING, "numbers": {"\ud800": 1.0}},
         {**NOTHING, "expectations": [[1, "create-1", 1, 0.5, "AAAA", ""]]},

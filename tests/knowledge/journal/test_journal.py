@@ -96,8 +96,8 @@ def test_lesson_table_refuses_changes_and_deletions(path: Path) -> None:
 
 
 def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
-    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3}, {1: 0.5, 2: -1 / 3}, {(1, 2): 90.0, (2, 1): 0.1 + 0.2})
-    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1}, {1: 0.5, 3: 5e-324}, {(1, 2): 81.0, (1, 3): 1e300})
+    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3}, {1: 0.5, 2: -1 / 3}, {"a": 90.0, "b": 0.1 + 0.2})
+    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1}, {1: 0.5, 3: 5e-324}, {"a": 81.0, "c": 1e300})
     with Journal.open(path, BINDING) as journal:
         assert journal.statistics() == Statistics()
         journal.checkpoint(first)

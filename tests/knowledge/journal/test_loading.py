@@ -13,7 +13,7 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
@@ -301,7 +301,7 @@ def test_open_for_teaching_has_lessons_stamps_and_counts(path: Path) -> None:
             for number in (1, 2)
         ]
         journal.append([JournalEntry(lesson, f"stamp {lesson.rla.rla_id}") for lesson in lessons])
-        saved = Statistics({1: 5}, {(1, 2): 3}, {1: 0.25}, {(1, 2): 90.0})
+        saved = Statistics({1: 5}, {(1, 2): 3}, {1: 0.25}, {BEST_SCORE: 90.0})
         journal.checkpoint(saved)
 
     opened = open_for_teaching(path, ROBOT, task)

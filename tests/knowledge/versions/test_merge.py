@@ -157,14 +157,13 @@ def test_merge_rewards_add_up_with_credits_that_fit(mine: Path, theirs: Path) ->
         numbers = {FIRST_VALUE: 0.5, VALUES_INCLUDE: 6.0}
         journal.checkpoint(Statistics(values={1: 0.5, 2: 0.5}, numbers=numbers))
     changes = {1: -0.5, 4: -0.25, 3: -0.125, 9: -1.0}
-    edges = (Credit(4, 0.5, 1), Credit(4, 0.5, 3))
-    blame = RlaRewarded(1, -1, 390, origin("theirs"), (*(Credit(*each) for each in changes.items()), *edges))
+    blame = RlaRewarded(1, -1, 390, origin("theirs"), tuple(Credit(*each) for each in changes.items()))
     append(theirs, at(4, FAR, command_id="theirs-4"), blame)
     merged = merge(mine, theirs)
     assert folded(mine).appraisal(1) == (1, 1)
     *_, last = brought(mine, merged)
     assert isinstance(last.event, RlaRewarded)
-    assert last.event.credits == (Credit(1, -0.5), Credit(5, -0.25), Credit(5, 0.5, 1))
+    assert last.event.credits == (Credit(1, -0.5), Credit(5, -0.25))
     with Journal.read_only(mine) as journal:
         assert journal.statistics().values == {1: 0.0, 2: 0.5, 5: 0.25}
 

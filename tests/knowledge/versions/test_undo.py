@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import Lesson, LessonRedone, LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
@@ -152,10 +151,8 @@ def test_redo_all_of_a_teacher_skips_replaced_lessons(path: Path) -> None:
         redo_all_of(path, "Hertha")
 
 
-@pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
-def test_redo_reward_counts_again_for_a_robot(rule: str) -> None:
-    settings = ReinforcementSettings(rule=rule)  # type: ignore[arg-type]
-    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
+def test_redo_reward_counts_again_for_a_robot() -> None:
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
     robot.go(50.0, 20)
     robot.go(0.0, 20)
     praise = robot.signal(1).origin.command_id
@@ -205,7 +202,7 @@ def with_critic_lessons(path: Path) -> Path:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
         journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
         numbers = {FIRST_VALUE: 0.5, VALUES_INCLUDE: 7.0}
-        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, {(1, 2): 95.0}, numbers))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, numbers))
     return path
 
 
@@ -228,7 +225,7 @@ def test_undo_reward_takes_its_credits_off_values(path: Path) -> None:
     with Journal.read_only(path) as journal:
         statistics = journal.statistics()
     assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
-    assert replace(statistics, values={}, numbers={}) == Statistics({1: 5}, {(1, 2): 3}, {}, {(1, 2): 95.0})
+    assert replace(statistics, values={}, numbers={}) == Statistics({1: 5}, {(1, 2): 3})
 
 
 LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
@@ -262,23 +259,6 @@ def test_undo_in_a_file_equals_the_undo_of_a_robot(path: Path, *, saved_late: bo
         again = Track(*events, reinforcement=SIGNALS_ONLY, saved=statistics)
         assert again.value(1) == pytest.approx(robot.value(1))
     assert robot.value(1) == pytest.approx(0.2, abs=0.01)
-
-
-def test_undo_edge_weights_follow_at_the_next_start(path: Path) -> None:
-    settings = ReinforcementSettings(rule="edge_weights")
-    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
-    robot.go(50.0, 20)
-    robot.go(0.0, 20)
-    praise = robot.signal(1)
-    saved = robot.reinforcement.snapshot()
-    with Journal.open(path, LINE) as journal:
-        journal.append([JournalEntry(event, STAMP) for event in robot.events])
-        journal.checkpoint(saved)
-    undo(path, praise.origin.command_id)
-    with Journal.read_only(path) as journal:
-        assert journal.statistics() == saved
-        again = Track(*journal.events(), reinforcement=settings, saved=journal.statistics())
-    assert (robot.value(1), again.value(1)) == pytest.approx((0.1, 0.0))
 
 
 def test_undo_later_lesson_of_another_teacher_is_refused(path: Path) -> None:

@@ -91,9 +91,7 @@ rlas = some.builds(
     text,
     text,
 )
-credits_ = some.lists(
-    some.builds(Credit, some.integers(1, 99), finite, some.none() | some.integers(1, 99)), max_size=3
-).map(tuple)
+credits_ = some.lists(some.builds(Credit, some.integers(1, 99), finite), max_size=3).map(tuple)
 events = (
     some.builds(RlaCreated, rlas)
     | some.builds(LessonUndone, text, origins)
