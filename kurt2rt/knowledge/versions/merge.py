@@ -140,7 +140,7 @@ class _Merger:
 
     def _origin(self, there: Origin) -> Origin:
         name = f"{self._merge_id}{DERIVED}{first_command_id(there.command_id)}"
-        if self._here.lesson(name) is not None:  # another lesson of the same first id came by an earlier merge
+        if self._here.lesson(name) is not None:  # two lessons there have this first id: one came there by a merge
             name = f"{self._merge_id}{DERIVED}{there.command_id}"
         return replace(there, command_id=name)
 
