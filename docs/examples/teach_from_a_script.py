@@ -44,10 +44,10 @@ def teach(teacher: Teacher, seconds: float) -> int:
             return lessons
         right = what_is_right(state)
         wrong = wrong + 1 if state.cause == "rla" and state.action != right else 0
-        if state.stands.needs_resume:
-            print(f"tick {state.tick}: it stands ({state.stands.reason}); {teacher.resume().text}")
+        if state.standing.needs_resume:
+            print(f"tick {state.tick}: it stands ({state.standing.reason}); {teacher.resume().text}")
             continue
-        if state.stands.asks:
+        if state.standing.asks:
             answer = teacher.answer(right, of=state.tick)
         elif wrong == PATIENCE:
             answer = teacher.correct(right, of=state.tick)

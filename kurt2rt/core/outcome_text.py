@@ -19,7 +19,7 @@ class Surface(StrEnum):
     PAGE = "page"
     TERMINAL = "terminal"
     LOG = "log"
-    """Log, and wire for devices without codes."""
+    """Log, and the sentence in a robot's answer."""
 
 
 _WORDS: dict[Surface, dict[str, str]] = {
@@ -230,9 +230,7 @@ def _hindrance_text(outcome: Outcome) -> str:
     stands, says = outcome.fields.get("stands"), str(outcome.fields.get("says", ""))
     if outcome.code is not ResultCode.RESUMED or not isinstance(stands, str):
         return ""
-    known = stands in StandReason.__members__.values()  # a newer robot may have other reasons
-    standing = Standing(StandReason(stands), says=says) if known else Standing(StandReason.HALTED, says=stands)
-    return f"the robot still stands: {hindrance_text(standing)}"
+    return f"the robot still stands: {hindrance_text(Standing(StandReason(stands), says=says))}"
 
 
 def _no_lesson_text(outcome: Outcome) -> str:
@@ -248,9 +246,8 @@ def _late_press_text(fields: Mapping[str, Field]) -> str:
     if not isinstance(back, int) or back == 0:
         return ""
     by = f" of RLA {rla}" if isinstance(rla, int) else ""
-    answers, why = fields.get("delay_answers"), ""  # an earlier robot does not tell it
-    if isinstance(answers, int):
-        why = f", by {answers} of your answers" if answers else ", the usual delay"
+    answers = fields.get("delay_answers")
+    why = f", by {answers} of your answers" if answers else ", the usual delay"
     return f"; given to the decision{by} {back / _TICKS_PER_S:.1f} s before the press{why}"
 
 

@@ -25,7 +25,6 @@ CON, NON, ACK, RST = range(4)
 GET, POST, FETCH, UNAUTHORIZED = 0x01, 0x02, 0x05, 0x81
 OBSERVE, OSCORE, URI_PATH, CONTENT_FORMAT, ECHO = 6, 9, 11, 12, 252
 CBOR = b"\x3c"
-_EPOCH_S = 1_767_225_600
 _RESERVED = 1000
 _AGAIN_S = 0.1
 _PATIENCE_S = 3.5
@@ -44,7 +43,7 @@ class Numbers:
         self._lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT, 0o600)
         fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         stored = json.loads((folder / "sequence.json").read_text(encoding="utf-8"))["next-to-send"]
-        paired_s = json.loads((folder / "settings.json").read_text(encoding="utf-8")).get("paired-at", _EPOCH_S)
+        paired_s = json.loads((folder / "settings.json").read_text(encoding="utf-8"))["paired-at"]
         by_time = min(max(0, int((now() - paired_s) * 1000)), 2**39)
         self.next: int = max(stored, by_time)
         self._stored = self.next

@@ -5,6 +5,8 @@ from typing import Any
 
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_for
 from kurt2rt.core.teaching.question import FeatureDifference
 
 ASKING = State(
@@ -39,6 +41,8 @@ ASKING = State(
     late_p99_ms=0.2,
     missed_ticks=0,
     place=SimulatedPlace(1.0, 2.0, 0.5, 0.25, 1, 3),
+    standing=Standing(StandReason.ASKS, asks=True),
+    way_m=(0.0, 0.0),
 )
 """A simulated robot that stands and asks; `phone` is its teacher."""
 
@@ -65,6 +69,14 @@ SHOWN = ShownState(teacher="phone", press_id=91, actions=("forward", "back"), fr
 HELD = HoldState(teacher="phone", action="turn_left", lesson="phone-hold-90", lessons=3, on=True)
 
 
+def standing_in(state: State) -> Standing:
+    """Return the standing of a robot that the guard does not hold, from the other fields of its state."""
+    if state.action is not None and (state.by_hand or state.stopped is None):
+        return DRIVES
+    return standing_for(DecisionCause(state.cause), state.asks_at, state.stopped, state.plan_says or state.trouble)
+
+
 def state(**changes: Any) -> State:
-    """Return the state of an asking robot with some fields changed."""
-    return replace(ASKING, **changes)
+    """Return the state of an asking robot with some fields changed; its standing follows unless it is given."""
+    shown = replace(ASKING, **changes)
+    return shown if "standing" in changes else replace(shown, standing=standing_in(shown))

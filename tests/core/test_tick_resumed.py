@@ -70,7 +70,6 @@ def test_hindrance_is_what_a_resume_cannot_end(
         ({}, "the robot may drive"),
         ({"stands": "bus lost"}, "the robot still stands: its bus is lost; check its power and cable"),
         ({"stands": "halted", "says": "the run is over"}, "the robot still stands: the run is over"),
-        ({"stands": "of a newer robot"}, "the robot still stands: of a newer robot"),
     ],
 )
 def test_text_of_a_resume_says_what_holds_the_robot(fields: dict[str, str], text: str) -> None:

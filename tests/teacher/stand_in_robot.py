@@ -17,8 +17,9 @@ from kurt2rt.channel.server.endpoint import open_endpoint
 from kurt2rt.channel.server.reply import Reply, done, refusal
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.resources import RobotSite
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from tests.channel.states import ASKING
+from tests.channel.states import ASKING, standing_in
 
 Mind = Callable[[Request], Awaitable[Reply]]
 _PICTURE_EACH_S = 0.05
@@ -45,6 +46,7 @@ class StandInRobot:
         self.site = RobotSite(teachers, cast(RequestHandler, self))
         self.port = 0
         self.state: State = replace(ASKING, boot=boot, teacher=None)
+        self.standing: Standing | None = None
         self.showing = showing
         self.mind: Mind = agrees
         self.heard: list[Request] = []
@@ -59,8 +61,13 @@ class StandInRobot:
         return await self.mind(request)
 
     def show(self, **changes: Any) -> State:
-        """Publish the next state, changed from the last one."""
-        self.state = replace(self.state, tick=self.state.tick + _TICKS, **changes)
+        """Publish the next state, changed from the last one.
+
+        Its standing is the one that was given last, and follows from the other fields if none was.
+        """
+        self.standing = changes.pop("standing", self.standing)
+        shown = replace(self.state, tick=self.state.tick + _TICKS, **changes)
+        self.state = replace(shown, standing=self.standing or standing_in(shown))
         self.site.publish(encode_state(self.state))
         return self.state
 

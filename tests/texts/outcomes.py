@@ -78,19 +78,15 @@ def _each(surface: Surface) -> Iterator[tuple[str, str]]:
     taught = Outcome.of(ResultCode.RLA_TAUGHT, rla=7, behaviour="turn_left", level=MID, action="back")
     yield f"{taught.code}, behaviour and level", text_of(taught, surface)
     late = Outcome.of(ResultCode.RLA_CORRECTED, rla=7, action="back", was="forward")
-    for rla in (7, None):
+    for rla, answers in ((7, 0), (None, 9)):
         fields: dict[str, Field] = {"decision_tick": 1200, "put_back_ticks": 83, "decided_by": rla}
-        text = text_of(Outcome(late.code, {**late.fields, **fields}), surface)
-        yield f"{late.code}, put back to {'no RLA' if rla is None else 'an RLA'}", text
-    for answers in (0, 9):
-        fields = {"decision_tick": 1200, "put_back_ticks": 83, "decided_by": 7, "delay_answers": answers}
-        text = text_of(Outcome(late.code, {**late.fields, **fields}), surface)
-        yield f"{late.code}, put back by a delay of {answers} answers", text
+        text = text_of(Outcome(late.code, {**late.fields, **fields, "delay_answers": answers}), surface)
+        yield f"{late.code}, put back to {'no RLA' if rla is None else 'an RLA'} by {answers} answers", text
     alone = Outcome(taught.code, {**taught.fields, "against": ("forward", "bear_left"), "nearest": 3})
     yield f"{taught.code}, contradicts its neighbours", text_of(alone, surface)
     wanted = Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="")
     yield f"{wanted.code}, without a name", text_of(wanted, surface)
-    for status in (*(each.value for each in GoalStatus if each is not GoalStatus.NONE), "of a newer robot"):
+    for status in (each.value for each in GoalStatus if each is not GoalStatus.NONE):
         sought = Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status=status)
         yield f"{sought.code}, {status}", text_of(sought, surface)
     unnamed = Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())

@@ -40,7 +40,6 @@ def stops() -> Iterator[tuple[str, str]]:
         StopReason.SENSOR_BROKEN: "front left edge (s15)",
         StopReason.FALLS_BEHIND: "3",
         StopReason.GUARD: "wheels disobey",
-        StopReason.OTHER: "a sentence of another version",
     }
     for reason in StopReason:
         yield reason, stop_text(ActiveStop(reason, names.get(reason, "Ann")))

@@ -13,19 +13,8 @@ LINE: Final = Text(512)
 ValueT = TypeVar("ValueT")
 
 
-@dataclass(frozen=True, slots=True)
-class MayLack:
-    """Check of a key that an older robot leaves out; the field's default counts then."""
-
-    check: Check
-
-    def __call__(self, what: str, value: object) -> Any:
-        """Return the checked value. Raises WireError."""
-        return self.check(what, value)
-
-
 class MapOf:
-    """Check of a map by its keys; unknown keys of a newer robot are left out."""
+    """Check of a map by its keys; other keys are left out."""
 
     def __init__(self, kind: Callable[..., Any], **checks: Check) -> None:
         """`kind` is called with the values by their keys."""
@@ -36,10 +25,10 @@ class MapOf:
         """Return the checked value. Raises WireError."""
         if not isinstance(value, Mapping):
             raise WireError(f"{what} has to be a map")
-        missing = [name for name, check in self.checks.items() if name not in value and not isinstance(check, MayLack)]
+        missing = [name for name in self.checks if name not in value]
         if missing:
             raise WireError(f"{what} has no {', '.join(missing)}")
-        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items() if name in value})
+        return self.kind(**{name: check(name, value[name]) for name, check in self.checks.items()})
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +72,6 @@ def _plain(value: Any, check: Check) -> Any:
             return list(value[:most])
         case ManyOf(check=inner, most=most):
             return [_plain(each, inner) for each in value[:most]]
-        case MayLack(check=inner):
-            return _plain(value, inner)
         case OrNone(check=inner) if value is not None:
             return _plain(value, inner)
         case OrNotFinite():

@@ -28,10 +28,9 @@ from kurt2rt.channel.protocol.schema import (
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import stop_of_text, stop_text
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS
-from kurt2rt.core.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
+from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 
 __all__ = [
@@ -64,13 +63,7 @@ _CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
 
 def encode_request(request: Request) -> bytes:
     """Return the body of a request. Raises WireError if the robot would refuse it."""
-    kind = type(request)
-    body = [check(name, getattr(request, name)) for name, check in _CHECKS[kind]]
-    for each in reversed(fields(kind)[len(body) - kind.left_out :]):
-        if getattr(request, each.name) != each.default:
-            break
-        body.pop()
-    return encode_plainly(body)
+    return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
 
 
 def decode_request(path: str, payload: bytes) -> Request:
@@ -80,10 +73,10 @@ def decode_request(path: str, payload: bytes) -> Request:
         raise WireError(f"there is no {path} here")
     body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=kind.depth)
     checks = _CHECKS[kind]
-    if not isinstance(body, list) or not len(checks) - kind.may_lack <= len(body) <= len(checks):
+    if not isinstance(body, list) or len(body) != len(checks):
         names = ", ".join(name for name, _ in checks)
         raise WireError(f"{path} takes a list of {len(checks)}: [{names}]")
-    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=False)})
+    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=True)})
 
 
 def encode_answer(answer: Mapping[str, Any]) -> bytes:
@@ -179,11 +172,10 @@ _HOLD = (_NAME, _NAME, _NAME, _NUMBER, Flag())
 _SEGMENTS = ManyOf(_NUMBER, most=MOST_SEGMENTS)
 _SHOWN = (_NAME, _NUMBER, ManyOf(_NAME, most=MOST_SEGMENTS), _SEGMENTS, _SEGMENTS)
 """The fields of ShownState."""
-_STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
-"""The fields of Standing."""
-_STOP = (_NAME, _LINE)
+_STANDING = (OneWord(tuple(reason.value for reason in StandReason)), Flag(), Flag(), OrNone(_FINITE), _LINE)
+"""The fields of Standing but the stop."""
+_STOP = (OneWord(tuple(reason.value for reason in StopReason)), _LINE)
 """The fields of ActiveStop."""
-_WAY = OrNone(_WHEELS)
 _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
@@ -205,21 +197,15 @@ def encode_state(state: State) -> bytes:
     picture["hd"] = _row(state.hold, _HOLD)
     picture["db"] = state.doubt
     picture["dm"] = _row(state.shown, _SHOWN)
-    standing = state.standing
-    # Older devices read the stop from its sentence.
-    picture["st"] = _tidied(stop_text(state.stopped), _LINE)
     picture["sr"] = _row(state.stopped, _STOP)
-    if standing is not None and standing.stop is not None:
-        standing = standing._replace(says=stop_text(standing.stop))
-    picture["sd"] = None if standing is None else _row(standing[:-1], _STANDING)
-    picture["od"] = None if state.way_m is None else list(state.way_m)
-    if state.lesson_speed != 1.0:
-        picture["ls"] = round(100 * state.lesson_speed)
+    picture["sd"] = _row(state.standing[:-1], _STANDING)
+    picture["od"] = list(state.way_m)
+    picture["ls"] = round(100 * state.lesson_speed)
     return encode_plainly(picture)
 
 
 def decode_state(payload: bytes) -> State:
-    """Return the state in a body, without the unknown keys of a newer robot. Raises WireError."""
+    """Return the state in a body, without other keys. Raises WireError."""
     picture = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_STATE_DEPTH)
     if not isinstance(picture, dict):
         raise WireError("a state has to be a map")
@@ -229,19 +215,18 @@ def decode_state(payload: bytes) -> State:
     place = _PLACE("place", _value(picture, "pl"))
     mid = OrNone(Row(_MID))("mid level", _value(picture, "mid"))
     surprise = OrNone(Row(_SURPRISE))("surprise", _value(picture, "su"))
-    # Added within version 4: older robots leave them out.
-    progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
-    nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
-    hold = OrNone(Row(_HOLD))("hold", picture.get("hd"))
-    doubt = OrNone(_FINITE)("doubt", picture.get("db"))
-    shown = OrNone(Row(_SHOWN))("shown drive", picture.get("dm"))
+    progress = Row(_PROGRESS)("progress", _value(picture, "pg"))
+    nearest_value = OrNone(_FINITE)("worth of the nearest", _value(picture, "nv"))
+    hold = OrNone(Row(_HOLD))("hold", _value(picture, "hd"))
+    doubt = OrNone(_FINITE)("doubt", _value(picture, "db"))
+    shown = OrNone(Row(_SHOWN))("shown drive", _value(picture, "dm"))
     if shown is not None and not len(shown[2]) == len(shown[3]) == len(shown[4]):
         raise WireError("shown drive: has to have as many actions as ticks")
-    standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
-    way_m = _WAY("way of the wheels", picture.get("od"))
-    lesson_percent = Int(SLOWEST_PERCENT, 100)("lesson speed", picture.get("ls", 100))
-    sentence = _LINE("stop", _value(picture, "st"))
-    stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
+    standing = Row(_STANDING)("standing", _value(picture, "sd"))
+    left_m, right_m = _WHEELS("way of the wheels", _value(picture, "od"))
+    lesson_percent = Int(SLOWEST_PERCENT, 100)("lesson speed", _value(picture, "ls"))
+    stop = OrNone(Row(_STOP))("stop", _value(picture, "sr"))
+    stopped = None if stop is None else ActiveStop(StopReason(stop[0]), stop[1])
     return State(
         left_m_s=left_m_s,
         right_m_s=right_m_s,
@@ -251,13 +236,13 @@ def decode_state(payload: bytes) -> State:
         surprise=None if surprise is None else SurpriseState(*surprise),
         nearest_value=nearest_value,
         doubt=doubt,
-        progress=NO_PROGRESS if progress is None else Progress(*progress),
+        progress=Progress(*progress),
         stopped=stopped,
         hold=None if hold is None else HoldState(*hold),
         shown=None if shown is None else ShownState(*shown),
-        standing=None if standing is None else _standing(*standing, stopped=stopped),
+        standing=_standing(*standing, stopped=stopped),
         lesson_speed=lesson_percent / 100,
-        way_m=None if way_m is None else (way_m[0], way_m[1]),
+        way_m=(left_m, right_m),
         **values,
     )
 
@@ -272,22 +257,12 @@ def _row(
     return [_tidied(each, check) for each, check in zip(values, checks, strict=True)]
 
 
-def _stop(told: tuple[str, str] | None, sentence: str) -> ActiveStop | None:
-    """Return the stop; by its sentence if the robot is older, or has reasons that are not known here."""
-    if told is not None and told[0] in StopReason.__members__.values():
-        return ActiveStop(StopReason(told[0]), told[1])
-    return stop_of_text(sentence)
-
-
 def _standing(
     reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str, *, stopped: ActiveStop | None
 ) -> Standing:
-    """Return the standing; HALTED for a reason that is not known here."""
-    if reason == StandReason.STOPPED and stopped is not None:
-        return Standing(StandReason.STOPPED, needs_go, asks, stall_s, stop=stopped)
-    if reason in StandReason.__members__.values():
-        return Standing(StandReason(reason), needs_go, asks, stall_s, says)
-    return Standing(StandReason.HALTED, needs_go, asks, stall_s, says or reason)
+    """Return the standing, with the stop that is its reason."""
+    stop = stopped if reason == StandReason.STOPPED else None
+    return Standing(StandReason(reason), needs_go, asks, stall_s, says, stop)
 
 
 def _value(picture: dict[Any, Any], key: str) -> object:

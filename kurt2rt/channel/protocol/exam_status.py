@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf, MayLack
+from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
 from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf
 
 _MOST_WORLDS = 32
@@ -46,9 +46,7 @@ EXAM = Form[ExamStatus](
         running=Flag(),
         share=Float(1.0),
         text=LINE,
-        verdicts=ManyOf(
-            MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=MayLack(Flag())), most=_MOST_WORLDS
-        ),
+        verdicts=ManyOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=Flag()), most=_MOST_WORLDS),
         picture=NAME,
         trouble=LINE,
     ),

@@ -4,11 +4,10 @@ import math
 from typing import Any
 
 from hal.robot import WheelSpeeds
-from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack, OrNotFinite
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
 from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.runs.explain.facts import (
     MOST_OTHERS,
     ContactFacts,
@@ -62,29 +61,17 @@ _LEVEL = MapOf(
     count=COUNT,
     words=ManyOf(NAME, most=_MOST_FEATURES),
     nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
-    radius_share=MayLack(Float(1.0)),
-    passed_over=MayLack(OrNone(_RLA)),
+    radius_share=Float(1.0),
+    passed_over=OrNone(_RLA),
 )
 
 
-def _stop(reason: str, name: str) -> ActiveStop | None:
-    """Return the stop in the facts; None for a reason of a newer robot."""
-    return ActiveStop(StopReason(reason), name) if reason in StopReason.__members__.values() else None
+def _stop(reason: str, name: str) -> ActiveStop:
+    return ActiveStop(StopReason(reason), name)
 
 
-def _facts(
-    decided: tuple[float, float],
-    granted: tuple[float, float],
-    stopped_because: str,
-    stopped: ActiveStop | None = None,
-    **others: Any,
-) -> DecisionFacts:
-    return DecisionFacts(
-        decided=WheelSpeeds(*decided),
-        granted=WheelSpeeds(*granted),
-        stopped=stopped or stop_of_text(stopped_because),
-        **others,
-    )
+def _facts(decided: tuple[float, float], granted: tuple[float, float], **others: Any) -> DecisionFacts:
+    return DecisionFacts(decided=WheelSpeeds(*decided), granted=WheelSpeeds(*granted), **others)
 
 
 _CONTACT = MapOf(ContactFacts, action=NAME, within_s=_REAL, sensor=NAME, seen_s=_REAL)
@@ -95,7 +82,7 @@ _DOUBT = MapOf(
     sensor=NAME,
     reads=NAME,
     taught=NAME,
-    contact=MayLack(OrNone(_CONTACT)),
+    contact=OrNone(_CONTACT),
 )
 
 _FACTS = MapOf(
@@ -112,8 +99,7 @@ _FACTS = MapOf(
     granted=_SPEEDS,
     reasons=ManyOf(NAME, most=16),
     latched=Flag(),
-    stopped_because=LINE,
-    stopped=MayLack(OrNone(MapOf(_stop, reason=NAME, name=LINE))),
+    stopped=OrNone(MapOf(_stop, reason=OneWord(tuple(reason.value for reason in StopReason)), name=LINE)),
     trouble=LINE,
     teacher=NAME,
     infrared_counts=ManyOf(COUNT, most=64),
@@ -126,9 +112,9 @@ _FACTS = MapOf(
     history_frozen=Flag(),
     taught_now=Flag(),
     hindrances=ManyOf(NAME, most=8),
-    broken_sensors=MayLack(ManyOf(NAME, most=64)),
-    lesson_speed=MayLack(Float(1.0)),
-    doubt=MayLack(OrNone(_DOUBT)),
+    broken_sensors=ManyOf(NAME, most=64),
+    lesson_speed=Float(1.0),
+    doubt=OrNone(_DOUBT),
 )
 
 _FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)

@@ -25,7 +25,7 @@ class Trouble:
     @property
     def about(self) -> str:
         """Subject: lateness, ticks, sensors, bus, lessons, disk, queues, machine, or program for the rest."""
-        return self.code.about or self.name
+        return self.code.about
 
     @property
     def what(self) -> str:

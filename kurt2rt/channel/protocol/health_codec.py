@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf
 from kurt2rt.channel.protocol.health import (
     BusHealth,
     DiskSpace,
@@ -14,7 +14,7 @@ from kurt2rt.channel.protocol.health import (
     TickLateness,
     Trouble,
 )
-from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf, OrNone
+from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf, OneWord, OrNone, WireError
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.protocol.trouble_text import numbers_of
 from kurt2rt.core.teaching.progress import Progress
@@ -25,15 +25,13 @@ MOST_ROWS = 16
 _TIME = Float(1e12)
 
 
-def _trouble(about: str, what: str, since_s: float, to_do: str, urgent: bool, **coded: Any) -> Trouble:
-    """Return a trouble; an older robot, or a code that is not known here, gives OTHER with its text.
-
-    `coded` holds `code`, `name`, `numbers` and `line`, which older robots leave out.
-    """
-    code, numbers = coded.pop("code", ""), coded.get("numbers", ())
-    if code in TroubleCode.__members__.values() and len(numbers) >= numbers_of(TroubleCode(code)):
-        return Trouble(TroubleCode(code), since_s, urgent, **coded)
-    return Trouble(TroubleCode.OTHER, since_s, urgent, about, (), f"{what}; {to_do}" if to_do else what)
+def _trouble(code: str, numbers: tuple[float, ...], about: str, what: str, to_do: str, **others: Any) -> Trouble:
+    """Return a trouble, whose texts (`about`, `what`, `to_do`) follow from its code. Raises WireError."""
+    del about, what, to_do
+    trouble = TroubleCode(code)
+    if len(numbers) < numbers_of(trouble):
+        raise WireError(f"trouble {code!r} has to have {numbers_of(trouble)} numbers")
+    return Trouble(trouble, numbers=numbers, **others)
 
 
 _TROUBLE = MapOf(
@@ -43,10 +41,10 @@ _TROUBLE = MapOf(
     since_s=_TIME,
     to_do=LINE,
     urgent=Flag(),
-    code=MayLack(NAME),
-    name=MayLack(NAME),
-    numbers=MayLack(ManyOf(_TIME, most=4)),
-    line=MayLack(LINE),
+    code=OneWord(tuple(code.value for code in TroubleCode)),
+    name=NAME,
+    numbers=ManyOf(_TIME, most=4),
+    line=LINE,
 )
 
 _MILLISECONDS = dict.fromkeys(("newest_ms", "median_ms", "p99_ms", "worst_ms", "took_p99_ms"), _TIME)
@@ -90,8 +88,8 @@ _REPORT = MapOf(
     ),
     drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
     troubles=ManyOf(_TROUBLE, most=MOST_ROWS),
-    progress=MayLack(MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT)),
-    plugins=MayLack(ManyOf(LINE, most=MOST_ROWS)),
+    progress=MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT),
+    plugins=ManyOf(LINE, most=MOST_ROWS),
 )
 
 _FORM = Form[HealthReport]("the health report", _REPORT)

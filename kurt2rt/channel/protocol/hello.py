@@ -18,7 +18,7 @@ _MID = OrNone(Row((_NAME, Int(0, 256), Float(1e9))))
 _OUTLINE = Row((_METRES, _METRES))
 _WHAT = Text(128)
 _COUNTS = Float(1e6, "counts")
-_LAW = OrNone(Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS)))
+_LAW = Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS))
 
 
 class AppraisalName(NamedTuple):
@@ -73,6 +73,12 @@ class Hello:
     simulated: bool
     phases: tuple[str, ...]
     """Names of the training phases; the first one's number is 1."""
+    what: str
+    """Sentence on the task for its teacher; empty if the task has none."""
+    law: InfraredLaw
+    """Law of the infra-red sensors."""
+    track_m: float
+    """Distance between the sides that turns the robot by (right - left) / track_m, in m."""
     behaviours: tuple[str, ...] = ("",)
     """Behaviours of the task, each with its own RLAs; a single behaviour may have an empty name."""
     appraisals: tuple[AppraisalName, ...] = ()
@@ -83,12 +89,6 @@ class Hello:
     """None if no mid level chooses the behaviours."""
     seeks: bool = False
     """True if the robot can seek a goal."""
-    what: str = ""
-    """Sentence on the task for its teacher; empty from an older robot."""
-    law: InfraredLaw | None = None
-    """Law of the infra-red sensors; None from an older robot."""
-    track_m: float | None = None
-    """Distance between the sides that turns the robot by (right - left) / track_m, in m; None from an older robot."""
 
     @property
     def sensor_words(self) -> SensorWords:
@@ -122,9 +122,9 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             trusted_from=Float(1.0)("trusted_from", body["trusted_from"]),
             mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),
             seeks=Flag()("seeks", body["seeks"]),
-            what=_WHAT("what", body.get("what", "")),
-            law=None if (law := _LAW("law", body.get("law"))) is None else InfraredLaw(*law),
-            track_m=OrNone(_METRES)("track_m", body.get("track_m")),
+            what=_WHAT("what", body["what"]),
+            law=InfraredLaw(*_LAW("law", body["law"])),
+            track_m=_METRES("track_m", body["track_m"]),
         )
     except KeyError as error:
         raise WireError(f"the robot's introduction has no {error}") from error
@@ -133,8 +133,7 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
 def _require_version(body: Mapping[str, Any]) -> None:
     version = Int(1, LARGEST_NUMBER)("version of the wire contract", body.get("v"))
     if version != VERSION:
-        older = "the robot's" if version < VERSION else "this device's"
         raise WireError(
-            f"the robot speaks version {version} of the wire contract, and this device version {VERSION}; bring "
-            f"{older} kurt2rt up to date, so that both are the same"
+            f"the robot speaks version {version} of the wire contract, and this device version {VERSION}; install "
+            "the same kurt2rt on both"
         )

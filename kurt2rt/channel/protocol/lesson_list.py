@@ -61,13 +61,13 @@ class LessonLine(NamedTuple):
     """Time when it became durable, UTC; empty before."""
     undone: bool
     against: tuple[Contradicting, ...] = ()
-    """Its lessons that contradict their neighbours; none from robots of before 2026-11-24."""
+    """Its lessons that contradict their neighbours."""
 
 
 def lesson_lines_of(body: Mapping[str, Any]) -> tuple[LessonLine, ...]:
     """Return the lessons in a decoded body, newest first. Raises WireError."""
     against: dict[str, list[Contradicting]] = {}
-    for listed_as, *row in _AGAINST("against", body.get("against", ())):
+    for listed_as, *row in _AGAINST("against", _entry(body, "against")):
         against.setdefault(listed_as, []).append(Contradicting(*row))
     lines = (LessonLine(*each) for each in _LINES("lessons", _entry(body, "lessons")))
     return tuple(each._replace(against=tuple(against.get(each.command_id, ()))) for each in lines)

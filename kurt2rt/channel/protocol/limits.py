@@ -2,7 +2,7 @@
 
 from kurt2rt.core.lesson_speed import SLOWEST
 
-VERSION = 4
+VERSION = 1
 """Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""
 BOOT_BYTES = 4
 COMMAND_ID_BYTES = 8

@@ -38,10 +38,6 @@ class Request:
     """Message to one path; its fields are the places of the body, in order."""
 
     path: ClassVar[str]
-    may_lack: ClassVar[int] = 0
-    """Number of last fields that an older device leaves out; their defaults count then."""
-    left_out: ClassVar[int] = 0
-    """Number of last fields that are not sent while they have their defaults, for robots of before."""
     depth: ClassVar[int] = 1
     """Deepest nesting of lists in the body."""
 

@@ -47,14 +47,12 @@ _RequestT = TypeVar("_RequestT", bound=Request)
 
 
 @dataclass_transform(frozen_default=True)
-def _at(
-    path: str, *, may_lack: int = 0, left_out: int = 0, depth: int = 1
-) -> Callable[[type[_RequestT]], type[_RequestT]]:
+def _at(path: str, *, depth: int = 1) -> Callable[[type[_RequestT]], type[_RequestT]]:
     """Return a decorator that makes a class the request of a path."""
 
     def register(kind: type[_RequestT]) -> type[_RequestT]:
         request = dataclass(frozen=True, slots=True)(kind)
-        request.path, request.may_lack, request.left_out, request.depth = path, may_lack, left_out, depth
+        request.path, request.depth = path, depth
         REQUESTS.append(request)
         return request
 
@@ -109,7 +107,7 @@ class BehaviourRequest(CommandRequest):
     ticks: Annotated[int, Int(1, LONGEST_BEHAVIOUR_TICKS)]
 
 
-@_at("/answer", may_lack=2)
+@_at("/answer")
 class AnswerRequest(CommandRequest):
     """Answer a situation (phase 1)."""
 
@@ -123,7 +121,7 @@ class AnswerRequest(CommandRequest):
     """Add the behaviour to those that the mid level knows for this situation."""
 
 
-@_at("/correct", may_lack=2, left_out=1)
+@_at("/correct")
 class CorrectRequest(CommandRequest):
     """Replace a decided action by another one (phase 2)."""
 
@@ -283,7 +281,7 @@ class SaveRequest(CommandRequest):
     label: Annotated[str, Text(LONGEST_TEXT)]
 
 
-@_at("/export", may_lack=1)
+@_at("/export")
 class ExportRequest(CommandRequest):
     """Write the RLAs as a table on the robot, or all knowledge as one file to give away."""
 

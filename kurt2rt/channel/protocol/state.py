@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hal.simulation import SimulatedPlace
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.standing import DRIVES, Standing, standing_for
+from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
@@ -143,6 +143,10 @@ class State:
     """Lateness of ticks, 99th percentile of the last minute, in milliseconds."""
     missed_ticks: int
     place: SimulatedPlace | None
+    standing: Standing
+    """Reason of the standstill, or that the robot drives."""
+    way_m: tuple[float, float]
+    """Way of the left and right side by the encoders since the program started, in m, forward positive."""
     behaviour: str = ""
     """Selected taught behaviour; empty if the task has only one."""
     value: float | None = None
@@ -178,29 +182,15 @@ class State:
     progress: Progress = NO_PROGRESS
     """Fraction driven by RLAs, and the questions, in the last minute."""
     hold: HoldState | None = None
-    """Newest hold; None before the first, and from a robot of an older version."""
+    """Newest hold; None before the first."""
     doubt: float | None = None
     """Doubt about the action that drives, or would; None if the robot has no score of doubt, or stands otherwise."""
     shown: ShownState | None = None
-    """Newest drive by hand that can be taught; None without one, and from a robot of an older version."""
-    standing: Standing | None = None
-    """None from a robot of an older version."""
+    """Newest drive by hand that can be taught; None without one."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in phases 1 and 2, from 0.2; 1 is no slow lesson."""
-    way_m: tuple[float, float] | None = None
-    """Way of the left and right side by the encoders since the program started, in m, forward positive; None from a
-    robot of an older version."""
 
     @property
     def speed_share(self) -> float:
         """Fraction of their speed at which actions drive in the present phase."""
         return self.lesson_speed if self.phase <= Phase.CORRECTIONS else 1.0
-
-    @property
-    def stands(self) -> Standing:
-        """Standing of the robot: driving, or the reason of the standstill."""
-        if self.standing is not None:
-            return self.standing
-        if self.action is not None and (self.by_hand or self.stopped is None):
-            return DRIVES
-        return standing_for(self.cause, self.asks_at, self.stopped, self.plan_says or self.trouble)

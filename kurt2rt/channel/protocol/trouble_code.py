@@ -44,12 +44,10 @@ class TroubleCode(StrEnum):
     """Name: queue. Numbers: entries dropped in the last minute."""
     PROGRAM = "program"
     """Name: part of the program. Line: its own."""
-    OTHER = "other"
-    """Kind of another version of kurt2rt. Name: subject. Line: its text."""
 
     @property
     def about(self) -> str:
-        """Subject on the wire; empty of OTHER, whose trouble names it."""
+        """Subject on the wire."""
         return _ABOUT[self]
 
 
@@ -76,5 +74,4 @@ _ABOUT: Final = {
     TroubleCode.LITTLE_MEMORY: "machine",
     TroubleCode.DROPS: "queues",
     TroubleCode.PROGRAM: "program",
-    TroubleCode.OTHER: "",
 }

@@ -59,7 +59,6 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
         "",
     ),
     TroubleCode.PROGRAM: _LINE,
-    TroubleCode.OTHER: _LINE,
 }
 
 

@@ -25,8 +25,6 @@ FIRST_CHUNK = 1000
 NUMBERS_PER_S = 1000
 LAST_FLOOR = 2**39
 """Highest number that time alone sets, 17 years: a clock decades ahead leaves half of all numbers."""
-_FIRST_PAIRING_S = 1_767_225_600
-"""2026-01-01 in seconds since 1970: the earliest pairing without a time of its own."""
 
 
 class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # Any
@@ -183,9 +181,9 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         self.sender_sequence_number = max(self.sender_sequence_number, by_time)
 
     def _paired_s(self) -> float:
-        """Return the time of the pairing in seconds since 1970. Raises ValueError, OSError."""
+        """Return the time of the pairing in seconds since 1970. Raises KeyError, ValueError, OSError."""
         settings = json.loads((self.folder.path / SETTINGS).read_text(encoding="utf-8"))
-        return float(settings.get(PAIRED_AT, _FIRST_PAIRING_S))
+        return float(settings[PAIRED_AT])
 
     def _reserve(self) -> None:
         # The thread and the event loop may both come here; the second one finds the work done.

@@ -42,7 +42,7 @@ class LessonList:
             left -= len(looked_at)
             found = (self.contradiction_of(each.event.origin.command_id) for each in looked_at)
             against += [_row(command_id, each) for each in found if each is not None]
-        return {"lessons": rows, "against": against} if against else {"lessons": rows}
+        return {"lessons": rows, "against": against}
 
     def fields_of(self, command_id: str) -> dict[str, Field]:
         """Return the fields `against` and `nearest` of the answer to a lesson; none if it contradicts nothing."""

@@ -75,6 +75,6 @@ def done(tick: int, outcome: Outcome | None = None, *, lesson: object = None, **
 
 
 def plain_outcome(outcome: Outcome) -> dict[str, Any]:
-    """Return an outcome as keys of a reply: code, fields, and a sentence for devices that know no codes."""
+    """Return an outcome as keys of a reply: code, fields, and a sentence."""
     fields = {key: list(each) if isinstance(each, tuple) else each for key, each in outcome.fields.items()}
     return {"text": text_of(outcome), "code": outcome.code.value, "fields": fields}

@@ -30,8 +30,6 @@ class StopReason(StrEnum):
     """An infra-red sensor was noticed to be dead, stuck or unplugged."""
     GUARD = "guard"
     """The guard keeps the robot stopped."""
-    OTHER = "other"
-    """A reason of another version of kurt2rt, known by its sentence only."""
 
 
 class ActiveStop(NamedTuple):
@@ -39,7 +37,7 @@ class ActiveStop(NamedTuple):
 
     reason: StopReason
     name: str = ""
-    """Teacher, behaviour, session, sensor or the guard's code; of OTHER the sentence; empty if none is needed."""
+    """Teacher, behaviour, session, sensor or the guard's code; empty if none is needed."""
 
     @property
     def teacher(self) -> str:

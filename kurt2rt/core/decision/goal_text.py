@@ -14,8 +14,8 @@ _TEXTS: Mapping[str, str] = {
 
 
 def goal_text(status: str, goal: str) -> str:
-    """Return a line for a teacher: a goal's text with its status; an unknown status stands as it is.
+    """Return a line for a teacher: a goal's text with its status.
 
     `status`: value of GoalStatus. `goal`: text of the goal.
     """
-    return _TEXTS.get(status, "{goal}: {status}").format(goal=goal, status=status)
+    return _TEXTS[status].format(goal=goal)

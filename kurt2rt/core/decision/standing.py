@@ -112,11 +112,11 @@ _CAUSES = {
 }
 
 
-def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = "") -> Standing:
+def standing_for(cause: DecisionCause, asks_at: str, stop: ActiveStop | None, says: str = "") -> Standing:
     """Return the standing of a robot that the guard does not hold, from the cause of its decision.
 
     Args:
-        cause: a value of DecisionCause; an unknown value becomes HALTED with it as detail.
+        cause: of its decision.
         asks_at: level that asks, if `cause` is UNKNOWN.
         stop: active stop; None without one.
         says: outcome of the goal, a learner's failure, or why lessons cannot be saved, in words.
@@ -132,9 +132,7 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
         return Standing(StandReason.FRONT_BUMPER, asks=True)
     if cause in BY_KNOWLEDGE or cause == DecisionCause.TEACHER:
         return DRIVES
-    if cause not in DecisionCause.__members__.values():
-        return Standing(StandReason.HALTED, says=cause)
-    return Standing(_CAUSES[DecisionCause(cause)], says=says)
+    return Standing(_CAUSES[cause], says=says)
 
 
 ASKS_AFTER_TICKS = 50

@@ -1,6 +1,5 @@
 """Texts of Standing: why the robot stands, and what the teacher can do."""
 
-import re
 from typing import NamedTuple
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
@@ -60,16 +59,10 @@ _STOPS: dict[StopReason, str] = {
     StopReason.FALLS_BEHIND: "the computer is too slow for {name} times real time; the simulation is back in real time",
     StopReason.STARTED: "the robot program was started",
     StopReason.NEXT_RUN: "a new run was begun",
-    StopReason.SENSOR_BROKEN: "its infra-red sensor {name} is broken",
-    StopReason.GUARD: "the guard: {name}",
-    StopReason.OTHER: "{name}",
-}
-"""Sentences of stops, which older devices read and recordings keep, in the order in which they are recognised."""
-
-_SHOWN: dict[StopReason, str] = {
     StopReason.SENSOR_BROKEN: "its range sensor {name} is broken",
+    StopReason.GUARD: "the guard: {name}",
 }
-"""Sentences for users in place of those that speak of infra-red sensors alone."""
+"""Sentences of stops."""
 
 _STOPS_TO_DO: dict[StopReason, str] = {
     StopReason.SENSOR_BROKEN: "The sensors next to it stand in for it. Check its plug and its lens",
@@ -85,35 +78,15 @@ _QUESTIONS = {
 
 
 def stop_text(stop: ActiveStop | None) -> str:
-    """Return the sentence of a stop for the wire and recordings; empty without one."""
+    """Return the sentence of a stop; empty without one."""
     return "" if stop is None else _STOPS[stop.reason].format(name=stop.name)
-
-
-def shown_stop_text(stop: ActiveStop | None) -> str:
-    """Return the sentence of a stop for users; empty without one."""
-    shown = None if stop is None else _SHOWN.get(stop.reason)
-    return stop_text(stop) if stop is None or shown is None else shown.format(name=stop.name)
-
-
-def stop_of_text(text: str) -> ActiveStop | None:
-    """Return the stop of a sentence of an older robot or a recording; None of an empty sentence.
-
-    A sentence that is not in the table becomes the name of a stop OTHER.
-    """
-    for reason, sentence in _STOPS.items():
-        before, name, after = re.split(r"({name(?:!r)?}|$)", sentence, maxsplit=1)
-        inner = text.removeprefix(before).removesuffix(after)
-        quoted = "!r" in name
-        if text and before + inner + after == text and bool(inner) == bool(name):
-            return ActiveStop(reason, inner[1:-1] if quoted else inner)
-    return None
 
 
 def reason_text(standing: Standing) -> str:
     """Return the reason in a few words that continue "stands: "; empty while the robot drives."""
     stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
     return _TEXTS[standing.reason].why.format(
-        says=standing.says or standing.reason, stop=shown_stop_text(standing.stop) or standing.reason, stall=stall
+        says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
     )
 
 

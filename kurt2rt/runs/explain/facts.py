@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.standing_text import stop_text
 
 MOST_OTHERS = 12
 """RLAs of a level that are sent in addition to the nearest: the next nearest."""
@@ -203,8 +202,3 @@ class DecisionFacts:
     """None if the robot has no score of doubt, and at a standstill for another reason."""
     lesson_speed: float = 1.0
     """Fraction of the decided speeds that was asked of the guard; below 1 in a slow lesson."""
-
-    @property
-    def stopped_because(self) -> str:
-        """Sentence of the stop, for older devices; empty without one."""
-        return stop_text(self.stopped)

@@ -5,7 +5,7 @@ import math
 from hal.guard_reason import reasons_text
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
-from kurt2rt.core.decision.standing_text import reason_text, short_text, shown_stop_text
+from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
@@ -117,7 +117,7 @@ def _stands(facts: DecisionFacts) -> str:
             age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
             return f"The readings of the range sensors {age}: there is no situation to decide on, nor to ask about."
         case DecisionCause.STOPPED:
-            return f"The robot was stopped: {shown_stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
+            return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
         case DecisionCause.UNATTENDED:
             return "The robot knows what to do, but drives only while a teacher is there, and none is."
         case DecisionCause.UNSAVED:

@@ -80,25 +80,21 @@ class Answer:
     extra: Mapping[str, Any] = field(default_factory=dict)
     """Further values of the answer, such as `name` and `sha256` of a copy."""
     outcome: Outcome | None = None
-    """Code and fields; None if the robot told no code that is known here."""
+    """Code and fields; None of a request that was not understood, and of an answer without a text."""
 
     @property
     def lesson(self) -> str | None:
-        """Id that `undo` takes to undo what the command taught; None if it taught nothing.
-
-        An earlier robot tells it only for held actions and drives by hand, in the outcome.
-        """
-        fields = {} if self.outcome is None or not self.accepted else self.outcome.fields
-        lesson = self.extra.get("lesson", fields.get("lesson"))
+        """Id that `undo` takes to undo what the command taught; None if it taught nothing."""
+        lesson = self.extra.get("lesson")
         return lesson if isinstance(lesson, str) else None
 
     @property
     def code(self) -> Code | None:
-        """Code of the outcome; None if the robot told no code that is known here."""
+        """Code of the outcome; None without one."""
         return None if self.outcome is None else self.outcome.code
 
     def text_on(self, surface: Surface) -> str:
-        """Return the sentence for a surface; the robot's own if it told no code that is known here."""
+        """Return the sentence for a surface; the robot's own without an outcome."""
         return self.text if self.outcome is None else text_of(self.outcome, surface)
 
 
@@ -112,8 +108,6 @@ _WHY: Final = {
     RefusalCode.PRESS_OVER: "stopped",
 }
 """Wire word of each refusal that this device makes itself."""
-_BY_WHY: Final = {"old": Outcome(RefusalCode.OVERTAKEN), "boot": Outcome(RefusalCode.RESTARTED)}
-"""Outcome of a refusal from a robot that tells no code, by its wire word."""
 
 
 def local_refusal(code: RefusalCode, **fields: Any) -> Answer:
@@ -153,5 +147,5 @@ def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
         text=text if isinstance(text, str) else "",
         tick=tick if isinstance(tick, int) else -1,
         extra={key: value for key, value in body.items() if key not in _OWN_KEYS},
-        outcome=_outcome_in(body) or (None if accepted else _BY_WHY.get(str(why))),
+        outcome=_outcome_in(body),
     )

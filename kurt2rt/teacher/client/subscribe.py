@@ -48,7 +48,7 @@ def _publish(response: Response, requests: OscoreRequests, stream: StateStream) 
         state = decode_state(response.payload)
     except WireError as error:
         requests.trouble = (
-            f"the robot's picture is not understood, it may be of another version: {error}; bring kurt2rt up to date "
+            f"the robot's picture is not understood, it may be of another version: {error}; install the same kurt2rt "
             "on the robot and on this device"
         )
     else:

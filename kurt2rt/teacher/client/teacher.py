@@ -176,7 +176,7 @@ class Teacher:
             TimeoutError: No such state within `timeout_s`.
             NoAnswerError: No state came for `patience_s`.
         """
-        return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_resume, timeout_s)
+        return self.wait_until(lambda state: state.standing.asks and not state.standing.needs_resume, timeout_s)
 
     hello = _blocking(TeacherClient.hello)
     world = _blocking(TeacherClient.world)

@@ -46,7 +46,7 @@ def state_view(
         refused: reason why the last press does not drive, if any.
         words: for the robot's sensors.
     """
-    place, stands = state.place, state.stands
+    place, stands = state.place, state.standing
     return {
         "kind": "state",
         **{name: getattr(state, name) for name in _COPIED},

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import anyio
 
-from hal.errors import UserError
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.ros import messages as ros
 from kurt2rt.ros.message_age import StampedAge
@@ -65,7 +64,7 @@ class RosDevice:
     async def run(self) -> None:
         """Serve until cancelled; the robot need not be there yet, and may restart.
 
-        Raises UserError if the robot is of an older version, RosConnectionError if the connection is closed.
+        Raises RosConnectionError if the connection is closed.
         """
         robot = self._robot
         robot.watching = False  # the robot is told of a teacher only while a node says that it watches
@@ -95,20 +94,17 @@ class RosDevice:
                     feed.on_state(state)
 
     async def _meet(self) -> Hello:
-        """Return the robot's introduction, as soon as it is there. Raises UserError for an older robot."""
+        """Return the robot's introduction, as soon as it is there."""
         told = ""
         while True:
             try:
-                hello = await self._robot.hello()
+                return await self._robot.hello()
             except NoAnswerError:
                 line = f"no robot answers yet{f': {self._robot.trouble}' if self._robot.trouble else ''}"
                 if line != told:
                     self._say(line)
                 told = line
                 await anyio.sleep(_RETRY_S)
-                continue
-            _limits(hello)
-            return hello
 
     def _introduce(self, hello: Hello, services: Services) -> None:
         unnamed = services.offer(hello)
@@ -159,11 +155,4 @@ class RosDevice:
 
 
 def _limits(hello: Hello) -> DriveLimits:
-    """Return the limits of a robot. Raises UserError for an older one."""
-    if hello.track_m is None or hello.law is None:
-        raise UserError(
-            "tells neither its track nor the law of its sensors, which odometry and scan need",
-            where=hello.robot,
-            do="bring the robot's kurt2rt up to date",
-        )
     return DriveLimits(hello.track_m, hello.max_m_s)

@@ -55,13 +55,11 @@ class Feed:
         now_s, hello = self._wall(), self._hello
         if math.isfinite(state.infrared_age_s):
             self._scan.publish(self._scans.build(state.infrared_counts, ros.to_time(now_s - state.infrared_age_s)))
-        assert hello.track_m is not None, "RosDevice asks for it before"
         place = self._odometer.update(state, hello.track_m, hello.period_s)
         stamp = ros.to_time(now_s)
-        if place is not None:
-            self._odometry.publish(odometry(place, stamp))
-            self._transform.publish(transform(place.pose, stamp))
-        asks = (state.stands.reason, state.behaviour) if state.stands.asks else None
+        self._odometry.publish(odometry(place, stamp))
+        self._transform.publish(transform(place.pose, stamp))
+        asks = (state.standing.reason, state.behaviour) if state.standing.asks else None
         # One question has one text. States of moments in which noise lets the robot drive do not have its words.
         if asks != self._asks and (asks is None or state.cause in ASKING):
             self._asks = asks

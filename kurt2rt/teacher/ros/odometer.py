@@ -23,15 +23,13 @@ class Odometer:
         self._pose = PlanePose()
         self._newest: State | None = None
 
-    def update(self, state: State, track_m: float, period_s: float) -> WheelPose | None:
-        """Return the pose after a state; None from an older robot. A restarted robot goes on where it was.
+    def update(self, state: State, track_m: float, period_s: float) -> WheelPose:
+        """Return the pose after a state. A restarted robot goes on where it was.
 
         `track_m`: distance of the sides in m; `period_s`: duration of a tick in s.
         """
         before, self._newest = self._newest, state
-        if state.way_m is None:
-            return None
-        if before is None or before.way_m is None or before.boot != state.boot or state.tick <= before.tick:
+        if before is None or before.boot != state.boot or state.tick <= before.tick:
             return WheelPose(self._pose, 0.0, 0.0)
         left_m, right_m = state.way_m[0] - before.way_m[0], state.way_m[1] - before.way_m[1]
         forward_m, turn_rad = (left_m + right_m) / 2, (right_m - left_m) / track_m

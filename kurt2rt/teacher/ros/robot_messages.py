@@ -47,7 +47,6 @@ class ScanBuilder:
 
     def __init__(self, hello: Hello) -> None:
         """`hello`: the robot's introduction, with the law of its sensors."""
-        assert hello.law is not None, "an older robot sends no law; ask before"
         self._law = hello.law
         self._sensors = [
             (each.x_m, each.y_m, math.cos(heading_rad), math.sin(heading_rad))
@@ -104,7 +103,7 @@ def transform(pose: PlanePose, stamp: ros.Time) -> ros.TFMessage:
 
 def robot_status(state: State, hello: Hello) -> ros.DiagnosticStatus:
     """Return a diagnostic status of the robot: a warning if it waits for its teacher, an error if it has a fault."""
-    reason = state.stands.reason
+    reason = state.standing.reason
     level = ros.DiagnosticStatus.OK
     if reason in _WAITS:
         level = ros.DiagnosticStatus.WARN

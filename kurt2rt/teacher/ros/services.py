@@ -80,7 +80,7 @@ class Services:
     async def _teach(self, action: str) -> Answer:
         """Answer the question of the newest state. Raises NoAnswerError, and ValueError if the mid level asks."""
         state = self._robot.state
-        if state is not None and state.asks_at == MID and state.stands.asks:
+        if state is not None and state.asks_at == MID and state.standing.asks:
             raise ValueError("the mid level asks for a way, and services teach actions alone; answer on the page")
         return await self._robot.answer(action, of=None if state is None else state.tick)
 

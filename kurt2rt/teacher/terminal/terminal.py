@@ -221,11 +221,11 @@ class TerminalTeacher:
             if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
                 standing = state.trusted, state.role
                 self._say(f"critic: {format_trust(state)}")
-            if state.stands.asks and not state.stands.needs_resume:
+            if state.standing.asks and not state.standing.needs_resume:
                 # Noise lets the robot drive for moments while its question is open; those states do not have its words.
-                if state.stands.reason != asking and state.cause in ASKING:
+                if state.standing.reason != asking and state.cause in ASKING:
                     self._say(str(build_question(state, self._words)))
-                    asking = state.stands.reason
+                    asking = state.standing.reason
                 told = ""
                 continue
             asking = ""

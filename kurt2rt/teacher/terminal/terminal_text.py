@@ -107,7 +107,7 @@ def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | Mi
         behaviour=state.behaviour,
         words=words,
         worth=state.nearest_value,
-        touches=question_text(state.stands),
+        touches=question_text(state.standing),
         doubts=state.cause == DecisionCause.DOUBT,
     )
 
@@ -168,7 +168,7 @@ def is_notable(surprise: SurpriseState) -> bool:
 
 def format_state(state: State) -> str:
     """Return the robot's action and its reason, without numbers that change all the time."""
-    stands = state.stands
+    stands = state.standing
     if stands.reason is not StandReason.DRIVES:
         return standing_headline(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
     if state.action is not None:

@@ -223,6 +223,7 @@ def _write(name: str, text: str) -> Callable[[Path], None]:
         _write("sequence.json", '{"next-to-send": 1, "received": 5}'),
         _write("settings.json", '{"sender-id_hex": "01", "recipient-id_hex": "02", "paired-at": "today"}'),
         _write("settings.json", '{"sender-id_hex": "01", "recipient-id_hex": "02", "paired-at": []}'),
+        _write("settings.json", '{"sender-id_hex": "01", "recipient-id_hex": "02"}'),
         _write("secret.json", '{"secret_hex": "no hex"}'),
         _write("secret.json", "{}"),
         _write("settings.json", '{"sender-id_hex": "00112233445566778899"}'),

@@ -27,13 +27,6 @@ def _paired_s(folder: Path) -> float:
     return float(json.loads((folder / "settings.json").read_text(encoding="utf-8"))["paired-at"])
 
 
-def _without_stamp(folder: Path) -> None:
-    """Remove the time of the pairing, which earlier versions lack."""
-    settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
-    del settings["paired-at"]
-    (folder / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
-
-
 class Life:
     """A folder in use over weeks: programs come, send, end or die; copies are kept and put back."""
 
@@ -65,16 +58,11 @@ class Life:
         shutil.copytree(self._backups / str(chance.randrange(self._count)), self.folder, copy_function=shutil.copyfile)
 
 
-@pytest.mark.parametrize("stamped", [True, False])
 @pytest.mark.parametrize("side", ["robot", "device"])
-def test_put_back_a_hundred_times_no_number_is_used_twice(
-    pairing: Pairing, tmp_path: Path, side: str, stamped: bool
-) -> None:
+def test_put_back_a_hundred_times_no_number_is_used_twice(pairing: Pairing, tmp_path: Path, side: str) -> None:
     folder = pairing.teacher if side == "robot" else pairing.device.folder
-    chance, clock = random.Random(f"{side} {stamped}"), Clock()
+    chance, clock = random.Random(side), Clock()
     clock.now_s = _paired_s(folder)
-    if not stamped:
-        _without_stamp(folder)
     life = Life(folder, clock, tmp_path / "backups")
     life.back_up()
     for _ in range(100):

@@ -825,7 +825,7 @@ async def test_why_returns_facts_to_any_device(desk: ChannelFixture) -> None:
 
 
 async def test_lessons_are_listed_newest_first_with_origin(desk: ChannelFixture) -> None:
-    assert (await desk.ask(LessonsRequest(20))).body == {"lessons": []}
+    assert (await desk.ask(LessonsRequest(20))).body == {"lessons": [], "against": []}
     await desk.ask(desk.answer("forward"))
     taught_at = desk.tick
     await desk.ask(desk.command(CorrectRequest, "back", None))
@@ -1001,7 +1001,7 @@ async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixt
     for counts in (100, 110, 120, 140, 150):
         desk.run(counts=counts)
         await desk.ask(desk.answer("forward"))
-    assert "against" not in (await desk.ask(LessonsRequest(20))).body
+    assert (await desk.ask(LessonsRequest(20))).body["against"] == []
     desk.run(counts=131)
     slip = desk.answer("back")
     taught = outcome_of(await desk.ask(slip))
@@ -1012,4 +1012,4 @@ async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixt
     assert lesson.against == (Contradicting(lesson.command_id, 6, "back", 4, ("forward",)),)
     assert not any(each.against for each in others)
     await desk.ask(desk.command(UndoRequest, lesson.command_id))
-    assert "against" not in (await desk.ask(LessonsRequest(20))).body
+    assert (await desk.ask(LessonsRequest(20))).body["against"] == []

@@ -27,11 +27,6 @@ def test_lesson_of_an_answer_without_an_id_is_none(body: dict[str, Any]) -> None
     assert answer_of("2.04 Changed", {"t": 5, "ok": True, **body}).lesson is None
 
 
-def test_lesson_of_a_hold_by_an_earlier_robot_is_in_the_outcome() -> None:
-    released = Outcome.of(ResultCode.HOLD_RELEASED, lessons=2, lesson="phone-hold-3")
-    assert answer_of("2.04 Changed", {"t": 5, "ok": True, **plain_outcome(released)}).lesson == "phone-hold-3"
-
-
 def test_lesson_that_a_refusal_names_is_not_its_own() -> None:
     refused = plain_outcome(Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="phone-0a"))
     assert answer_of("4.09 Conflict", {"t": 5, "why": "refused", **refused}).lesson is None
@@ -41,7 +36,7 @@ def test_lesson_that_a_refusal_names_is_not_its_own() -> None:
     "told",
     [
         {},
-        {"code": "of a newer robot", "fields": {}},
+        {"code": "of another program", "fields": {}},
         {"code": RefusalCode.NO_RLA.value, "fields": {}},
         {"code": RefusalCode.NO_RLA.value},
         {"code": RefusalCode.NO_RLA.value, "fields": {"rla": {}}},
@@ -60,8 +55,3 @@ def test_text_on_a_surface_names_its_own_control() -> None:
     answer = answer_of("4.09 Conflict", {"t": 5, "why": "stopped", **plain_outcome(stopped)})
     assert answer.text == text_of(stopped, Surface.LOG)
     assert len({answer.text_on(surface) for surface in Surface}) == len(Surface)
-
-
-@pytest.mark.parametrize(("why", "code"), [("old", RefusalCode.OVERTAKEN), ("boot", RefusalCode.RESTARTED)])
-def test_answer_without_code_has_the_code_of_its_wire_word(why: str, code: RefusalCode) -> None:
-    assert answer_of("4.09 Conflict", {"t": 5, "why": why, "text": "no"}).code is code

@@ -60,6 +60,7 @@ from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.perception.sensor_words import InfraredLaw
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.teacher import TeacherClient
@@ -67,6 +68,7 @@ from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local
 from tests.channel.lossy_link import LossyLink, Weather
 from tests.teacher.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
 
+LAW = InfraredLaw(86.0, 0.04, 64.0, 0.1, 0.6, 80.0)
 HELLO = {
     "v": VERSION,
     "boot": b"boot",
@@ -86,6 +88,9 @@ HELLO = {
     "max_m_s": 0.6,
     "simulated": True,
     "phases": {1: "supervised", 2: "corrections"},
+    "what": "Teach it to follow a wall",
+    "law": [*LAW],
+    "track_m": 0.4,
 }
 
 
@@ -247,21 +252,17 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
     assert hello.phases == ("supervised", "corrections")
     assert hello.appraisals == (("bad", -1), ("neutral", 0), ("good", 1))
     assert hello.trusted_from == 0.8
-    assert (hello.what, hello.law) == ("", None)  # a robot of before
+    assert (hello.what, hello.law, hello.track_m) == ("Teach it to follow a wall", LAW, 0.4)
     assert robot.orders() == [HelloRequest()]
 
 
-@pytest.mark.parametrize(("version", "older"), [(VERSION - 1, "the robot's"), (VERSION + 1, "this device's")])
-async def test_hello_of_other_version_raises_with_remedy(
-    client: TeacherClient, robot: StandInRobot, version: int, older: str
-) -> None:
+async def test_hello_of_other_version_raises_with_remedy(client: TeacherClient, robot: StandInRobot) -> None:
     async def speaks_otherwise(_: Request) -> Reply:
-        # An older robot lacks what was added since: that must not be what is complained of.
-        lacking = {key: value for key, value in HELLO.items() if key not in ("appraisals", "trusted_from")}
-        return Reply(ReplyStatus.DONE, {**lacking, "v": version})
+        # The missing keys must not be what is complained of.
+        return Reply(ReplyStatus.DONE, {"v": VERSION + 1})
 
     robot.mind = speaks_otherwise
-    said = f"speaks version {version} of the wire contract, .* bring {older} kurt2rt up to date"
+    said = f"speaks version {VERSION + 1} of the wire contract, .* install the same kurt2rt on both"
     with pytest.raises(NoAnswerError, match=said):
         await client.hello()
 
@@ -315,7 +316,10 @@ async def test_correct_earlier_before_the_robot_drove_raises(client: TeacherClie
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
     async def tells(request: Request) -> Reply:
         if isinstance(request, LessonsRequest):
-            return Reply(ReplyStatus.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
+            return Reply(
+                ReplyStatus.DONE,
+                {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]], "against": []},
+            )
         corners = [[0.0, 0.0], [1.0, 0.0]]
         world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}
         return Reply(ReplyStatus.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})

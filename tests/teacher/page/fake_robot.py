@@ -19,6 +19,8 @@ from kurt2rt.channel.protocol.requests import TABLE
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView
+from kurt2rt.core.decision.standing import DRIVES, Standing
+from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.file_part import FilePart
@@ -26,6 +28,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
+from tests.channel.states import standing_in
 
 A_STATE = State(
     boot=b"boot",
@@ -59,6 +62,8 @@ A_STATE = State(
     late_p99_ms=0.2,
     missed_ticks=0,
     place=None,
+    standing=DRIVES,
+    way_m=(0.0, 0.0),
 )
 A_PLACE = SimulatedPlace(x_m=0.54, y_m=3.63, heading_rad=0.0, laps=0.0, collisions=0, world_version=0)
 
@@ -80,6 +85,9 @@ A_HELLO = Hello(
     max_m_s=0.6,
     simulated=True,
     phases=("supervised", "corrections", "reinforcement", "critic", "autonomous"),
+    what="",
+    law=infrared_law(load_robot().infrared),
+    track_m=0.406,
 )
 A_WORLD = WorldView(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
 A_SIMULATION = SimulationView(
@@ -105,6 +113,7 @@ class FakeRobot(TeacherClient):
     trouble: str = ""
     state_age_s: float = math.inf
     state: State | None = None
+    standing: Standing | None = None
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
     simulated: SimulationView = A_SIMULATION
@@ -120,9 +129,14 @@ class FakeRobot(TeacherClient):
     _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
 
     def show(self, **changes: Any) -> State:
-        """Send a new state, changed from the last one, two ticks later by default."""
+        """Send a new state, changed from the last one, two ticks later by default.
+
+        Its standing is the one that was given last, and follows from the other fields if none was.
+        """
         last = self.state or A_STATE
+        self.standing = changes.pop("standing", self.standing)
         self.state = replace(last, **{"tick": last.tick + 2, **changes})
+        self.state = replace(self.state, standing=self.standing or standing_in(self.state))
         self.state_age_s = 0.0
         self._news.set()
         self._news = anyio.Event()

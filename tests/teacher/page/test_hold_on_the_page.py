@@ -146,7 +146,7 @@ def test_held_button_drives_and_teaches_a_real_robot(a_phone: Phone, room: Class
     begin(a_phone, room)
     if a_phone.has("#go:enabled"):
         a_phone.touch("#go")
-    a_phone.wait(lambda: room.state().stands.asks, "the robot asks")
+    a_phone.wait(lambda: room.state().standing.asks, "the robot asks")
     a_phone.finger_down(*a_phone.middle("[data-action=forward]"))
     a_phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "it drives")
     a_phone.wait(lambda: room.state().rlas > 0, "it is taught")

@@ -146,7 +146,7 @@ def test_important_sentences_are_never_cut(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare)
     phone = a_lesson.phone
     long = "the second guard braked, because no tick ran for 0.1 s; look whether other programs keep this computer busy"
-    a_lesson.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.OTHER, long))
+    a_lesson.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.GUARD, long))
     a_lesson.reads("#sentence", long[:40])
     for size in ((390, 844), (360, 600), (844, 390), (1280, 800)):
         phone.turn(size)

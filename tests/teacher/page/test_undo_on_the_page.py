@@ -16,7 +16,6 @@ def with_a_lesson(robot: FakeRobot) -> None:
     ("answered", "says"),
     [
         ({"row": 7, "lesson": A_LESSON.command_id}, "undo RLA"),
-        ({"row": 7}, "undo RLA"),  # of an earlier robot
         ({}, "taught nothing"),
     ],
 )

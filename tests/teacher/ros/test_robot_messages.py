@@ -135,9 +135,4 @@ def test_odometer_of_restarted_robot_goes_on_where_it_was() -> None:
     again = odometer.update(replace(state(tick=1, way_m=(0.0, 0.0)), boot=b"next"), 0.4, 0.01)
     assert again == WheelPose(PlanePose(1.0, 0.0, 0.0), 0.0, 0.0)
     moved = odometer.update(replace(state(tick=2, way_m=(0.5, 0.5)), boot=b"next"), 0.4, 0.01)
-    assert moved is not None
     assert moved.pose.x_m == pytest.approx(1.5)
-
-
-def test_odometer_of_older_robot_tells_nothing() -> None:
-    assert Odometer().update(state(way_m=None), 0.4, 0.01) is None

@@ -103,7 +103,7 @@ class RobotStub:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, HELLO)
         if isinstance(request, LessonsRequest):
-            return Reply(ReplyStatus.DONE, {"lessons": []})
+            return Reply(ReplyStatus.DONE, {"lessons": [], "against": []})
         if isinstance(request, HealthRequest):
             return Reply(ReplyStatus.DONE, {"health": plain_of(ILL)})
         if isinstance(request, SituationsRequest):

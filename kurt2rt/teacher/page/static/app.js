@@ -74,8 +74,7 @@ async function sendCommand(name, args = {}, doing = words(name)) {
   const answer = await link.command(name, args);
   pendingLessons -= 1;
   answered = Math.max(answered, answer.done ?? 0);
-  // An earlier robot names no lesson; like a newer one it tells the row of the journal.
-  if (name !== "undo") taughtNothing = answer.accepted && !answer.extra.lesson && answer.extra.row === undefined;
+  if (name !== "undo") taughtNothing = answer.accepted && !answer.extra.lesson;
   return showAnswer(answer);
 }
 
