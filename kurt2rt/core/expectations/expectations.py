@@ -1,7 +1,7 @@
 """Expectations of all RLAs of one level, learned from the situation at each end of an RLA."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -150,18 +150,6 @@ def affected_rla(event: TeachingEvent) -> int | None:
         case ActionReplaced(rla_id) | ActionWithdrawn(rla_id) | RlaDeleted(rla_id):
             return rla_id
     return None
-
-
-def valid_expectations(
-    system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]
-) -> dict[int, Expectation]:
-    """Return the saved expectations whose RLAs are active at one of these levels with the same action.
-
-    `saved` and the result: by RLA id.
-    """
-    return {
-        rla_id: each for rla_id, each in saved.items() if any(is_valid_for(system, rla_id, each, at) for at in levels)
-    }
 
 
 def is_valid_for(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
