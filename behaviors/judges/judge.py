@@ -31,8 +31,6 @@ class AppraisalFeatures(NamedTuple):
     """1.0 if the robot drives without getting anywhere, else 0.0."""
     no_wall: float
     """1.0 if no wall has been in view at the sides for long, else 0.0."""
-    surprised: float = 0.0
-    """1.0 shortly after an unexpected event, else 0.0; 0.0 for a critic without this feature."""
     circling: float = 0.0
     """1.0 if the robot has turned one way for about a round, else 0.0; 0.0 for a critic without this feature."""
     grazing: float = 0.0

@@ -190,8 +190,6 @@ class Tick:
                 slow=pace.slows,
                 counts=pace.counts,
             )
-            if surprise is not None and surprise.surprising and self._appraisal_perception is not None:
-                self._appraisal_perception.notify_surprise()
         self._statistics.count(decision.rla_id if turning else None)
         self._mid_uses.count(decision, driving=turning)
         # No RLA gets credit for ticks at standstill, including guard stops. A bumper stop is the exception: it is the

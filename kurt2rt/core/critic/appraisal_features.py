@@ -48,7 +48,6 @@ class AppraisalPerception:
         self._period_s = period_s
         self._share_of_new = 1.0 - round_portable(math.exp(-period_s / want.smoothing_s))
         self._bump_held_ticks = round(want.bump_held_s / period_s)
-        self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
         self._no_wall_ticks = round(want.no_wall_s / period_s)
         self._stale_infrared_s = robot.guard.stale_infrared_s
         circling = want.circling
@@ -71,16 +70,11 @@ class AppraisalPerception:
         self._speed_m_s = self._turn_rad_s = 0.0
         self.forget_turns()
         self._since_bump = self._bump_held_ticks
-        self._since_surprise = self._surprise_held_ticks
         self._since_graze = self._graze_held_ticks
         self._since_spin = self._spun_held_ticks
         self._without_wall = 0
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
-
-    def notify_surprise(self) -> None:
-        """Record that the previous tick was surprising; the time since then is a feature."""
-        self._since_surprise = -1
 
     def forget_turns(self) -> None:
         """Begin the turn since the last reversal at 0, because the robot was carried elsewhere."""
@@ -98,7 +92,6 @@ class AppraisalPerception:
         counts, distance_m = readings.infrared_counts, self._distance_m
         self._move(self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks))
         self._since_bump = 0 if readings.bumpers else self._since_bump + 1
-        self._since_surprise += 1
         if distance_m[max(self._wall(counts))] < self._wall_m:
             self._without_wall = 0
         elif driving:
@@ -119,7 +112,6 @@ class AppraisalPerception:
             bumped=1.0 if self._since_bump < self._bump_held_ticks else 0.0,
             no_progress=1.0 if self._no_progress(driving=driving) else 0.0,
             no_wall=1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
-            surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
             circling=1.0 if abs(self._turned_rad) >= self._round_rad else 0.0,
             grazing=1.0 if self._since_graze < self._graze_held_ticks else 0.0,
             spun=1.0 if self._since_spin < self._spun_held_ticks else 0.0,

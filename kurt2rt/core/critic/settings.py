@@ -21,7 +21,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Weight = Annotated[float, Field(ge=0, le=1000)]
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 
-*_ALWAYS, SURPRISED, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
+*_ALWAYS, CIRCLING, GRAZING, SPUN = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
 """Names of the appraisal features in order; the last four are optional."""
 
@@ -83,8 +83,6 @@ class AppraisalPerceptionSettings(Settings):
     no_progress_s: Annotated[float, Field(gt=0, le=60)]
     no_progress_m: Metres
     """Displacement in no_progress_s below which a driving robot makes no progress."""
-    surprise_held_s: Seconds | None = None
-    """Duration of the feature surprised after a surprise; None: the feature does not exist."""
     circling: CirclingSettings | None = None
     """None: the feature circling does not exist."""
     grazing: GrazingSettings | None = None
@@ -115,7 +113,6 @@ class AppraisalWeights(Settings):
     bumped: Weight = 0.0
     no_progress: Weight = 0.0
     no_wall: Weight = 0.0
-    surprised: Weight = 0.0
     circling: Weight = 0.0
     grazing: Weight = 0.0
     spun: Weight = 0.0
@@ -211,21 +208,16 @@ class CriticSettings(Settings):
 
     @model_validator(mode="after")
     def _optional_features_are_weighed_only_if_they_exist(self) -> Self:
-        for name, key, setting in self._optional_features:
+        for name, setting in self._optional_features.items():
             if getattr(self.learning.weights, name) and setting is None:
-                raise ValueError(f"learning.weights.{name} weighs nothing; say perception.{key}, too")
+                raise ValueError(f"learning.weights.{name} weighs nothing; say perception.{name}, too")
         return self
 
     @property
-    def _optional_features(self) -> tuple[tuple[str, str, object], ...]:
-        """Return name, key of the setting, and setting of each optional feature, in order."""
+    def _optional_features(self) -> dict[str, object]:
+        """Return the section of each optional feature by its name, in order."""
         want = self.perception
-        return (
-            (SURPRISED, "surprise_held_s", want.surprise_held_s),
-            (CIRCLING, CIRCLING, want.circling),
-            (GRAZING, GRAZING, want.grazing),
-            (SPUN, SPUN, want.spun),
-        )
+        return {CIRCLING: want.circling, GRAZING: want.grazing, SPUN: want.spun}
 
     @property
     def level_features(self) -> LevelFeatures:
@@ -235,7 +227,7 @@ class CriticSettings(Settings):
     @property
     def names(self) -> tuple[str, ...]:
         """Names of its features, in order."""
-        return (*NAMES, *(name for name, _, setting in self._optional_features if setting is not None))
+        return (*NAMES, *(name for name, setting in self._optional_features.items() if setting is not None))
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:

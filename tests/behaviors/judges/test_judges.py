@@ -20,7 +20,6 @@ anywhere = st.builds(
     st.floats(-0.3, 0.5),
     st.floats(-1.5, 1.5),
     *[flags] * 3,
-    surprised=st.just(0.0),
     circling=flags,
     grazing=flags,
     spun=flags,

@@ -188,23 +188,6 @@ def test_perception_reversed_side_is_refused() -> None:
         AppraisalPerception(changed(sensors=sensors), ROBOT)
 
 
-# Surprise
-
-
-def test_surprised_lasts_as_configured() -> None:
-    of = AppraisalPerception(changed(surprise_held_s=1.0), ROBOT)
-    assert of.perceive(readings(), driving=True).surprised == 0.0
-    of.notify_surprise()
-    assert after(1.0, of, readings()).surprised == 1.0
-    assert of.perceive(readings(), driving=True).surprised == 0.0
-
-
-def test_surprised_without_setting_is_zero() -> None:
-    of = perception()
-    of.notify_surprise()
-    assert after(0.1, of, readings()).surprised == 0.0
-
-
 # Circling
 
 

@@ -12,7 +12,6 @@ from kurt2rt.core.critic.settings import (
     GRAZING,
     NAMES,
     SPUN,
-    SURPRISED,
     AppraisalWeights,
     CriticSettings,
     load_critic,
@@ -34,36 +33,24 @@ def test_builtin_critic_has_bad_neutral_and_good() -> None:
     assert load_critic().values == {"bad": -1, "neutral": 0, "good": 1}
 
 
-@pytest.mark.parametrize("name", ["eight", "fleeing"])
-def test_builtin_critics_differ_in_weights_only(name: str) -> None:
-    basic, other = load_critic(), load_critic(name)
-    same = {"name": basic.name, "learning": basic.learning}
-    assert other.model_copy(update=same) == basic
-    assert other.learning.model_copy(update={"weights": basic.learning.weights}) == basic.learning
-
-
 @pytest.mark.parametrize(("task", "critic"), [("fleeing", "fleeing_with_memory"), ("eight", "eight_with_memory")])
 def test_shipped_task_has_its_own_critic(task: str, critic: str) -> None:
     assert load_task(task).critic == critic
 
 
-def test_critic_with_memory_differs_from_that_without() -> None:
-    without, with_memory = load_critic("eight"), load_critic("eight_with_memory")
-    assert (without.names, with_memory.names) == (NAMES, (*NAMES, CIRCLING, GRAZING))
-    assert without.feature_hash != with_memory.feature_hash
-
-
 def test_circling_feature_needs_its_settings() -> None:
     content = json.loads(load_critic("eight_with_memory").model_dump_json())
-    content["perception"]["surprise_held_s"] = 1.0
-    assert checked(content).names == (*NAMES, SURPRISED, CIRCLING, GRAZING)
+    assert checked(content).names == (*NAMES, CIRCLING, GRAZING)
     del content["perception"]["circling"]
     with pytest.raises(ValueError, match=r"weights\.circling .*perception\.circling"):
         checked(content)
+    del content["learning"]["weights"]["circling"]
+    assert checked(content).names == (*NAMES, GRAZING)
+    assert checked(content).feature_hash != load_critic("eight_with_memory").feature_hash
 
 
 def test_load_critic_unknown_name_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"stern: .* critics.*: basic, eight"):
+    with pytest.raises(SettingsError, match=r"stern: .* critics.*: basic, eight_with_memory"):
         load_critic("stern")
 
 
@@ -92,7 +79,7 @@ def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], tol
 
 
 def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
-    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED, CIRCLING, GRAZING, SPUN}
+    assert set(AppraisalWeights.model_fields) == {*NAMES, CIRCLING, GRAZING, SPUN}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):
@@ -105,17 +92,3 @@ def test_critic_settings_may_have_more_appraisals(tmp_path: Path) -> None:
     mine.write_text(json.dumps(CONTENT | {"appraisals": [*CONTENT["appraisals"], long]}))
     assert load_settings(mine, CriticSettings).values["bad_for_long"] == -1
     assert load_critic(str(mine)).weight_vector.shape == (len(NAMES),)
-
-
-def test_surprised_feature_needs_its_duration() -> None:
-    shipped = load_critic()
-    content = json.loads(shipped.model_dump_json())
-    content["perception"]["surprise_held_s"] = 1.0
-    content["learning"]["weights"]["surprised"] = 2.0
-    surprised = CriticSettings.model_validate_json(json.dumps(content))
-    assert (shipped.names, surprised.names) == (NAMES, (*NAMES, SURPRISED))
-    assert surprised.weight_vector.tolist() == [*shipped.weight_vector.tolist(), 2.0]
-    assert surprised.feature_hash != shipped.feature_hash
-    del content["perception"]["surprise_held_s"]
-    with pytest.raises(ValueError, match=r"weights\.surprised .*perception\.surprise_held_s"):
-        CriticSettings.model_validate_json(json.dumps(content))

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla import MID
@@ -22,7 +21,7 @@ from kurt2rt.core.teaching.commands import (
 )
 from kurt2rt.core.tick_record import TickRecord
 from tests.core.rla.helpers import created
-from tests.core.test_tick_learning import TASK, Drive
+from tests.core.test_tick_learning import Drive
 from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
 
 NEAR, FAR = 400, 50
@@ -71,21 +70,6 @@ def test_surprise_is_reported_in_the_tick_of_the_end(drive: Drive) -> None:
     other = drive.run(counts=FAR + 60)
     assert other.surprise is not None
     assert other.surprise.surprising
-
-
-def test_surprise_is_an_appraisal_feature(drive: Drive) -> None:
-    shipped = load_critic()
-    held = shipped.perception.model_copy(update={"surprise_held_s": 0.05})
-    task = TASK.model_copy(update={"critic": shipped.model_copy(update={"perception": held})})
-    again = Drive(drive.notebook.events, task=task)
-    again.run(Resume("r-1", "Ann"), counts=NEAR)
-    comes_and_goes(again, times=8)
-    again.run(counts=NEAR, ticks=30)
-    before = again.run(counts=FAR + 60)
-    assert before.surprise is not None
-    assert before.surprise.surprising
-    seen = [again.run().appraisal_features for _ in range(7)]
-    assert [each.surprised for each in seen if each is not None] == [1.0] * 5 + [0.0] * 2
 
 
 def test_expectation_stop_is_no_follow_up(drive: Drive) -> None:
