@@ -79,15 +79,13 @@ class PhasesSettings(Settings):
     """Time for which a random action drives it then, so that the critic sees what the RLAs never do."""
     shown_share: Annotated[float, Field(ge=0, le=1)] = 0.5
     """Fraction of the repositionings that are followed by a random action."""
-    critic_sees_wrong: bool = True
-    """Drive with as many wrong actions in phase 4 as in a corrupted set, so that the critic is taught bad situations;
-    only the critic's knowledge is kept."""
     autonomy_s: Seconds
     """Length of phase 5."""
     long_run_s: Seconds
     """Length of each robot's long run after phase 5; interventions are summed over all robots."""
     corrupted_share: Share = 0.18
-    """Fraction of the RLAs whose action is replaced by a wrong one."""
+    """Fraction of the RLAs whose action is replaced by a wrong one. In phase 4, too, so that the critic is taught bad
+    situations; only the critic's knowledge is kept."""
     repair_s: Seconds
     """Length of phase 3, or of one of its controls, with a corrupted set."""
     repair_alone_s: Seconds

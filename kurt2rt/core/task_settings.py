@@ -109,8 +109,6 @@ class TeacherSettings(Settings):
     """Time for which the robot acts unlike the policy before it is corrected."""
     error_rate: Share
     """Fraction of answers and corrections that name another action than the policy."""
-    delete_after: Annotated[int, Field(ge=0, le=1000)] = 0
-    """Number of replaced actions after which an RLA is deleted instead; 0: never."""
 
 
 class TeachingSettings(Settings):

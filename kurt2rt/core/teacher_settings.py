@@ -79,8 +79,6 @@ class LookBackSettings(Settings):
     """Time from the standstill to the press that names the right action, after which the robot drives on."""
     moment_spread_s: Annotated[float, Field(ge=0, le=5)] = 0.2
     """Standard deviation of the moment that the person takes for the begin of the mistake."""
-    mistakes_at_most: Annotated[int, Field(ge=1, le=10)] = 1
-    """Mistakes of the last 10 s that the person corrects in one look back, the one that it began with first."""
 
 
 class ShowSettings(Settings):

@@ -77,7 +77,6 @@ class _Teacher:
             TASK.policy.build(ROBOT.infrared),
             tuple(load_task_repertoire(TASK, ROBOT)),
             TeacherSettings(reaction_s=_REACTION_S, patience_s=0.3, error_rate=0.05),
-            replace_radius_fraction=TASK.learning.insert_beyond_share,
             period_s=ROBOT.cycle_s,
             seed=chance.getrandbits(32),
             session=program.next_id(),

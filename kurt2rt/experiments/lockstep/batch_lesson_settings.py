@@ -42,8 +42,6 @@ def build_lesson_settings(
         raise refused(task, "a robot that asks at a doubt")
     if profile.shows.times:
         raise refused(task, "a teacher who drives by hand")
-    if task.teaching.teacher.delete_after:
-        raise refused(task, "a teacher who deletes RLAs")
     policy = task.policy.build(settings.infrared)
     if not isinstance(policy, TabledPolicy):
         raise refused(task, f"policy {task.policy.kind}")

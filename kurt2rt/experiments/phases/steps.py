@@ -159,9 +159,8 @@ def _path_steps(plans: _Plans) -> Iterator[PhaseStep]:
     phases, worlds = plans.phases, plans.task.exam.worlds
     rewards = plans.rewards(phases.reinforcement_s, "phase 3", "judge")
     yield PhaseStep(PHASE_3, PHASE_2, 0.0, "own", rewards, phases.repair_worlds)
-    errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
-    critic = plans.appraisals()
-    yield PhaseStep(PHASE_4, PHASE_3, errs, "own", critic, phases.repair_worlds, mistakes="critic", aside=True)
+    critic, wrong = plans.appraisals(), phases.corrupted_share
+    yield PhaseStep(PHASE_4, PHASE_3, wrong, "own", critic, phases.repair_worlds, mistakes="critic", aside=True)
     yield PhaseStep(PHASE_5, PHASE_4, 0.0, "own", plans.autonomous(phases.autonomy_s, "phase 5"), worlds)
     yield PhaseStep(LONG_RUN, PHASE_5, 0.0, "own", plans.autonomous(phases.long_run_s, "long run"), ())
 

@@ -1,6 +1,5 @@
 """Scripted teachers of the basic level: their view of the robot, and the commands that all of them give."""
 
-import math
 from abc import ABC, abstractmethod
 from typing import NamedTuple, Protocol
 
@@ -22,21 +21,12 @@ class TeacherView(NamedTuple):
     infrared_counts: tuple[int, ...]
     behaviour: str = ""
     """Taught behaviour that the robot follows."""
-    rla_id: int | None = None
-    """RLA whose action drives."""
-    radius_fraction: float = math.inf
-    """Distance to the condition of that RLA, divided by its R; infinite if another RLA is nearer."""
     tick: int = 0
     """Tick of the state."""
     touching: bool = False
     """The robot touches something."""
     segments: int = 0
     """Number of segments of the newest drive by hand that can be taught."""
-
-
-def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
-    """Return distance / R of the RLA that drives, a ratio; infinite if it is not the nearest one."""
-    return distance / radius if driving is not None and driving == nearest else math.inf
 
 
 def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 0) -> TeacherView:
@@ -47,18 +37,13 @@ def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 
         touching: whether its side touches something, which no bumper tells but a person in the room sees.
         segments: number of segments of the newest drive by hand that can be taught.
     """
-    decision, match = record.decision, record.decision.match
-    nearest = math.inf
-    if match is not None:
-        nearest = radius_fraction(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
+    decision = record.decision
     return TeacherView(
         asking=decision.asking and decision.asks_at == BASIC,
         driving=decision.driving,
         action=decision.action,
         infrared_counts=record.readings.infrared_counts,
         behaviour=record.behaviour,
-        rla_id=decision.rla_id,
-        radius_fraction=nearest,
         tick=record.tick,
         touching=touching or record.readings.bumpers != 0,
         segments=segments,

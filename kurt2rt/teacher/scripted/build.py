@@ -47,7 +47,6 @@ def build_teacher(
         task.policy.build(robot.infrared),
         actions,
         task.teaching.teacher,
-        replace_radius_fraction=task.learning.insert_beyond_share,
         period_s=period_s,
         seed=seed,
         session=session,

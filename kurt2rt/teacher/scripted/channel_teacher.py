@@ -17,7 +17,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView, radius_fraction
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.command_sender import CommandSender
 from kurt2rt.teacher.scripted.supervisor import ScriptedSupervisor
@@ -218,8 +218,6 @@ def view_of_state(state: State) -> TeacherView:
         action=state.action,
         infrared_counts=state.infrared_counts,
         behaviour=state.behaviour,
-        rla_id=state.rla,
-        radius_fraction=radius_fraction(state.rla, state.nearest, state.distance, state.radius),
         tick=state.tick,
         touching=state.bumpers != 0,
         segments=0 if state.shown is None else len(state.shown.actions),

@@ -1,7 +1,6 @@
 """Correction by rewind: a person stops the robot, looks back for the moment that went wrong, and names the action."""
 
-from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -30,26 +29,26 @@ class Mistake:
 
 
 class LookBack:
-    """The presses of one look back: stop, and for each mistake the right action at its moment.
+    """The presses of one look back: stop, and the right action at the moment of the mistake.
 
-    After the last one the page lets the robot drive on, as after the answer to a question.
+    After it the page lets the robot drive on, as after the answer to a question.
     """
 
-    def __init__(self, mistakes: Sequence[Mistake], takes: DelaySampler, period_s: float) -> None:
+    def __init__(self, mistake: Mistake, takes: DelaySampler, period_s: float) -> None:
         """Plan the presses.
 
         Args:
-            mistakes: at least one, in the order in which they are corrected.
-            takes: draws the time to find the moment of each mistake.
+            mistake: the one that is corrected.
+            takes: draws the time to find its moment.
             period_s: length of a tick.
         """
-        self._left = deque(mistakes)
+        self._mistake = mistake
         self._takes = takes
         self._looks_again_ticks = round(_LOOKS_AGAIN_S / period_s)
         self._step: _Step = "stop"
         self._due = 0
-        self.slips: list[str] = []
-        """Command ids of the lessons that a slip of the finger gave."""
+        self.slip: str | None = None
+        """Command id of the lesson, if a slip of the finger gave it."""
         self.over = False
         """True once the robot was seen to drive or to ask after the resume."""
 
@@ -66,10 +65,10 @@ class LookBack:
         if now < self._due or self.over:
             return None
         if self._step == "looks":
-            mistake, lesson = self._left.popleft(), next_id()
-            self._step, self._due = ("looks", now + self._takes.draw(now)) if self._left else ("taught", now)
+            mistake, lesson = self._mistake, next_id()
+            self._step, self._due = "taught", now
             if mistake.is_slip:
-                self.slips.append(lesson)
+                self.slip = lesson
             return Correct(lesson, SCRIPTED, mistake.action, decision_tick=mistake.tick)
         if self._step in ("taught", "resumed"):
             self._step, self._due = "resumed", now + self._looks_again_ticks

@@ -1,6 +1,5 @@
 """Detector of mistakes that a person can see."""
 
-from collections import deque
 from collections.abc import Mapping
 
 from kurt2rt.core.teacher_settings import NoticeSettings
@@ -10,7 +9,6 @@ _SEEN_AGAIN_S = 0.1
 """Time after which a wrong action that looks different is seen by a person who goes back over the last seconds."""
 _REMEMBERED_S = 5.0
 """Time for which what looked wrong is connected with a touch."""
-_MOST_REMEMBERED = 16
 
 
 class MistakeWatcher:
@@ -24,8 +22,8 @@ class MistakeWatcher:
         self._remembered_ticks = round(_REMEMBERED_S / period_s)
         self._groups = groups
         self._looked_wrong_from: TeacherView | None = None
-        self._remembered: deque[TeacherView] = deque(maxlen=_MOST_REMEMBERED)
-        """Begins of the last mistakes that a look back shows, oldest first."""
+        self._remembered: TeacherView | None = None
+        """Begin of the last mistake that a look back shows."""
         self.began: TeacherView | None = None
         """State in which the present disagreement began; None without disagreement."""
         self._last_tick = 0
@@ -44,11 +42,8 @@ class MistakeWatcher:
             if self._looked_wrong_from is None:
                 self._looked_wrong_from = view
             self._looked_wrong += elapsed
-            began = self._looked_wrong_from
-            if self._looked_wrong >= self._seen_again_ticks and (
-                not self._remembered or began is not self._remembered[-1]
-            ):
-                self._remembered.append(began)
+            if self._looked_wrong >= self._seen_again_ticks:
+                self._remembered = self._looked_wrong_from
         return self._looked_wrong >= max(self._different_ticks, 1) or self._wrong >= max(self._similar_ticks, 1)
 
     def reset(self) -> None:
@@ -61,11 +56,9 @@ class MistakeWatcher:
 
         Returns None if none did in the last 5 s.
         """
-        newest = self._remembered[-1] if self._remembered else None
+        newest = self._remembered
         return newest if newest is not None and tick - newest.tick <= self._remembered_ticks else None
 
-    def pop_since(self, tick: int) -> list[TeacherView]:
-        """Forget all mistakes; return the begins of those from a tick on that a look back shows, newest first."""
-        since = [each for each in reversed(self._remembered) if each.tick >= tick]
-        self._remembered.clear()
-        return since
+    def forget(self) -> None:
+        """Forget the last mistake, because it is corrected."""
+        self._remembered = None

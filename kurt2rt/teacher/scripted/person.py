@@ -24,8 +24,6 @@ from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 _Way = Literal["press", "hold", "rewind"]
 """Way to give a press."""
-_REACH_S = 10.0
-"""Reach of a look back, as on the page."""
 _SHOW_PRESSES = 3
 """Presses of a demonstration: the stick, the confirmation of the segments, and Go after the last one."""
 _REWIND_PRESSES = 2
@@ -115,7 +113,6 @@ class ScriptedPerson(BasicTeacher):
         self._sent: DelayLine[Command] = DelayLine(link_ticks)
         self._hand_ticks = round(person.hand_delay_s / period_s)
         self._hold_ticks = round(profile.hold_s / period_s)
-        self._reach_ticks = round(_REACH_S / period_s)
         self._hand: Hand | None = None
         self._look_back: LookBack | None = None
         self._demonstrator: Demonstrator | None = None
@@ -260,7 +257,8 @@ class ScriptedPerson(BasicTeacher):
             self._begin_hold(action, is_right=action == right)
             return
         if planned.by == "rewind":
-            self._look_back = self._chance.look_back([self._mistake(picture, action), *self._further_mistakes(picture)])
+            self._look_back = self._chance.look_back(self._mistake(picture, action))
+            self._mistakes.forget()
             return
         seen_tick = picture.tick if self._seen is None else self._seen.tick
         command: Command
@@ -277,16 +275,6 @@ class ScriptedPerson(BasicTeacher):
     def _mistake(self, began: TeacherView, action: str) -> Mistake:
         moment = max(0, began.tick + self._chance.moment_error_ticks())
         return Mistake(moment, action, is_slip=action != self._right(began))
-
-    def _further_mistakes(self, corrected: TeacherView) -> list[Mistake]:
-        """Return what else looked wrong in the last seconds, as far as presses are left."""
-        seen = corrected.tick if self._seen is None else self._seen.tick
-        others = [each for each in self._mistakes.pop_since(seen - self._reach_ticks) if each.tick != corrected.tick]
-        allowed = [each for number, each in enumerate(others, start=2) if self._presses.allows(number)]
-        return [
-            self._mistake(each, self._choose(self._right(each), self._person.errors.corrections))
-            for each in allowed[: self._person.look_back.mistakes_at_most - 1]
-        ]
 
     def _plan_undo(self, lesson: str) -> None:
         """Plan the undo of an own wrong press, if the person notices it."""
@@ -306,8 +294,8 @@ class ScriptedPerson(BasicTeacher):
                 self._presses.count()
             self._send(command)
         if look_back.over:
-            if look_back.slips:
-                self._plan_undo(look_back.slips[-1])
+            if look_back.slip is not None:
+                self._plan_undo(look_back.slip)
             self._look_back = None
             self._ignore_until = self._now
 

@@ -1,7 +1,6 @@
 """Chance of a scripted person: delays, lapses, slips and misjudged moments, each from a random stream of its own."""
 
 import random
-from collections.abc import Sequence
 
 from kurt2rt.core.teacher_settings import Delay, PersonSettings
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler
@@ -28,9 +27,9 @@ class PersonChance:
         self._moment_spread = person.look_back.moment_spread_s / period_s
         self._period_s = period_s
 
-    def look_back(self, mistakes: Sequence[Mistake]) -> LookBack:
-        """Return the correction of mistakes by rewind."""
-        return LookBack(mistakes, self._look_back_delay, self._period_s)
+    def look_back(self, mistake: Mistake) -> LookBack:
+        """Return the correction of a mistake by rewind."""
+        return LookBack(mistake, self._look_back_delay, self._period_s)
 
     def moment_error_ticks(self) -> int:
         """Return the error of the moment that the person takes for the begin of a mistake."""

@@ -1,14 +1,13 @@
 """Teacher that consults a reference policy: it answers questions and corrects other actions."""
 
 import random
-from collections import Counter
 from collections.abc import Sequence
 
 from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.task_settings import TeacherSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, Teach
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.press_times import FixedTimes
 
@@ -25,7 +24,6 @@ class ScriptedTeacher(BasicTeacher):
         actions: Sequence[str],
         settings: TeacherSettings,
         *,
-        replace_radius_fraction: float,
         period_s: float,
         seed: int,
         session: str,
@@ -37,7 +35,6 @@ class ScriptedTeacher(BasicTeacher):
             policy: chooses the right action.
             actions: the robot's actions, of which an error names another one.
             settings: reaction time, patience and error rate.
-            replace_radius_fraction: a correction nearer than this fraction of R replaces the action of an RLA.
             period_s: length of a tick.
             seed: of the errors.
             session: prefix of all command ids; it must differ between training runs on the same knowledge.
@@ -49,8 +46,6 @@ class ScriptedTeacher(BasicTeacher):
         self._policy = policy
         self._actions = tuple(actions)
         self._error_rate = settings.error_rate
-        self._delete_after = settings.delete_after
-        self._replace_radius_fraction = replace_radius_fraction
         self._reaction_ticks = round(settings.reaction_s / period_s)
         self._patience_ticks = round(settings.patience_s / period_s)
         self._chance = random.Random(seed)
@@ -60,8 +55,6 @@ class ScriptedTeacher(BasicTeacher):
         self._is_wrong = False
         """Whether the newest view showed an action that is not the right one."""
         self._behaviour = ""
-        self._action_of: dict[int, str] = {}
-        self._replaced: Counter[int] = Counter()
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Process a view that is `ticks` later than the last one; return the teacher's command, None without one."""
@@ -69,8 +62,6 @@ class ScriptedTeacher(BasicTeacher):
         if view.behaviour != self._behaviour:  # questions and errors of the last behaviour are over
             self._behaviour = view.behaviour
             self._ticks_asked = self._ticks_wrong = 0
-        if self._delete_after:
-            self._count_replaced(view)
         if view.asking or self._ticks_asked > 0:
             # A question is answered even if noise has let the robot drive on for a moment.
             self._ticks_wrong = 0
@@ -89,8 +80,6 @@ class ScriptedTeacher(BasicTeacher):
             ticks = min(ahead.ticks, max(0, self._reaction_ticks - self._ticks_asked - 1))
             self._ticks_asked += ticks
             return ticks
-        if self._delete_after:
-            return 0
         if self._ticks_wrong:
             if not self._is_wrong:
                 return 0
@@ -113,23 +102,7 @@ class ScriptedTeacher(BasicTeacher):
         if self._ticks_wrong < self._patience_ticks:
             return None
         self._ticks_wrong = 0
-        if view.rla_id is not None and self._is_to_delete(view.rla_id, view.radius_fraction):
-            return DeleteRla(self._next_id(), SCRIPTED, view.rla_id)
         return Correct(self._next_id(), SCRIPTED, self._choose(view))
-
-    def _is_to_delete(self, rla_id: int, fraction: float) -> bool:
-        """Return whether a wrong RLA was replaced often enough, and is near enough that a correction replaces it."""
-        if not self._delete_after or self._replaced[rla_id] < self._delete_after:
-            return False
-        return fraction <= self._replace_radius_fraction
-
-    def _count_replaced(self, view: TeacherView) -> None:
-        """Count a replacement if an RLA drives with another action than before."""
-        if view.rla_id is None or view.action is None:
-            return
-        if self._action_of.get(view.rla_id, view.action) != view.action:
-            self._replaced[view.rla_id] += 1
-        self._action_of[view.rla_id] = view.action
 
     def _choose(self, view: TeacherView) -> str:
         right = self._policy.choose(view.infrared_counts, view.behaviour)

@@ -69,7 +69,6 @@ def test_batch_refuses_another_plan(tmp_path: Path) -> None:
     [
         (load_task("route"), "course route"),
         (load_task("wall_following", changes={"learning.doubt.asks": "true"}), "asks at a doubt"),
-        (load_task("wall_following", changes={"teaching.teacher.delete_after": "2"}), "deletes RLAs"),
     ],
 )
 def test_batch_refuses_lessons_that_it_does_not_know(task: TaskSettings, why: str) -> None:

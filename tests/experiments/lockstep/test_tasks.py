@@ -114,16 +114,3 @@ def test_straight_on_is_repositioned_at_the_end_of_its_street() -> None:
     assert max(steps_m) > 0.5  # through the air
     assert drive.distance_travelled_m < 5.5
     assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
-
-
-def test_rla_replaced_too_often_is_deleted(tmp_path: Path) -> None:
-    task = lasting("wall_following", 5.0, 10.0)
-    strict = task.teaching.teacher.model_copy(update={"delete_after": 1, "error_rate": 0.3})
-    replacing = task.learning.model_copy(update={"insert_beyond_share": 1.0})
-    task = task.model_copy(
-        update={"learning": replacing, "teaching": task.teaching.model_copy(update={"teacher": strict})}
-    )
-    result = lesson(task, tmp_path)
-    assert result.deletions > 0
-    # Numbers are not used again: gaps are what was deleted.
-    assert max(rla.rla_id for rla in result.rlas) > len(result.rlas)

@@ -371,20 +371,6 @@ def test_update_same_mistake_is_looked_back_for_once() -> None:
     ) == [51]
 
 
-@pytest.mark.parametrize(("most", "ticks"), [(1, [181]), (2, [181, 131]), (3, [181, 131, 51])])
-def test_update_look_back_corrects_further_mistakes(most: int, ticks: list[int]) -> None:
-    settings = LookBackSettings(moment_spread_s=0.0, mistakes_at_most=most)
-    short = [doing("a")] * 50 + [doing("b")] * 30
-    assert corrected_ticks(person(profile=REWINDS, look_back=settings), [*short, *short, *rewind_once()]) == ticks
-
-
-def test_update_further_mistakes_need_presses_of_the_limit() -> None:
-    settings = LookBackSettings(moment_spread_s=0.0, mistakes_at_most=5)
-    teacher = person(profile=REWINDS, look_back=settings, presses_per_minute=3)
-    short = [doing("a")] * 50 + [doing("b")] * 30
-    assert len(corrected_ticks(teacher, [*short * 4, *rewind_once()])) == 2
-
-
 def rewind_once() -> list[TeacherView]:
     """Return a robot that begins to do the wrong thing after 0.2 s, and stands from then on."""
     return [doing("a")] * 20 + [doing("b")] * 120 + [standing()] * 2000

@@ -1,6 +1,5 @@
 """ScriptedTeacher: reaction time, patience, errors and deletions."""
 
-import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Any
@@ -10,11 +9,9 @@ import numpy as np
 from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.task_settings import TeacherSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, Pursue, SetPhase, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
@@ -36,22 +33,15 @@ class NearIsB:
 
 def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) -> ScriptedTeacher:
     settings = TeacherSettings(**{"reaction_s": 1.0, "patience_s": 0.5, "error_rate": 0.0, **changes})
-    person = ScriptedTeacher(
-        NearIsB(), "abcd", settings, replace_radius_fraction=0.1, period_s=0.01, seed=seed, session="s"
-    )
+    person = ScriptedTeacher(NearIsB(), "abcd", settings, period_s=0.01, seed=seed, session="s")
     if phase is not Phase.SUPERVISED:
         person.begin_phase(phase)
     return person
 
 
-def record(
-    count: int, cause: DecisionCause, action: str | None = None, nearest: int = 1, radius_fraction: float = 0.0
-) -> TickRecord:
-    """Return a tick in which RLA 1 drives `action`; `nearest` is at a fraction of R."""
-    rla_id = None if action is None else 1
-    rla = Rla(nearest, (0.0,), action or "a", None, Origin("t", NAME, Phase.SUPERVISED, 1))
-    match = None if action is None else Match(rla, 500.0 * radius_fraction, 500.0, None, math.inf)
-    decision = Decision(STANDSTILL, cause, action, rla_id, match)
+def record(count: int, cause: DecisionCause, action: str | None = None) -> TickRecord:
+    """Return a tick in which RLA 1 drives `action`."""
+    decision = Decision(STANDSTILL, cause, action, None if action is None else 1, None)
     situation = Situation(np.zeros(1), history_frozen=action is None)
     return TickRecord(1, 0.01, sensed(count), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
 
@@ -184,31 +174,7 @@ def test_answers_errors_follow_the_seed() -> None:
     assert first != other
 
 
-def test_update_rla_wrong_after_two_replacements_is_deleted() -> None:
-    person = teacher(delete_after=2)
-    wrong = [
-        *(doing(action, FAR) for action in "bcd" for _ in range(PATIENCE_TICKS)),  # b was replaced by c, c by d
-        *(doing("a", FAR) for _ in range(2 * PATIENCE_TICKS)),  # the right one
-    ]
-    assert [type(command) for command in given(person, wrong).values()] == [Correct, Correct, DeleteRla]
-    assert given(teacher(delete_after=2), wrong)[3 * PATIENCE_TICKS] == DeleteRla("s-4", NAME, 1)
-
-
-def deletions(last: Sequence[TickRecord]) -> int:
-    """Count deletions of RLA 1, which was replaced twice, in the ticks `last`."""
-    replaced = [doing(action) for action in "bcd"]
-    return sum(isinstance(each, DeleteRla) for each in given(teacher(delete_after=2), [*replaced, *last]).values())
-
-
-def test_update_deletes_only_if_a_correction_would_replace() -> None:
-    far = [record(FAR, DecisionCause.RLA, "d", radius_fraction=0.2)] * PATIENCE_TICKS
-    held = [record(FAR, DecisionCause.HELD, "d", nearest=2)] * PATIENCE_TICKS
-    assert deletions([record(FAR, DecisionCause.RLA, "d", radius_fraction=0.1)] * PATIENCE_TICKS) == 1
-    assert deletions(far) == 0
-    assert deletions(held) == 0
-
-
-def test_update_without_delete_after_keeps_correcting() -> None:
+def test_update_keeps_correcting_what_stays_wrong() -> None:
     wrong = [doing(action, FAR) for action in "bcdbcd" for _ in range(PATIENCE_TICKS)]
     assert {type(command) for command in given(teacher(), wrong).values()} == {Correct}
 
