@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.expectations.surprise import Surprise, SurpriseSettings
+from kurt2rt.core.expectations.surprise import BEYOND, LEAST_ENDS, LEAST_USUAL_SHARE, Surprise
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -46,7 +46,6 @@ class Expectations:
         space: Space,
         transitions: Mapping[tuple[int, int], int],
         saved: Mapping[int, Expectation] | None = None,
-        settings: SurpriseSettings | None = None,
     ) -> None:
         """Restore the saved expectations whose RLAs are active at this level with the same action.
 
@@ -56,11 +55,10 @@ class Expectations:
         self.level = level
         self._system = system
         self._transitions = transitions
-        self._settings = settings or SurpriseSettings()
         self._symbols = space.metric != "euclidean"
         weights = np.ones(space.dimensions) if space.weights is None else space.weights
         self._squared_weights = weights * weights
-        self._least_usual = max(self._settings.least_usual_share * space.radius, 1e-9)
+        self._least_usual = max(LEAST_USUAL_SHARE * space.radius, 1e-9)
         self._learned = {
             rla_id: expectation
             for rla_id, expectation in (saved or {}).items()
@@ -114,7 +112,7 @@ class Expectations:
 
     def _surprise(self, learned: Expectation, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
         count = learned.count
-        if count < self._settings.least:
+        if count < LEAST_ENDS:
             return None
         # Squares of symbols are 1 or 0, so the sums are numbers of different symbols.
         squared = float(np.add.reduce(self._squared_weights * (deviation * deviation)))
@@ -122,7 +120,7 @@ class Expectations:
         distance, usual = (squared, usual_squared) if self._symbols else (math.sqrt(squared), math.sqrt(usual_squared))
         usual = max(usual, self._least_usual)
         seen = self._transitions.get((end.rla_id, end.follow_up), 0)
-        surprising = distance > self._settings.beyond * usual
+        surprising = distance > BEYOND * usual
         return Surprise(
             level=self.level,
             rla_id=end.rla_id,

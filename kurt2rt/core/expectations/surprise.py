@@ -1,19 +1,14 @@
 """Surprise: distance between the expected situation and the real one."""
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
-
-@dataclass(frozen=True, slots=True)
-class SurpriseSettings:
-    """Thresholds of a surprise. Chosen on seeds 0 to 2 of the task streets, so that known ground rarely surprises."""
-
-    least: int = 5
-    """Least number of earlier ends of an RLA."""
-    beyond: float = 2.0
-    """Multiple of the usual distance beyond which an end is surprising."""
-    least_usual_share: float = 0.05
-    """Least usual distance as a share of the radius R, for RLAs whose ends hardly vary."""
+# Chosen on seeds 0 to 2 of the task streets, so that known ground rarely surprises.
+LEAST_ENDS = 5
+"""Least number of earlier ends of an RLA."""
+BEYOND = 2.0
+"""Multiple of the usual distance beyond which an end is surprising."""
+LEAST_USUAL_SHARE = 0.05
+"""Least usual distance as a share of the radius R, for RLAs whose ends hardly vary."""
 
 
 class Surprise(NamedTuple):

@@ -7,8 +7,6 @@ from kurt2rt.core.rla.rla import MID, Origin
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 
-GoalCommand = NameSituation | Seek | StopSeeking | BeAt
-
 LONGEST_NAME = 64
 
 

@@ -48,9 +48,9 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
         yield Verdict(Target.INTERVENTIONS, values, rate.value < limit_h)
 
 
-def interventions(study: PhasesStudy, stage: str = LONG_RUN) -> Rate:
-    """Return the interventions in an hour, of all robots in a step without a teacher."""
-    taught = [each.teaching for each in study.stages[stage] if each.teaching is not None]
+def interventions(study: PhasesStudy) -> Rate:
+    """Return the interventions in an hour, of all robots in the long run."""
+    taught = [each.teaching for each in study.stages[LONG_RUN] if each.teaching is not None]
     return rate_of([each.interventions for each in taught], [each.duration_s / _HOUR_S for each in taught])
 
 

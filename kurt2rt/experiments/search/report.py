@@ -26,11 +26,10 @@ def write_report(
     search = plan.search
     space = Table(
         "Space",
-        ("key", "kind", "low", "high", "logarithmic", "shipped"),
+        ("key", "low", "high", "logarithmic", "shipped"),
         tuple(
             (
                 each.key,
-                each.kind,
                 f"{each.low:g}",
                 f"{each.high:g}",
                 "yes" if each.log else "no",

@@ -57,7 +57,6 @@ class Dimension(Settings):
 
     key: Annotated[str, Field(pattern=r"^[a-z_0-9]+(\.[a-z_0-9]+)+$")]
     """Levels with dots between them; a number is a place in a list, from 0."""
-    kind: Literal["float", "int"] = "float"
     low: float
     high: float
     log: bool = False
@@ -69,8 +68,6 @@ class Dimension(Settings):
             raise ValueError(f"low must be less than high (got {self.low:g} and {self.high:g})")
         if self.log and self.low <= 0:
             raise ValueError(f"low must be positive if log is true (got {self.low:g})")
-        if self.kind == "int" and not (self.low.is_integer() and self.high.is_integer()):
-            raise ValueError(f"low and high of an int must be whole numbers (got {self.low:g} and {self.high:g})")
         return self
 
 

@@ -124,7 +124,5 @@ class TaskSpace:
 
 
 def rounded(dimension: Dimension, value: float) -> float:
-    """Return a value in the key's unit (m, s or counts) with 3 significant digits; a whole number for kind int."""
-    if dimension.kind == "int":
-        return round(value)
+    """Return a value in the key's unit (m, s or counts) with 3 significant digits."""
     return min(max(float(f"{value:.{_DIGITS}g}"), dimension.low), dimension.high)

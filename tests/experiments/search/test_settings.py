@@ -46,8 +46,6 @@ def _dimension(**values: Any) -> dict[str, Any]:
          "rooms-7 is a world of the search"),
         (_dimension(low=2000.0), "low must be less than high"),
         (_dimension(low=0.0, log=True), "low must be positive"),
-        (_dimension(kind="int", low=1.5), "must be whole numbers"),
-        (_dimension(kind="word"), "'float'"),
         (_dimension(key="radius"), "space.0.key"),
         ({"space": _dimension()["space"] * 2}, "learning.radius stands twice"),
         ({"space": []}, "space"),

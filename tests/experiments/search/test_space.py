@@ -89,4 +89,3 @@ def test_rounded_values_are_legible_and_in_range() -> None:
     share = Dimension(key="a.b", low=0.02, high=0.12345)
     assert [rounded(share, value) for value in (0.0312649, 0.1234499, 0.02)] == [0.0313, 0.123, 0.02]
     assert rounded(Dimension(key="a.b", low=1234.5, high=2000.0), 1234.6) == 1234.5
-    assert rounded(Dimension(key="a.b", kind="int", low=1.0, high=9.0), 4.0) == 4
