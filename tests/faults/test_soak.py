@@ -1,5 +1,7 @@
 """A soak in which everything fails: nothing is lost, grows or drives on."""
 
+import gc
+from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 from statistics import median
@@ -13,6 +15,14 @@ from tests.faults.table import CASES
 MOST_WAITING = 64
 """Commands in the inbox of a tick."""
 MOST_GROWN_MB = 5.0
+
+
+@pytest.fixture
+def collected() -> Iterator[None]:
+    """Let the garbage of each program be collected, as after its end: what is frozen (tests/conftest.py) stays."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
 
 
 async def soaked(folder: Path, minutes: float, *, seed: int, lives_s: tuple[float, float], fault_gap_s: float) -> Soak:
@@ -44,6 +54,7 @@ async def test_the_same_seed_is_the_same_soak(tmp_path: Path) -> None:
 
 
 @pytest.mark.deep
+@pytest.mark.timeout(3600)
 async def test_every_case_at_some_time(tmp_path: Path) -> None:
     """Each of the 84, while the robot does something else each time."""
     soak = await soaked(tmp_path, 15.0, seed=5, lives_s=(60.0, 300.0), fault_gap_s=2.0)
@@ -53,6 +64,7 @@ async def test_every_case_at_some_time(tmp_path: Path) -> None:
 
 @pytest.mark.deep
 @pytest.mark.timeout(3600)
+@pytest.mark.usefixtures("collected")
 async def test_an_hour_in_which_something_fails_each_minute(tmp_path: Path) -> None:
     pin_mmap_threshold()  # as the robot's program does
     soak = await soaked(tmp_path, 60.0, seed=2, lives_s=(300.0, 900.0), fault_gap_s=50.0)
