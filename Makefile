@@ -7,6 +7,7 @@
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
 # make wheelhouse  all packages of a robot as wheels, for x86-64 and aarch64, to install without a network: a minute
+# make bench  what the runtime takes on this machine, next to references of the same run: 7 minutes; ARGS=--quick does a tenth
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
 VENV := .venv
@@ -95,7 +96,7 @@ hil: $(INSTALLED)
 	$(BIN)/pytest -n 2 -q -m boots tests/hil
 
 bench: $(INSTALLED)
-	$(BIN)/kurt2rt bench
+	$(BIN)/python -m tests.bench $(ARGS)
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -76,7 +76,6 @@ LONG: dict[str, Shorten] = {
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
     "doctor": lambda words: [*words, "--ticks", "5"],
-    "bench": lambda words: [*words, "--quick"],
 }
 
 

@@ -1,1 +1,1 @@
-"""Checks of a robot and of this software: doctor, commission, bench, plug-ins."""
+"""Checks of a robot and of this software: doctor, commission, plug-ins."""

@@ -42,7 +42,6 @@ _PANELS = {
         "paper": "Teach the tasks of the paper, and compare the results.",
         "phases": "Train robots through phases 1 to 5, next to controls.",
         "study": "Measure taught robots: new worlds, doubt, certificates.",
-        "bench": "Measure what the runtime takes, on this machine, with the simulated robot: 7 minutes.",
     },
 }
 """Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its

@@ -19,20 +19,6 @@ AsJson = Annotated[
     ),
 ]
 
-JsonFile = Annotated[
-    Path | None,
-    typer.Argument(hidden=True, metavar=" ", dir_okay=False, help="File that gets the JSON, in addition to the table."),
-]
-"""Argument of commands whose --json once took a file."""
-
-
-def require_json_file(file: Path | None, *, as_json: bool) -> None:
-    """Refuse a file without --json, and one in a folder that is not there. Raises typer.BadParameter."""
-    if file is not None and not as_json:
-        raise typer.BadParameter(f"unexpected argument {file}", param_hint="FILE")
-    if file is not None and not file.absolute().parent.is_dir():
-        raise typer.BadParameter(f"there is no folder {file.parent}; make it first", param_hint="--json")
-
 
 def print_json(value: object) -> None:
     """Print a value, as `plain` returns it, as one JSON document on standard output.

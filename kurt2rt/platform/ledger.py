@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
-from numpy.typing import NDArray
 
 
 class Stage(IntEnum):
@@ -66,21 +65,9 @@ class TickTimer:
         self.ticks += 1
         self._row = self.ticks % self._capacity
 
-    def stage(self, stage: Stage) -> Percentiles:
-        """Return median, p99 and maximum of the time of one stage, in µs; zeros before the first tick."""
-        return self._share(np.array(self._stages[stage]))
-
     def tick(self) -> Percentiles:
         """Return median, p99 and maximum of the time of all stages together, in µs; zeros before the first tick."""
         return self._share(np.sum([np.array(column) for column in self._stages], axis=0))
-
-    def ticks_ns(self) -> NDArray[np.int64]:
-        """Return the time of all stages of each tick kept, in ns, shape (n,), oldest first."""
-        kept = min(self.ticks, self._capacity)
-        rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
-        stages = np.array([np.array(column)[rows] for column in self._stages])
-        ticks: NDArray[np.int64] = stages.sum(axis=0)
-        return ticks
 
     def lateness(self) -> Percentiles:
         """Return the lateness of the last `capacity` ticks, in µs; zeros before the first tick."""

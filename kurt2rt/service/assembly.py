@@ -1,4 +1,4 @@
-"""Assembly of a robot's service: runtime, journal writer and channel, the same for service and bench."""
+"""Assembly of a robot's service: runtime, journal writer and channel."""
 
 import math
 from collections.abc import AsyncIterator, Callable

@@ -73,7 +73,6 @@ def test_every_command_is_found() -> None:
             "search",
             "why",
             "recover",
-            "bench",
             "doctor",
             "commission",
             "service",

@@ -38,7 +38,7 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
 }
 REPORTING = {
-    *(("bench",), ("demo",), ("doctor",), ("exam",), ("lesson",), ("pair",), ("paper",), ("phases",)),
+    *(("demo",), ("doctor",), ("exam",), ("lesson",), ("pair",), ("paper",), ("phases",)),
     *(("replay",), ("service", "check"), ("status",), ("why",)),
     *(("study", name) for name in ("transfer", "compare", "doubt", "certify", "search")),
     *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),

@@ -8,7 +8,6 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console, RenderableType
 
-from kurt2rt.checks.bench.report import print_report as print_bench
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.report import print_report as print_commissioning
@@ -22,7 +21,6 @@ from kurt2rt.experiments.phases.tables import all_tables as phases_tables
 from kurt2rt.experiments.route.tables import all_tables as route_tables
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
-from tests.checks.bench.test_report import MACHINE, RESULTS
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import short_task
 from tests.experiments.navigation.test_goals import settings
@@ -54,7 +52,6 @@ def printing(*parts: RenderableType) -> Print:
 
 
 REPORTS: dict[str, Print] = {
-    "bench": lambda console: print_bench(RESULTS, MACHINE, console),
     "doctor": lambda console: print_doctor(FOUND, console),
     "commission": lambda console: print_commissioning(Progress(name="x", base="kurt2", bus="can0"), STEPS, console),
     "status": printing(health_as_rich(ILL)),

@@ -81,11 +81,6 @@ class Channel:
         return "; ".join(lines)
 
     @property
-    def observers(self) -> int:
-        """Number of devices that get the states."""
-        return self.site.observers
-
-    @property
     def states_skipped(self) -> int:
         """Number of states that observers missed because the one before was still on its way."""
         return self.site.states_skipped

@@ -97,7 +97,7 @@ def test_device_by_the_book_confirms_and_keeps_observing(
             assert (looking.begun > 2) is not confirms
             if confirms:
                 assert device.confirmed > 5
-                assert at_work.channel.observers == 1
+                assert at_work.channel.site.observers == 1
 
     run_jumping(story)
 

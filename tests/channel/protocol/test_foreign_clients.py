@@ -68,14 +68,14 @@ async def test_aiocoap_stranger_discovers_and_is_refused(coap_client: str, tmp_p
             method = ("-m", "get") if path == "/state" else ("-m", "post", "-e", "%80")
             assert await said(coap_client, *method, address(at_work, path)) == ("", "4.01\n")
         assert at_work.runtime.handler.authority.teacher is None
-        assert at_work.channel.observers == 0
+        assert at_work.channel.site.observers == 0
     assert journal_of(tmp_path) == []
 
 
 async def test_a_stranger_cannot_observe(coap_client: str, tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work:
         assert await said(coap_client, "-s", "1", address(at_work, "/state")) == ("", "4.01\n")
-        assert at_work.channel.observers == 0
+        assert at_work.channel.site.observers == 0
 
 
 @asynccontextmanager
@@ -163,5 +163,5 @@ async def test_libcoap_with_oscore_looks_observes_and_commands(
 
 async def _noted(at_work: RobotAtWork, looked: list[int]) -> None:
     while -1 not in looked:
-        looked.append(at_work.channel.observers)
+        looked.append(at_work.channel.site.observers)
         await anyio.sleep(0.05)

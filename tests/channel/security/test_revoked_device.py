@@ -41,10 +41,10 @@ def test_revoked_observer_gets_no_state_and_no_trouble(
                 looking = await device.look()
                 for _ in range(10):
                     await looking.picture()
-                assert at_work.channel.observers == 1
+                assert at_work.channel.site.observers == 1
                 end(tmp_path / "teachers", tmp_path / "devices", "phone")
                 await asyncio.sleep(_TAKEN_UP_S)
-                assert at_work.channel.observers == 0
+                assert at_work.channel.site.observers == 0
                 assert untroubled(at_work)
                 with pytest.raises(TimeoutError):
                     await device.ask("/hello", [])

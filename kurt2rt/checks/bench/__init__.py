@@ -1,1 +1,0 @@
-"""Benchmarks of the runtime, each with a reference from the same run."""
