@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable
 from enum import StrEnum
-from typing import Final
 
 
 class GuardReason(StrEnum):
@@ -39,8 +38,6 @@ class GuardReason(StrEnum):
     PROGRAM_WAITS = "the robot program waits for what it needs"
     CHECKLIST_WAITS = "the checklist waits"
     """Commissioning has no step that drives."""
-    OTHER = "other"
-    """A reason of another version of kurt2rt."""
 
     @property
     def routine(self) -> bool:
@@ -48,14 +45,6 @@ class GuardReason(StrEnum):
         return self is GuardReason.SLEW_LIMIT
 
 
-_BY_VALUE: Final = {reason.value: reason for reason in GuardReason}
-
-
 def reasons_text(reasons: Iterable[str]) -> str:
     """Return codes for users; the values of the range sensors are from before there were other ones than infra-red."""
     return ", ".join(reasons).replace("infra-red", "range sensors")
-
-
-def guard_reason(value: str) -> GuardReason:
-    """Return the code of a recorded value; OTHER if this version does not know it."""
-    return _BY_VALUE.get(value, GuardReason.OTHER)

@@ -1,9 +1,8 @@
 """Schema of the settings of a KURT2: CAN bus, channels of its sensors, and its micro-controller's speed modes."""
 
 import re
-from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
@@ -93,15 +92,6 @@ class Kurt2Settings(RobotSettings):
     can: CanSettings
     motors: Kurt2MotorSettings
     infrared: Kurt2InfraredSettings
-
-    @classmethod
-    def read_earlier(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return a file's content with `can.cycle_s`, where files and recordings of before had it, as `cycle_s`."""
-        can = content.get("can")
-        if not isinstance(can, Mapping) or "cycle_s" not in can or "cycle_s" in content:
-            return content
-        rest = {key: value for key, value in can.items() if key != "cycle_s"}
-        return {**content, "can": rest, "cycle_s": can["cycle_s"]}
 
 
 def require_kurt2(robot: RobotSettings, what: str) -> Kurt2Settings:

@@ -1,7 +1,6 @@
 """Settings of a robot: geometry, limits, and the law and places of its range sensors."""
 
 import json
-from collections.abc import Mapping
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, Self
@@ -169,11 +168,6 @@ class RobotSettings(Settings):
     infrared: InfraredSettings
     bumpers: Annotated[tuple[BumperSettings, ...], Field(max_length=8)]
 
-    @classmethod
-    def read_earlier(cls, content: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the content of a file, which may be of an earlier version, by the present schema."""
-        return content
-
     @model_validator(mode="after")
     def _guard_within_motors(self) -> Self:
         if self.guard.maximum_speed_m_s > self.motors.maximum_speed_m_s:
@@ -184,8 +178,8 @@ class RobotSettings(Settings):
         return self
 
 
-DEFAULT_KIND = "kurt2"
-"""Kind of a settings file that names none: files of before there were kinds."""
+DEFAULT_ROBOT = "kurt2"
+"""Robot where neither the user nor the task names one."""
 
 
 def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
@@ -204,7 +198,7 @@ def load_robot_of(name_or_path: str | None, task: str) -> RobotSettings:
 
 def robot_named(name_or_path: str | None, task: str) -> str:
     """Return a robot's name or path; None: that of the task's robot, which is KURT2 unless the task says other."""
-    return name_or_path or robot_that_task_names(task) or DEFAULT_KIND
+    return name_or_path or robot_that_task_names(task) or DEFAULT_ROBOT
 
 
 def robot_that_task_names(task: str) -> str | None:
@@ -237,11 +231,11 @@ def robot_of_content(content: Any, where: Path | str) -> RobotSettings:
 
     Raises hal.settings.SettingsError that names `where` and the key, also for a kind that is not installed.
     """
-    kind = content.get("kind", DEFAULT_KIND) if isinstance(content, dict) else DEFAULT_KIND
+    kind = content.get("kind") if isinstance(content, dict) else None
     if not isinstance(kind, str):
         raise SettingsError(f"kind: Input should be a valid string (found {kind!r})", where=where)
     try:
         schema: type[RobotSettings] = find_robot_kind(kind).settings
     except SettingsError as error:
         raise SettingsError(f"kind: {error.what} (found {kind!r})", where=where, do=error.do) from error
-    return settings_of(schema.read_earlier(content) if isinstance(content, dict) else content, schema, where)
+    return settings_of(content, schema, where)

@@ -1,15 +1,8 @@
 """Judge of the figure of eight round two columns."""
 
-from typing import Annotated
-
-from pydantic import Field
-
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
 from behaviors.policies.sectors import Metres
-
-OptionalDistance = Annotated[float, Field(ge=0, le=5)]
-"""Distance in m; 0: the rule does not exist, as in recordings of before it."""
 
 
 class EightSettings(JudgeSettings):
@@ -40,11 +33,11 @@ class EightSettings(JudgeSettings):
     """Turn rate towards the column above which the curve is good."""
     round_m_s: Speed
     """Speed above which the curve is good."""
-    grazes_rad_s: TurnRate = 0.0
+    grazes_rad_s: TurnRate
     """Turn rate towards a column above which a grazing robot, by the feature grazing, is bad."""
-    other_m: OptionalDistance = 0.0
-    """Distance of the second column at the side below which a circling robot has to leave the first; 0: never."""
-    loses_column: bool = False
+    other_m: Metres
+    """Distance of the second column at the side below which a circling robot has to leave the first."""
+    loses_column: bool
     """Punish the first moments without a column in view, until the feature no_wall is 1."""
     straight_rad_s: TurnRate
     """Turn rate below which driving between two columns is good."""

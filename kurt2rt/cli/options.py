@@ -177,22 +177,3 @@ def _seeds_of(part: str) -> range:
     if not seeds:
         raise ValueError(f"{part} ends before it begins")
     return seeds[: _MOST_SEEDS + 1]
-
-
-EarlierBus = Annotated[str | None, typer.Option("--robot", hidden=True)]
-"""Earlier name of --bus, in scripts and installed units."""
-
-
-def bus_of(bus: str, earlier: str | None, *, default: str) -> str:
-    """Return the bus that --bus, or its earlier name --robot, gives.
-
-    `bus`: value of --bus, which is `default` if it was not typed. `earlier`: value of --robot; None: not typed. Raises
-    typer.BadParameter if the two differ.
-    """
-    if earlier is None:
-        return bus
-    if bus not in (default, earlier):
-        raise typer.BadParameter(
-            f"is the earlier name of --bus (got {earlier}, and --bus {bus}); leave it out", param_hint="--robot"
-        )
-    return earlier

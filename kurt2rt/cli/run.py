@@ -1,7 +1,7 @@
 """`kurt2rt run`. The robot's packages are imported by the command, not by its help."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import EarlierBus, PageAddressName, RobotName, bus_of, task_option, world_option
+from kurt2rt.cli.options import PageAddressName, RobotName, task_option, world_option
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import SIMULATED
 
@@ -37,7 +37,6 @@ class _Options:
             "robot in this program."
         ),
     ] = SIMULATED
-    robot: EarlierBus = None
     robot_settings: RobotName = None
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
@@ -186,7 +185,6 @@ def run(options: _Options) -> None:
 
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
-    options = replace(options, bus=bus_of(options.bus, options.robot, default=SIMULATED), robot=None)
     _require_consistent(options)
     with end_at_interrupt():
         import kurt2rt.service.program

@@ -11,7 +11,6 @@ from hal.errors import ExitCode
 from hal.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import EarlierBus, bus_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
@@ -44,7 +43,6 @@ class _UnitOptions:
     ] = "default"
     name: UnitName = "kurt2rt"
     page: Annotated[bool, typer.Option("--page", help="Let the unit serve the teacher's page as well.")] = False
-    robot: EarlierBus = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +146,7 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
 
 def _unit(options: _UnitOptions) -> tuple[Unit, RequiredAccess]:
     """Return the unit, and the files and folders that it needs. Raises SettingsError, UnitError."""
-    bus, settings, name = bus_of(options.bus, options.robot, default=_BUS), options.settings, options.name
+    bus, settings, name = options.bus, options.settings, options.name
     require_name(name)
     found = find_config("runtime", settings)
     loaded = load_service(settings)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from hal.robot_plugins import robot_of_task
-from hal.robot_settings import DEFAULT_KIND, RobotSettings, load_robot, load_robot_of, robot_that_task_names
+from hal.robot_settings import DEFAULT_ROBOT, RobotSettings, load_robot, load_robot_of, robot_that_task_names
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -42,7 +42,7 @@ def require_robot_of(task: TaskSettings, name: str, robot: RobotSettings) -> Non
     except SettingsError as error:
         # A file without `robot` may still take its situation from a robot's plug-in, as a copy of such a task does.
         named, used = robot_that_task_names(name), robot_of_task(task.situation)
-        other = named or used or DEFAULT_KIND
+        other = named or used or DEFAULT_ROBOT
         if load_robot(other).kind == robot.kind:
             raise
         raise SettingsError(

@@ -136,7 +136,6 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
         (("run", "--world", "maps/cave.PGM"), " maps/cave.yaml "),
         (("replay", "/proc/self/mem"), f"[Errno {errno.EIO}]"),
         (("run", "--bus", "can7"), "bus 'can7': "),
-        (("run", "--robot", "can7"), "bus 'can7': "),  # the earlier name of --bus
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -148,7 +147,6 @@ def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tup
     ("words", "why"),
     [
         (("run", "--bus", "can7", "--auto"), "--auto"),
-        (("run", "--bus", "can7", "--robot", "can6"), "--robot"),
         (("run", "--page", "--teacher", "none"), "--teacher"),
         (("teach", "--terminal", "--auto"), "--terminal"),
         (("run", "--seconds", "nan"), "--seconds"),

@@ -51,7 +51,7 @@ class CorridorRobot:
         self.driven: list[WheelSpeeds] = []
         self.closed = False
         self.touches_in_front = False
-        self.latches_for = GuardReason.OTHER
+        self.latches_for = GuardReason.PROGRAM_WAITS
 
     def sense(self, now_s: float) -> SensorReadings:
         return SensorReadings(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
@@ -279,9 +279,9 @@ def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> N
 
 
 def test_tick_emergency_stop_freezes_history_until_resume(driving: Corridor) -> None:
-    driving.robot.emergency_stop(GuardReason.OTHER)
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     first = driving.run()
-    assert first.guard_result == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
+    assert first.guard_result == GuardResult(STANDSTILL, (GuardReason.PROGRAM_WAITS,), latched=True)
     for _ in range(5):
         record = driving.run()
         assert record.guard_result.latched
@@ -293,7 +293,7 @@ def test_tick_emergency_stop_freezes_history_until_resume(driving: Corridor) -> 
 def test_tick_late_copy_of_resume_keeps_new_emergency_stop(driving: Corridor) -> None:
     driving.run(100, stop("s"))
     driving.run(100, resume("again"))
-    driving.robot.emergency_stop(GuardReason.OTHER)
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     record = driving.run(100, resume("again"))
     assert record.results[0].outcome == Outcome(ResultCode.REPEATED)
     assert record.guard_result.latched
@@ -302,7 +302,7 @@ def test_tick_late_copy_of_resume_keeps_new_emergency_stop(driving: Corridor) ->
 
 def test_tick_resume_from_before_emergency_stop_is_refused(driving: Corridor) -> None:
     said_on = driving.run(100).tick
-    driving.robot.emergency_stop(GuardReason.OTHER)
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     stopped_on = driving.run(100).tick
     late = driving.run(100, Resume("on its way", "Ann", said_on))
     assert late.results[0].outcome == Outcome(RefusalCode.STOPPED_SINCE)
@@ -311,7 +311,7 @@ def test_tick_resume_from_before_emergency_stop_is_refused(driving: Corridor) ->
 
 
 def test_tick_resume_keeps_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
-    driving.robot.emergency_stop(GuardReason.OTHER)  # as the readings of the next tick do
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)  # as the readings of the next tick do
     assert driving.run(100, resume("said before")).guard_result.latched
     assert not driving.run(100, resume("after a look")).guard_result.latched
 

@@ -304,7 +304,7 @@ def test_reward_of_manual_drive_is_refused(driving: Corridor) -> None:
 
 
 def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:
-    driving.robot.emergency_stop(GuardReason.OTHER)
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     record = driving.run(100, Resume("r", "Ben"))
     assert not record.results[0].accepted
     assert record.guard_result.latched
@@ -312,7 +312,7 @@ def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) 
 
 def test_lease_expires_while_latched_and_ends_the_press(driving: Corridor) -> None:
     driving.run(100, press(driving))
-    driving.robot.emergency_stop(GuardReason.OTHER)
+    driving.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     causes(driving, LEASE)
     driving.robot.release()
     assert stands(driving.run(100, press(driving)))

@@ -19,7 +19,8 @@ def driving() -> Corridor:
 
 
 @pytest.mark.parametrize(
-    ("reason", "stands"), [(GuardReason.BUS_LOST, StandReason.BUS_LOST), (GuardReason.OTHER, StandReason.HALTED)]
+    ("reason", "stands"),
+    [(GuardReason.BUS_LOST, StandReason.BUS_LOST), (GuardReason.PROGRAM_WAITS, StandReason.HALTED)],
 )
 def test_tick_resume_tells_the_stop_that_lasts(driving: Corridor, reason: GuardReason, stands: StandReason) -> None:
     driving.robot.latches_for = reason

@@ -233,7 +233,7 @@ def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
     driver.sent()
     driver.guard.emergency_stop(GuardReason.SERVICE_ENDS)
     assert driver.sent() == [BRAKE]
-    driver.guard.emergency_stop(GuardReason.OTHER)
+    driver.guard.emergency_stop(GuardReason.PROGRAM_WAITS)
     for _ in range(3):
         assert driver.drive(0.3, 0.3) == GuardResult(STANDSTILL, (GuardReason.SERVICE_ENDS,), latched=True)
     assert driver.sent() == [BRAKE] * 4

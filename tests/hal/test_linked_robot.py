@@ -173,9 +173,9 @@ def test_fault_of_the_robot_stops_it_until_over_and_released(scene: Scene) -> No
 
 def test_fault_after_another_stop_keeps_the_robot_stopped(scene: Scene) -> None:
     scene.drive()
-    scene.robot.emergency_stop(GuardReason.OTHER)
+    scene.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
     scene.link.reports = [AlarmReport(scene.now_s, " ")]
-    assert scene.tick().reasons == (GuardReason.OTHER,)
+    assert scene.tick().reasons == (GuardReason.PROGRAM_WAITS,)
     scene.robot.release()
     assert scene.tick().reasons == (GuardReason.ROBOT_FAULT,)
     assert "tells a fault: no text; mend it" in scene.robot.health.alarm

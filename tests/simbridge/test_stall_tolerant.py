@@ -79,9 +79,9 @@ def test_simulated_in_the_program_it_brakes_and_drives_on() -> None:
 def test_a_stop_that_was_asked_for_outlasts_a_stall() -> None:
     with scene(StallTolerantKurt2) as robot:
         robot.tick()
-        robot.robot.emergency_stop(GuardReason.OTHER)
+        robot.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
         assert robot.stall().latched
-        assert robot.tick().reasons == (GuardReason.OTHER,)
+        assert robot.tick().reasons == (GuardReason.PROGRAM_WAITS,)
         robot.robot.release()
         assert not robot.tick().latched
         robot.now_s += 0.5

@@ -67,6 +67,6 @@ def test_driver_bumper_stops_the_robot(pair: Pair) -> None:
 
 def test_driver_emergency_stop_brakes_and_holds(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
-    pair[0].emergency_stop(GuardReason.OTHER)
+    pair[0].emergency_stop(GuardReason.PROGRAM_WAITS)
     readings = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
     assert (readings.encoder_left_ticks, readings.encoder_right_ticks) == (0, 0)

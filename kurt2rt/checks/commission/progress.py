@@ -24,7 +24,6 @@ class StepRecord(Settings):
     to_do: tuple[str, ...] = ()
     """Instruction for each fault, in words."""
     faults: tuple[StepFault, ...] = ()
-    """Empty in files of earlier versions."""
     skipped: SkipCode | None = None
 
 

@@ -171,7 +171,7 @@ class RobotTests:
 
     def test_a_stop_lasts_until_it_is_released(self, drive: Drive) -> None:
         drive.tick(drive.to_left)
-        drive.robot.emergency_stop(GuardReason.OTHER)
+        drive.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
         result = drive.tick(drive.to_left).result
         assert result.latched, drive.told()
         assert result.wheel_speeds == STANDSTILL, drive.told()
@@ -184,7 +184,7 @@ class RobotTests:
         settings = drive.settings
         watchdog_s, slow_m_s = settings.motors.controller_watchdog_s, drive.ahead.left_m_s
         drive.tick(drive.to_left)
-        drive.robot.emergency_stop(GuardReason.OTHER)
+        drive.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
         drive.left_alone(0.5 * watchdog_s)
         half_way = drive.pose
         drive.left_alone(0.25 * watchdog_s)

@@ -6,7 +6,6 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hal.robot_settings import DEFAULT_KIND
 from hal.settings import Settings, SettingsError, load_settings
 from hal.settings_files import find_config
 
@@ -108,9 +107,7 @@ class SituationDefinition(Settings):
 
     def hash(self, sensors: tuple[str, ...], kind: str) -> str:
         """Return the fingerprint of definition, sensor order and kind of robot; other knowledge is refused."""
-        content: dict[str, object] = {"definition": self.model_dump(mode="json"), "sensors": list(sensors)}
-        if kind != DEFAULT_KIND:  # knowledge of before there were kinds has none in its fingerprint
-            content["kind"] = kind
+        content = {"definition": self.model_dump(mode="json"), "sensors": list(sensors), "kind": kind}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 

@@ -19,7 +19,7 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
 _NOTE = "note "
-"""Notes stand in table binding under keys such as `note imported from`; an earlier kurt2rt leaves them alone."""
+"""Notes stand in table binding under keys such as `note imported from`."""
 
 _ROWS = "SELECT sequence, command_id, stamped_at, event, checksum FROM lesson ORDER BY sequence"
 

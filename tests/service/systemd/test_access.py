@@ -129,7 +129,3 @@ def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine) -> Non
     assert f"ExecStart={start_command()[0]} " in said.out
     assert " run --service --bus can1 --settings default --page\n" in said.out
     assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "task.yaml")
-
-
-def test_show_with_the_earlier_name_of_bus_prints_one_unit(kurt2rt: CommandLine) -> None:
-    assert kurt2rt("service", "show", "--robot", "can1").out == kurt2rt("service", "show", "--bus", "can1").out
