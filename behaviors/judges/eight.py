@@ -37,12 +37,11 @@ class EightSettings(JudgeSettings):
     """Turn rate towards a column above which a grazing robot, by the feature grazing, is bad."""
     other_m: Metres
     """Distance of the second column at the side below which a circling robot has to leave the first."""
-    loses_column: bool
-    """Punish the first moments without a column in view, until the feature no_wall is 1."""
     straight_rad_s: TurnRate
     """Turn rate below which driving between two columns is good."""
     unseen_m: Metres
-    """Distance at both front edges above which a right turn without a column in view is bad."""
+    """Distance at both front edges above which a right turn without a column in view is bad, and so are the first
+    moments without one, until the feature no_wall is 1."""
 
     def build(self) -> Judge:
         """Return a judge with these thresholds."""
@@ -75,7 +74,7 @@ class Eight:
         if beside_right:
             return self._round(now, now.right_m, now.ahead_right_m, -now.turn_rad_s)
         unseen = min(now.ahead_left_m, now.ahead_right_m) > want.unseen_m
-        just_lost = want.loses_column and not now.no_wall and now.front_m > want.unseen_m
+        just_lost = not now.no_wall and now.front_m > want.unseen_m
         return -1 if unseen and (just_lost or now.turn_rad_s < -want.turns_rad_s) else 0
 
     def _round(self, now: AppraisalFeatures, beside_m: float, ahead_m: float, to_it_rad_s: float) -> int:
