@@ -1,6 +1,5 @@
-"""Codes for why the guard limits or stops the wheels; recordings and the wire keep their values."""
+"""Codes for why the guard limits or stops the wheels: the words of recordings, of the wire and for users."""
 
-from collections.abc import Iterable
 from enum import StrEnum
 
 
@@ -10,7 +9,7 @@ class GuardReason(StrEnum):
     NOT_A_NUMBER = "not a number"
     COMMAND_TOO_OLD = "command too old"
     CLOCK_RAN_BACKWARDS = "clock ran backwards"
-    INFRARED_STALE = "infra-red stale"
+    INFRARED_STALE = "range sensors stale"
     ENCODER_STALE = "encoder stale"
     BUMPER_STALE = "bumper stale"
     FRONT_BUMPER = "front bumper"
@@ -26,7 +25,7 @@ class GuardReason(StrEnum):
     FOREIGN_TELEMETRY = "another telemetry sender"
     """Another node sends frames with an identifier of the robot's readings."""
     WHEELS_DISOBEY = "wheels disobey"
-    INFRARED_FROZEN = "infra-red frozen"
+    INFRARED_FROZEN = "range sensors frozen"
     ROBOT_FAULT = "robot fault"
     """The robot itself tells a fault."""
     TICKS_CEASED = "ticks ceased"
@@ -43,8 +42,3 @@ class GuardReason(StrEnum):
     def routine(self) -> bool:
         """True if ordinary driving meets this limit: each turn begins at the slew limit."""
         return self is GuardReason.SLEW_LIMIT
-
-
-def reasons_text(reasons: Iterable[str]) -> str:
-    """Return codes for users; the values of the range sensors are from before there were other ones than infra-red."""
-    return ", ".join(reasons).replace("infra-red", "range sensors")

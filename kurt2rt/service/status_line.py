@@ -1,6 +1,5 @@
 """Status line of the robot program, once a second."""
 
-from hal.guard_reason import reasons_text
 from hal.health import Health
 from kurt2rt.core.decision.standing_text import short_text
 from kurt2rt.core.rla.rla import MID, rla_title
@@ -64,7 +63,7 @@ def format_problems(status: ProgramStatus, health: Health) -> list[str]:
 def format_guard(status: ProgramStatus) -> list[str]:
     """Return what the guard changed in this tick, in words; empty if it changed nothing."""
     reasons = status.record.guard_result.reasons
-    return ["guard: " + reasons_text(reasons)] if reasons else []
+    return ["guard: " + ", ".join(reasons)] if reasons else []
 
 
 def format_alarms(status: ProgramStatus, health: Health) -> list[str]:

@@ -67,8 +67,8 @@ def test_judge_drives_on_allows_a_short_rest_to_reverse() -> None:
 
 def test_one_that_must_stutter_must_not_stand_for_good() -> None:
     must = case_of("sensor_board_1", "slow").must
-    stand = Standstill(0.05, ("infra-red stale",))
-    stuttered = DROVE._replace(first=stand, went_on=True, last=Standstill(1.9, ("infra-red stale",)))
+    stand = Standstill(0.05, ("range sensors stale",))
+    stuttered = DROVE._replace(first=stand, went_on=True, last=Standstill(1.9, ("range sensors stale",)))
     assert judge(must, stuttered) == []
     (said,) = judge(must, stuttered._replace(went_on=False))
     assert "must go on in between" in said

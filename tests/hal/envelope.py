@@ -23,7 +23,7 @@ STANDS_FOR: Final = (
     "not a number",
     "clock ran backwards",
     "command too old",
-    "infra-red stale",
+    "range sensors stale",
     "encoder stale",
     "bumper stale",
 )
@@ -297,7 +297,7 @@ def _reasons_to_stand(streams: Streams, last_s: Floats, tick: int, slack_s: floa
     forwards = (now_s - last_s >= -slack_s) & (sensed_ago_s >= -slack_s) & (decided_ago_s >= -slack_s)
     forwards &= np.isfinite(now_s)
     frames = {
-        "infra-red stale": (streams.infrared_age_s, limits.stale_infrared_s),
+        "range sensors stale": (streams.infrared_age_s, limits.stale_infrared_s),
         "encoder stale": (streams.encoder_age_s, limits.stale_encoder_s),
         "bumper stale": (streams.bumper_age_s, limits.stale_bumper_s if robot.bumpers else np.inf),
     }

@@ -148,9 +148,9 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
         assert isinstance(here.simulation.error, OSError)
     assert all(record.guard_result.wheel_speeds == STANDSTILL for record in silent)
     reasons = {reason for record in silent for reason in record.guard_result.reasons}
-    assert "infra-red stale" in reasons
+    assert "range sensors stale" in reasons
     # A busy machine may stall the loop as well, and one tick then stands for that.
-    assert reasons <= {"infra-red stale", "encoder stale", "ticks ceased"}
+    assert reasons <= {"range sensors stale", "encoder stale", "ticks ceased"}
 
 
 async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
 """Common parts of the steps that turn the wheels."""
 
-from hal.guard_reason import reasons_text
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError, StepFault
@@ -45,7 +44,7 @@ def standstill_cause(drive: TestDrive) -> str | None:
     if drive.stopped_by is not None:
         return drive.stopped_by
     if drive.applied == WheelSpeeds(0.0, 0.0):
-        return reasons_text(drive.reasons) or "set point too small for this mode"
+        return ", ".join(drive.reasons) or "set point too small for this mode"
     return None
 
 

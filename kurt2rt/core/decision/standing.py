@@ -43,7 +43,7 @@ class StandReason(StrEnum):
     FOREIGN_CONTROL = "foreign control"
     FOREIGN_TELEMETRY = "foreign telemetry"
     WHEELS_DISOBEY = "wheels disobey"
-    INFRARED_FROZEN = "infra-red frozen"
+    INFRARED_FROZEN = "range sensors frozen"
     ROBOT_FAULT = "robot fault"
     """The robot itself tells a fault; the health report has its text."""
     HALTED = "halted"

@@ -2,7 +2,6 @@
 
 import math
 
-from hal.guard_reason import reasons_text
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
 from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
@@ -71,8 +70,7 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     lines = []
     if facts.latched:
         lines.append(
-            f"The guard stopped the robot for {reasons_text(facts.reasons)}, and keeps it stopped until a teacher "
-            "says Go."
+            f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
         )
     if facts.cause == DecisionCause.RLA:
         lines += [*_rla_drives(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]

@@ -2,7 +2,6 @@
 
 import math
 
-from hal.guard_reason import reasons_text
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.runs.explain.attribution import border_distance
@@ -53,7 +52,7 @@ def format_guard(facts: DecisionFacts) -> str:
         return ""
     return (
         f"The guard let {_speeds(facts.granted)} through instead of {_speeds(facts.decided)}: "
-        f"{reasons_text(facts.reasons)}."
+        f"{', '.join(facts.reasons)}."
     )
 
 

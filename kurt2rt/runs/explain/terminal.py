@@ -5,7 +5,6 @@ import math
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from hal.guard_reason import reasons_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.knowledge.show.table_cells import printable
@@ -199,7 +198,7 @@ def _row(stretch: Stretch) -> list[str | Text]:
         Text(f"{what} ({stretch.behaviour})" if stretch.behaviour else what, style=_STYLES[stretch.kind]),
         f"{rlas} and {more} more" if more else rlas,
         "far off" if math.isinf(stretch.worst) else f"{stretch.worst:.2f} R" if stretch.rlas else "",
-        reasons_text(stretch.guarded),
+        ", ".join(stretch.guarded),
     ]
 
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import groupby
 
-from hal.guard_reason import reasons_text
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import DecisionCause
@@ -215,7 +214,7 @@ class _Reader:
     def _note(self, entry: TickEntry, told: Iterable[tuple[str, str]], at_s: float) -> None:
         self._notes += [Note(at_s, kind, text) for kind, text in told]
         if entry.grant.latched and not self._latched:
-            self._notes.append(Note(at_s, "alarm", reasons_text(entry.grant.reasons)))
+            self._notes.append(Note(at_s, "alarm", ", ".join(entry.grant.reasons)))
         self._latched = entry.grant.latched
 
     def _sample(self, entry: TickEntry, at_s: float) -> Sample:
@@ -272,7 +271,7 @@ def _counted(count: int, what: str) -> str:
 def _classified(entry: TickEntry) -> tuple[Kind, str]:
     decision = entry.decision
     if entry.grant.latched:
-        return Kind.STANDS, f"guard: {reasons_text(entry.grant.reasons)}"
+        return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
     if decision.action is not None:
         return (Kind.LED if decision.cause is DecisionCause.TEACHER else Kind.DRIVES), decision.action
     if decision.cause is DecisionCause.TOUCHES:
