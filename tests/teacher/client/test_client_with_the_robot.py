@@ -215,7 +215,8 @@ async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
             for _ in range(10):
                 stop = await robot.stop()
                 go = await robot.resume()
-                assert (stop.outcome, go.outcome) == (Outcome(ResultCode.STOPPED), Outcome(ResultCode.RESUMED))
+                # Its readings are old if this machine stalled, and the answer says so.
+                assert (stop.code, go.code) == (ResultCode.STOPPED, ResultCode.RESUMED)
             await state_where(robot, stopped=None)
 
 
