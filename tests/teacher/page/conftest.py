@@ -17,39 +17,31 @@ def the_browser() -> Iterator[Phone]:
         yield opened
 
 
-@pytest.fixture(scope="module")
-def phone_of_this_file(the_browser: Phone) -> Iterator[Phone]:
-    """Return the phone without data of the file before."""
-    the_browser.forget()
-    yield the_browser
-    the_browser.leave()
-
-
 @pytest.fixture
-def a_phone(phone_of_this_file: Phone, request: pytest.FixtureRequest) -> Iterator[Phone]:
+def a_phone(the_browser: Phone, request: pytest.FixtureRequest) -> Iterator[Phone]:
     """Return the phone, on the page of the test before unless that one failed."""
     failed = request.session.testsfailed
-    yield phone_of_this_file
+    yield the_browser
     if request.session.testsfailed > failed:
-        phone_of_this_file.leave()
+        the_browser.leave()
 
 
-@pytest.fixture(scope="module")
-def room(tmp_path_factory: pytest.TempPathFactory, phone_of_this_file: Phone) -> Iterator[Classroom]:
-    """One robot for all tests of a file."""
-    with classroom(tmp_path_factory.mktemp("classroom"), phone_of_this_file) as opened:
+@pytest.fixture(scope="package")
+def room(tmp_path_factory: pytest.TempPathFactory, the_browser: Phone) -> Iterator[Classroom]:
+    """One robot for all tests."""
+    with classroom(tmp_path_factory.mktemp("classroom"), the_browser) as opened:
         yield opened
 
 
-@pytest.fixture(scope="module")
-def lessons_of_this_file(phone_of_this_file: Phone) -> Iterator[Lesson]:
-    """One page and its server for all tests of a file."""
-    with lessons(phone_of_this_file) as opened:
+@pytest.fixture(scope="package")
+def the_lessons(the_browser: Phone) -> Iterator[Lesson]:
+    """One page and its server for all tests, because to load it takes longer than most of them."""
+    with lessons(the_browser) as opened:
         yield opened
 
 
 @pytest.fixture
-def a_lesson(a_phone: Phone, lessons_of_this_file: Lesson) -> Lesson:
+def a_lesson(a_phone: Phone, the_lessons: Lesson) -> Lesson:
     """Return the lesson before its begin."""
-    assert lessons_of_this_file.phone is a_phone
-    return lessons_of_this_file
+    assert the_lessons.phone is a_phone
+    return the_lessons

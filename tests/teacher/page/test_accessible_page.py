@@ -8,7 +8,7 @@ from tests.teacher.page.axe import violations
 from tests.teacher.page.fake_robot import A_HELLO, FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
-from tests.teacher.page.test_browser import LEAST_CONTRAST, TEXTS
+from tests.teacher.page.screens import LEAST_CONTRAST, TEXTS
 
 ASKS = {
     "cause": "unknown",

@@ -16,11 +16,10 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.teacher.client.answer import local_refusal
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.commands import PageCommand
-from kurt2rt.teacher.page.messages import Hidden, HoldPress, PageHeartbeat, PageMessage, Press, Release, StopNow
+from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.texts import PageNotice
 from kurt2rt.teacher.page.texts import text_of as page_text_of
-from tests.patience import PATIENCE_S
 from tests.teacher.page.clock import Clock
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 from tests.teacher.stand_in_robot import in_a_task_of_its_own
@@ -177,12 +176,6 @@ async def test_take_from_a_driving_page_ends_its_press(fixture: BridgeFixture) -
     assert fixture.told("let_go") == [("let_go",)]
 
 
-async def test_take_without_a_teacher_takes_the_robot(fixture: BridgeFixture, page: Page) -> None:
-    await page.see(teacher=None)
-    assert (await page.command("take"))["text"] == "take done"
-    assert fixture.told("take") == [("take",)]
-
-
 async def test_stop_from_a_page_without_control_is_sent(fixture: BridgeFixture) -> None:
     driver, watcher = Page(fixture), Page(fixture)
     await driver.see(teacher="phone")
@@ -203,14 +196,6 @@ async def test_heartbeats_keep_the_presence_for_300_ms(fixture: BridgeFixture, p
     assert fixture.robot.watching
     await fixture.wait(0.02)
     assert not fixture.robot.watching
-
-
-async def test_heartbeats_on_an_old_state_keep_no_presence(fixture: BridgeFixture, page: Page) -> None:
-    await page.see()
-    for _ in range(6):
-        await fixture.wait(0.1)
-        page.beat()
-    assert not fixture.robot.watching  # the page lives, and has seen nothing for 0.6 s
 
 
 async def test_heartbeats_without_control_keep_no_presence(fixture: BridgeFixture) -> None:
@@ -241,17 +226,6 @@ async def test_silence_of_250_ms_ends_the_press(fixture: BridgeFixture, page: Pa
     await fixture.wait(0.02)
     assert fixture.told("let_go") == [("let_go",)]
     assert page.last("let_go")["text"] == page_text_of(PageNotice.PRESS_LOST)
-
-
-async def test_held_action_is_sent_until_released(fixture: BridgeFixture, page: Page) -> None:
-    await page.see(teacher="phone")
-    for _ in range(3):
-        page.say(HoldPress(1, "forward", page.picture))
-    assert fixture.told("hold") == [("hold", "forward")] * 3
-    page.say(Release())
-    await settled()
-    page.say(HoldPress(1, "forward", page.picture))
-    assert [each[0] for each in fixture.told("hold", "let_go")] == ["hold"] * 3 + ["let_go"]
 
 
 async def test_presses_after_a_stall_do_not_drive(fixture: BridgeFixture, page: Page) -> None:
@@ -347,19 +321,6 @@ async def test_absence_stops_no_other_robot(fixture: BridgeFixture, page: Page, 
     assert fixture.told("stop") == []
 
 
-async def test_take_while_the_robot_drives_keeps_the_presence(fixture: BridgeFixture) -> None:
-    first, second = Page(fixture), Page(fixture)
-    await first.see(**DRIVING)
-    await second.see()
-    await second.command("take")
-    second.beat()
-    await fixture.wait(0.1)
-    assert fixture.told("stop") == []
-    assert fixture.robot.watching
-    await fixture.wait(0.3)
-    assert fixture.told("stop") == [("stop",)]
-
-
 @pytest.mark.parametrize(
     "how", [lambda page: page.say(Release()), lambda page: page.fixture.bridge.disconnect(page.connection)]
 )
@@ -439,15 +400,6 @@ async def test_command_on_an_old_state_is_refused(
     assert len(fixture.told(*NAMES)) == told
 
 
-async def test_take_on_an_old_state_is_refused(fixture: BridgeFixture) -> None:
-    first, second = Page(fixture), Page(fixture)
-    await first.see(teacher="phone")
-    await second.see()
-    fixture.clock.advance(1.1)
-    assert (await second.command("take"))["why"] == "stale"
-    assert second.last("page")["seat"] == "elsewhere"
-
-
 async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture, page: Page) -> None:
     await page.see(stopped=ActiveStop(StopReason.SAID_STOP, "phone"))
     shown = page.picture
@@ -463,15 +415,6 @@ async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture
     assert fixture.told("resume") == []
     await page.see()
     assert (await page.command("resume"))["accepted"]
-
-
-async def test_lessons_after_names_the_answered_command(page: Page) -> None:
-    await page.see()
-    answer = await page.command("answer", action="forward", level="basic", beside=False)
-    with anyio.fail_after(PATIENCE_S):
-        while page.last("lessons")["after"] < answer["done"]:
-            await settled()
-            await anyio.sleep(0.01)
 
 
 COMMANDS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
@@ -551,13 +494,3 @@ async def test_silent_robot_is_reported_with_its_place(fixture: BridgeFixture, p
     fixture.robot.trouble = CAUSE[2:-1]
     await fixture.wait(0.6)
     assert page.last("silent")["text"] == page_text_of(PageNotice.ROBOT_SILENT, place=PLACE) + CAUSE
-
-
-async def test_restarted_robot_is_asked_for_hello_again(fixture: BridgeFixture, page: Page) -> None:
-    await page.see()
-    before = len(fixture.told("hello"))
-    await page.see(boot=b"new!")
-    with anyio.fail_after(PATIENCE_S):
-        while len(fixture.told("hello")) == before:
-            await settled()
-            await anyio.sleep(0.01)

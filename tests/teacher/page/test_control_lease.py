@@ -1,21 +1,6 @@
 from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
 
 
-def test_connect_second_page_leaves_the_lease() -> None:
-    lease = ControlLease()
-    lease.connect(1, now_s=0.0)
-    lease.connect(2, now_s=0.5)
-    assert lease.holder == 1
-
-
-def test_claim_newest_page_has_the_lease() -> None:
-    lease = ControlLease()
-    lease.connect(1, now_s=0.0)
-    lease.claim(2, now_s=0.1)
-    lease.claim(3, now_s=0.2)
-    assert lease.holder == 3
-
-
 def test_connect_after_a_silent_holder_takes_the_lease() -> None:
     lease = ControlLease(silent_s=1.0)
     lease.connect(1, now_s=0.0)
@@ -66,10 +51,3 @@ def test_renew_on_an_old_state_holds_for_less() -> None:
     assert not presence.is_present(now_s=0.11)
     presence.renew(float("inf"), now_s=1.0)
     assert not presence.is_present(now_s=1.0)
-
-
-def test_end_ends_the_presence() -> None:
-    presence = OperatorPresence()
-    presence.renew(0.0, now_s=0.0)
-    presence.end()
-    assert not presence.is_present(now_s=0.0)

@@ -9,8 +9,7 @@ from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.screens import on_each_screen
 
 ACTIONS = (
     *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
@@ -21,7 +20,6 @@ APPRAISALS = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName(
 A_CHANGE = LessonLine(
     "c-1", "RLA 17 corrected: spin_left instead of back", "critic", 5, 9, "2026-11-21T12:04:00Z", False
 )
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 
 
 def fits(lesson: Lesson) -> None:
@@ -32,16 +30,6 @@ def fits(lesson: Lesson) -> None:
         ".filter((e) => e.getBoundingClientRect().right > edge).map((e) => e.textContent);"
     )
     assert over == []
-
-
-def look(lesson: Lesson, name: str) -> None:
-    """Assert contrast and targets on each screen."""
-    for size in SIZES:
-        lesson.phone.turn(size, touch=size != LAPTOP)
-        lesson.phone.show(f"11-{name}-{size[0]}x{size[1]}")
-        assert_handy(lesson.phone, size, "teach")
-        fits(lesson)
-    lesson.phone.turn(PORTRAIT)
 
 
 @pytest.fixture
@@ -78,7 +66,7 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> 
     lesson.reads("#opinion", "critic: thinks bad")
     assert not phone.shows("#role")
     assert not phone.shows("#changed")
-    look(lesson, "phase-4")
+    on_each_screen(phone, "11-phase-4", lambda: fits(lesson))
 
     lesson.show(phase=3, value=-0.001)
     phone.wait(lambda: not phone.shows("#critic"), "it is hidden before phase 4")
@@ -105,29 +93,9 @@ def test_phase_5_shows_opinion_and_last_change(lesson: Lesson) -> None:
     lesson.reads("#role", "not needed: 1 % of the driving was bad")
     phone.touch("#praise")
     phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
-    look(lesson, "phase-5")
     lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
     lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
     lesson.reads("#trusted", "only listens")
     assert not phone.shows("#role")
     fits(lesson)
     lesson.reads("#changed", "undone: RLA 17")
-
-
-def test_action_at_a_withdrawn_rla_is_an_answer(lesson: Lesson) -> None:
-    phone = lesson.phone
-    lesson.show(
-        cause="unknown",
-        action=None,
-        rla=None,
-        nearest=17,
-        nearest_action="ask",
-        nearest_value=-0.1,
-        left_m_s=0.0,
-        right_m_s=0.0,
-    )
-    lesson.reads("#sentence", "RLA 17 was marked wrong (value \N{MINUS SIGN}0.10), teach me again")
-    assert "RLA 17" in phone.text("#nearest")
-    phone.touch("[data-action=forward]")
-    phone.wait(lambda: lesson.told("answer") == ["forward"], "an answer")
-    assert lesson.told("correct") == []

@@ -49,8 +49,3 @@ def test_press_with_a_larger_id_ends_the_one_before() -> None:
     assert deadman.press(2, FRESH_S, now_s=0.1)
     assert not deadman.press(1, FRESH_S, now_s=0.15)
     assert deadman.is_held_by(2)
-
-
-def test_expired_without_a_press_is_false() -> None:
-    deadman = DeadmanSwitch()
-    assert not deadman.expired(now_s=1e9)

@@ -1,7 +1,6 @@
 """The exam, begun and shown on the page of a simulated robot."""
 
 import io
-from dataclasses import replace
 
 import pytest
 from matplotlib.figure import Figure
@@ -10,8 +9,7 @@ from kurt2rt.channel.protocol.exam_status import ExamStatus, WorldVerdict
 from tests.teacher.page.axe import violations
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.screens import on_each_screen
 
 DRIVES = ExamStatus(True, 0.42, "exam without teacher, world b")
 VERDICTS = (
@@ -54,7 +52,6 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(lesson: Lesson) -> None:
     lesson.reads("#exam-says", "42 %: exam without teacher, world b")
     assert ("examine",) in lesson.robot.told
     assert phone.run("return document.querySelector('#examine').disabled;")
-    assert_handy(phone, PORTRAIT, "more")
     phone.show("21-exam-runs")
     later(lesson, OVER)
     lesson.reads("#exam-verdict", "Passed in 1 of 2 worlds; 1 not judged.")
@@ -62,31 +59,8 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(lesson: Lesson) -> None:
     lesson.reads("#exam-worlds", "World cave: not judged")
     phone.wait(lambda: phone.run(LOADED), "the picture is there")
     assert violations(phone) == []
-    for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
-        phone.turn(size)
-        phone.wait(lambda: phone.run("return innerWidth") == size[0], "the screen is turned")  # noqa: B023
-        assert_handy(phone, size, "exam")
-        phone.show(f"22-exam-{size[0]}x{size[1]}")
-    phone.turn(PORTRAIT)
+    on_each_screen(phone, "22-exam")
     phone.touch("#close-exam")
     assert not phone.shows("#exam-result")
     phone.touch("#show-exam")
     assert phone.shows("#exam-result")
-
-
-def test_an_exam_without_a_verdict_says_why(lesson: Lesson) -> None:
-    lesson.phone.touch("#tab-more")
-    later(lesson, replace(DRIVES, running=False, trouble="the exam ended without a verdict (code -9); examine again"))
-    lesson.phone.touch("#examine")
-    lesson.reads("#exam-says", "the exam ended without a verdict (code -9); examine again")
-    assert not lesson.phone.shows("#show-exam")
-
-
-def test_a_real_robot_has_no_exam(a_lesson: Lesson) -> None:
-    def prepare(robot: FakeRobot) -> None:
-        robot.greeting = replace(robot.greeting, simulated=False)
-
-    a_lesson.begin(prepare, place=None)
-    a_lesson.phone.touch("#tab-more")
-    assert a_lesson.phone.shows("#export")
-    assert not a_lesson.phone.shows("#examine")

@@ -9,8 +9,7 @@ import pytest
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.phone import PORTRAIT
 from tests.teacher.page.test_served_page import served
 
 NAME, CONTENT = "wall-following-20261122T180000.zip", bytes(range(256)) * 20
@@ -39,9 +38,6 @@ def test_a_copy_is_downloaded_whole(lesson: Lesson, tmp_path: Path, button: str,
     assert (tmp_path / NAME).read_bytes() == CONTENT
     assert order in lesson.robot.told
     assert f"{NAME} (5 kB)" in phone.text("#saved")
-    for size in (PORTRAIT, SMALL):
-        phone.turn(size)
-        phone.show(f"20-downloaded-{size[0]}x{size[1]}")
 
 
 def test_a_file_is_uploaded_and_loaded(lesson: Lesson, tmp_path: Path) -> None:
@@ -53,8 +49,6 @@ def test_a_file_is_uploaded_and_loaded(lesson: Lesson, tmp_path: Path) -> None:
     (loaded,) = (each for each in lesson.robot.told if each[0] == "load")
     assert uploaded[2] == CONTENT
     assert loaded[1:] == (uploaded[1], hashlib.sha256(CONTENT).digest())
-    phone.middle("#load")
-    assert_handy(phone, PORTRAIT, "more")
     phone.show("24-loaded")
 
 

@@ -115,19 +115,6 @@ def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> 
     assert presses(driving) == []  # it was held before
 
 
-@pytest.mark.deep
-def test_second_held_gamepad_does_not_replace_the_first(driving: Lesson) -> None:
-    hold(driving)
-    phone = driving.phone
-    phone.run("pads[1] = {...pad, index: 1, buttons: pad.buttons.map((each) => ({...each}))};")
-    polled(phone)
-    phone.run("shoulder(false)")
-    phone.wait(lambda: not driving.robot.pressing, "the first lets go")
-    count = len(presses(driving))
-    polled(phone)
-    assert len(presses(driving)) == count
-
-
 def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
     driving.phone.run("pad.mapping = ''; tellPad('gamepadconnected')")
     driving.reads("#said", "its buttons are not known")
@@ -137,16 +124,6 @@ def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
 
 
 CROSS_UP = "pad.buttons[12] = {pressed: %s, touched: false, value: 0}"
-
-
-def test_gamepad_cross_holds_an_action_while_it_is_down(driving: Lesson) -> None:
-    phone = driving.phone
-    phone.run(CROSS_UP % "true")
-    phone.wait(lambda: driving.told("hold"), "the action is held")
-    assert set(driving.told("hold")) == {"forward"}
-    phone.run(CROSS_UP % "false")
-    phone.wait(lambda: driving.robot.told_of("let_go"), "it is released")
-    assert presses(driving) == []
 
 
 def test_gamepad_hold_ended_by_the_page_needs_a_new_press(driving: Lesson) -> None:

@@ -8,10 +8,9 @@ from kurt2rt.channel.protocol.health import HealthReport
 from tests.service.health.reports import ILL, SILENT, WELL
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.phone import PORTRAIT, SMALL
+from tests.teacher.page.screens import on_each_screen
 
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 CLASS = "return document.querySelector(arguments[0]).className;"
 
 
@@ -84,13 +83,6 @@ def test_faults_are_coloured_with_time_and_cure(lesson: Lesson) -> None:
     lesson.reads("#health-says", "sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
     lesson.reads("#health-troubles", f"{SILENT.what} (for 2 s): {SILENT.to_do}")
     lesson.reads("#health-troubles", "3 ticks missed in the last minute, 7 in all (for 3 min 5 s)")
-    for size in SIZES:
-        phone.turn(size, touch=size != LAPTOP)
-        phone.show(f"12-health-{size[0]}x{size[1]}")
-        assert_handy(phone, size, "teach")
+    on_each_screen(phone, "12-health")
     phone.touch("#close-health")
     assert not phone.shows("#health-table")
-    for size in SIZES:
-        phone.turn(size, touch=size != LAPTOP)
-        phone.show(f"12-bar-{size[0]}x{size[1]}")
-        assert_handy(phone, size, "teach")

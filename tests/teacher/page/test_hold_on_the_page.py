@@ -6,11 +6,10 @@ import pytest
 
 from kurt2rt.channel.protocol.state import HoldState
 from kurt2rt.core.decision.standing import Standing, StandReason
-from tests.teacher.page.classroom import Classroom
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LAPTOP, PORTRAIT, SMALL, Phone
-from tests.teacher.page.test_browser import assert_handy, begin
+from tests.teacher.page.phone import LAPTOP
+from tests.teacher.page.screens import on_each_screen
 
 HELD = HoldState(teacher="local", action="spin_left", lesson="local-hold-7", lessons=3, on=True)
 BUTTON = "[data-action=spin_left]"
@@ -78,12 +77,8 @@ def test_page_counts_the_lessons_and_undoes_them_together(lesson: Lesson) -> Non
     lesson.phone.finger_up()
     lesson.show(hold=replace(HELD, lessons=4, on=False), by_hand=False)
     lesson.reads("#said", "spin left was held, lessons: 4")
-    for size in (PORTRAIT, SMALL, LAPTOP):
-        lesson.phone.turn(size, touch=size != LAPTOP)
-        lesson.phone.show(f"17-lessons-by-holding-{size[0]}x{size[1]}")
-        assert_handy(lesson.phone, size, "teach")
+    on_each_screen(lesson.phone, "17-lessons-by-holding")
     with lesson.phone.in_the_dark():
-        lesson.phone.turn(PORTRAIT)
         lesson.phone.show("17-lessons-by-holding-dark")
     lesson.phone.touch("#undo-hold")
     lesson.phone.wait(lambda: lesson.told("undo") == ["local-hold-7"], "all are undone")
@@ -140,20 +135,3 @@ def test_digit_key_held_holds_and_tapped_corrects(lesson: Lesson) -> None:
     lesson.phone.key("keyUp", "Digit1")
     lesson.phone.wait(lambda: lesson.told("correct") == [first], "a correction")
     assert set(lesson.told("hold")) == {first}
-
-
-def test_held_button_drives_and_teaches_a_real_robot(a_phone: Phone, room: Classroom) -> None:
-    begin(a_phone, room)
-    if a_phone.has("#go:enabled"):
-        a_phone.touch("#go")
-    a_phone.wait(lambda: room.state().standing.asks, "the robot asks")
-    a_phone.finger_down(*a_phone.middle("[data-action=forward]"))
-    a_phone.wait(lambda: room.state().by_hand and room.state().left_m_s > 0.05, "it drives")
-    a_phone.wait(lambda: room.state().rlas > 0, "it is taught")
-    a_phone.finger_up()
-    a_phone.wait(lambda: not room.state().by_hand, "it is released")
-    assert room.state().stopped is None
-    a_phone.wait(lambda: a_phone.shows("#undo-hold"), "the lessons can be undone")
-    a_phone.show("17-real")
-    a_phone.touch("#undo-hold")
-    a_phone.wait(lambda: not room.state().rlas, "all are undone")

@@ -4,7 +4,6 @@ import asyncio
 import base64
 import contextlib
 import os
-import random
 import struct
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -12,12 +11,11 @@ from dataclasses import dataclass
 
 import anyio
 import pytest
-from websockets.exceptions import ConnectionClosed
 
 from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S
 from tests.channel.jumping_loop import run_jumping
 from tests.patience import PATIENCE_S
-from tests.teacher.page.test_served_page import Served, hear, see, served
+from tests.teacher.page.test_served_page import Served, see, served
 
 _KEY = base64.b64encode(bytes(16)).decode()
 _TEXT, _BINARY, _CLOSE, _PING, _PONG = 1, 2, 8, 9, 10
@@ -161,29 +159,3 @@ def test_junk_handshakes_leave_no_traceback(said: Callable[[], str]) -> None:
         assert said() == ""
 
     run_jumping(story)
-
-
-async def test_bytes_at_random_leave_no_traceback(said: Callable[[], str]) -> None:
-    chance = random.Random(2004)
-    async with served() as page:
-        for number in range(60):
-            async with line_to(page) as line:
-                if number % 2:
-                    await line.send(handshake(page))
-                    await line.reader.readuntil(b"\r\n\r\n")
-                await line.send(chance.randbytes(chance.randrange(1, 300)))
-                if number % 3 == 0:
-                    line.writer.transport.abort()
-        await still_serves(page)
-    assert said() == ""
-
-
-async def test_binary_message_closes_with_1008(said: Callable[[], str]) -> None:
-    async with served() as page, page.websocket() as socket:
-        await see(page, socket)
-        await socket.send(b"\x00")
-        with pytest.raises(ConnectionClosed) as closed:
-            await hear(socket, "nothing")
-        assert closed.value.rcvd is not None
-        assert closed.value.rcvd.code == 1008
-    assert said() == ""

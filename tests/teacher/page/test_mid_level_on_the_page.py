@@ -10,15 +10,14 @@ from tests.channel.states import COMMANDS, SURPRISED
 from tests.teacher.page.classroom import classroom
 from tests.teacher.page.fake_robot import A_HELLO, FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
+from tests.teacher.page.screens import on_each_screen
 from tests.teacher.page.test_critic_on_the_page import ACTIONS
 
 TURNS = ("straight_on", "turn_left", "turn_right")
 ASKS = replace(COMMANDS, rla=None, distance=7.0, asks=True, nearest_behaviour="turn_right")
 READY = "return !document.querySelector('.turned, [aria-busy=true]');"
 CALM = "return !document.querySelector('.pending, .saved:not(#said)') && !document.getAnimations().length;"
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 
 
 class Junction:
@@ -53,15 +52,6 @@ class Junction:
         self.phone.wait(lambda: self.phone.run(READY), "it may be taught")
         self.phone.touch(f"[data-way={way}]")
 
-    def look(self, name: str, tab: str = "teach", sizes: tuple[tuple[int, int], ...] = SIZES) -> None:
-        """Assert contrast and targets on these screens."""
-        for size in sizes:
-            self.phone.turn(size, touch=size != LAPTOP)
-            self.phone.wait(lambda: self.phone.run(CALM), "the colours of an answer are gone")
-            self.phone.show(f"13-{name}-{size[0]}x{size[1]}")
-            assert_handy(self.phone, size, tab)
-        self.phone.turn(PORTRAIT)
-
 
 @pytest.fixture
 def junction(a_lesson: Lesson) -> Junction:
@@ -82,7 +72,6 @@ def test_line_has_the_choice_of_the_mid_level_and_its_symbols(junction: Junction
     assert phone.has('#strip[aria-label="passed: straight, left, left, straight, right, straight, left"]')
     arrows = phone.run("return [...document.querySelectorAll('#strip i')].map((e) => e.title);")
     assert arrows[-3:] == ["straight", "left", "turn left"]  # time goes to the right, what it wants now is last
-    junction.look("way-known")
 
 
 def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
@@ -98,7 +87,7 @@ def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
         assert box["width"] > 90
         assert box["height"] > 70
     assert not phone.shows("#actions")
-    junction.look("which-way")
+    on_each_screen(phone, "13-which-way")
     junction.touch_way("turn_right")
     phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", False)], "an answer to the mid level")
     assert junction.told("correct") == []
@@ -135,7 +124,6 @@ def test_question_of_the_basic_level_changes_the_buttons(junction: Junction) -> 
     phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
     phone.wait(lambda: ("back", "late") in junction.told("correct"), "a correction of the basic level")
-    junction.look("basic-level", sizes=(SMALL,))
 
 
 def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) -> None:
@@ -150,7 +138,6 @@ def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) ->
     junction.show(surprise=replace(SURPRISED, tick=tick + 10, times=6.0, new=True))
     junction.reads("#surprise", "surprise 6.0 \N{MULTIPLICATION SIGN} after mid-level RLA 12, new")
     assert phone.has("#surprise.loud")
-    junction.look("very-surprised", sizes=(SMALL,))
     junction.show(tick=tick + 1000)
     phone.wait(lambda: not phone.shows("#surprise"), "it is over")
 
@@ -172,7 +159,8 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     junction.reads("#goal-now", "on the way to door: 2 ways left")
     junction.reads("#mid-sentence", "turn left because it leads to door, mid-level RLA 12")
     assert phone.text("#plan").endswith("turn left, straight on")
-    junction.look("goals", "goals")
+    phone.wait(lambda: phone.run(CALM), "the colours of an answer are gone")
+    on_each_screen(phone, "13-goals")
     phone.touch("[data-name=lift] [aria-label^='Is here']")
     assert junction.told("be_at") == []
     phone.touch("[data-name=lift] [aria-label^='Is here']")
@@ -181,22 +169,6 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     phone.wait(lambda: any(each[0] == "stop_seeking" for each in junction.robot.told), "no goal any more")
     phone.touch("#tab-teach")
     assert phone.complaints() == []
-
-
-def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> None:
-    phone, robot = junction.phone, junction.robot
-    robot.greeting = replace(robot.greeting, mid=MidIntroduction("place", 6, 0.5), boot=b"again")
-    here = ("x_m 1.80", "y_m 3.62", "east 0.00", "north 1.00", "wall_left 1.00", "wall_right 0.00")
-    there = ("x_m 1.80", "y_m 5.40", "east -1.00", "north 0.00", "wall_left 0.50", "wall_right 0.00")
-    junction.show(boot=b"again", mid=replace(COMMANDS, distance=0.08, radius=0.5, here=here, there=here))
-    junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 0.08 off, R 0.50")
-    junction.reads("#strip", "x 1.80 m, y 3.62 m, \N{UPWARDS ARROW}, wall left")
-    junction.look("place", sizes=(SMALL,))
-    asks = replace(COMMANDS, rla=None, asks=True, distance=1.8, radius=0.5, here=here, there=there)
-    junction.show(mid=asks, asks_at="mid", cause="unknown", action=None, rla=None, nearest=12, distance=1.8, radius=0.5)
-    junction.reads("#differences", "x 1.80 m, y 5.40 m, \N{LEFTWARDS ARROW}, wall left 0.50")
-    assert phone.text("#gauge-text") == "1.80 off, R 0.50"
-    junction.look("which-way-from-a-place", sizes=(SMALL,))
 
 
 def test_robot_without_a_mid_level_shows_none(a_lesson: Lesson) -> None:
@@ -213,6 +185,7 @@ def test_robot_without_a_mid_level_shows_none(a_lesson: Lesson) -> None:
         assert phone.shows("#actions")
 
 
+@pytest.mark.deep
 def test_a_robot_in_the_streets_is_taught_which_way_and_how(
     a_phone: Phone, tmp_path_factory: pytest.TempPathFactory
 ) -> None:

@@ -56,16 +56,6 @@ def test_addresses_for_phones_come_by_reach(
     assert addresses_for_phones(AUTO) == told
 
 
-def test_addresses_for_phones_named_one_is_told_alone() -> None:
-    assert addresses_for_phones("robot.lan") == ("robot.lan",)
-
-
-def test_addresses_interface_that_ends_meanwhile_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    set_interfaces(monkeypatch, {"wlan0": (LAN, "192.168.1.5")})
-    monkeypatch.setattr(psutil, "net_if_stats", dict)
-    assert addresses_for_phones(AUTO) == ()
-
-
 @pytest.mark.deep
 @pytest.mark.parametrize(
     ("interface", "told"),

@@ -17,13 +17,6 @@ def visible() -> PageConnection:
     return connection
 
 
-def test_set_state_replaces_the_state_that_waits() -> None:
-    connection = visible()
-    for tick in range(10):
-        connection.set_state(b"boot", {"kind": "state", "tick": tick})
-    assert [each["tick"] for each in sent_by(connection)] == [9]
-
-
 def test_pop_hidden_page_gets_messages_and_no_states() -> None:
     connection = PageConnection(1)
     connection.set_state(b"boot", {"kind": "state", "tick": 1})
@@ -59,10 +52,3 @@ def test_send_to_a_full_queue_loses_the_page() -> None:
         connection.send({"kind": "answer", "number": number})
     assert connection.lost
     assert len(sent_by(connection)) == 64
-
-
-def test_pop_state_echoes_the_heartbeat() -> None:
-    connection = visible()
-    connection.heartbeat = (5000.0, 10.0)
-    connection.set_state(b"boot", {"kind": "state", "tick": 1})
-    assert sent_by(connection, now_s=10.02)[0]["echo"] == [5000.0, 20.0]

@@ -4,10 +4,8 @@ import pytest
 
 from kurt2rt.core.decision.standing import Standing
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.screens import on_each_screen
 
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 DRIVE_FROM, DRIVE_TO, EACH = 1000, 1600, 100
 MINUTE = 6000
 _PICK = """
@@ -51,11 +49,7 @@ def test_rewind_stops_the_robot_and_shows_the_past(lesson: Lesson) -> None:
     assert not phone.shows("#robot-view")
     phone.run(_PICK, -3)
     lesson.reads("#rewind-says", "3.0 s before it stood: RLA 13 ")
-    for size in SIZES:
-        phone.turn(size, touch=size != LAPTOP)
-        phone.show(f"17-rewind-{size[0]}x{size[1]}")
-        assert_handy(phone, size, "teach")
-    phone.turn(PORTRAIT)
+    on_each_screen(phone, "17-rewind")
     phone.touch("#rewind-close")
     phone.wait(lambda: phone.shows("#robot-view"), "the view of before is back")
     assert not phone.shows("#world-view")
@@ -111,20 +105,6 @@ def test_then_go_does_not_lift_a_stop_after_the_touch(lesson: Lesson) -> None:
     lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].pending"), "the lesson is answered")
     lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].saved"), "the page has gone on")
     assert not any("resume" in str(message) for message in lesson.phone.run("return window.sent;"))
-
-
-def test_go_leaves_the_past(lesson: Lesson) -> None:
-    enter(lesson)
-    lesson.show(standing=Standing(needs_resume=True))
-    lesson.phone.wait(lambda: lesson.phone.has("#go:enabled"), "it can be touched")
-    lesson.phone.touch("#go")
-    lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
-
-
-def test_a_robot_that_drives_on_leaves_the_past(lesson: Lesson) -> None:
-    enter(lesson)
-    lesson.show(tick=DRIVE_TO + 2000, left_m_s=0.3, right_m_s=0.3)
-    lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
 
 
 def test_space_stops_while_the_slider_has_the_focus(lesson: Lesson) -> None:

@@ -1,6 +1,6 @@
 import math
 
-from kurt2rt.teacher.page.sent_states import SentState, SentStates
+from kurt2rt.teacher.page.sent_states import SentStates
 
 
 def test_may_send_without_acknowledgement_ends_at_the_window() -> None:
@@ -11,13 +11,6 @@ def test_may_send_without_acknowledgement_ends_at_the_window() -> None:
     assert not states.may_send
     states.acknowledge(2)
     assert states.may_send
-
-
-def test_get_returns_a_state_by_its_number() -> None:
-    states = SentStates()
-    number = states.add(b"boot", 1234, now_s=5.0)
-    assert states.get(number) == SentState(b"boot", 1234, 5.0)
-    assert states.age_s(number, now_s=5.25) == 0.25
 
 
 def test_age_s_unknown_or_forgotten_state_is_infinite() -> None:

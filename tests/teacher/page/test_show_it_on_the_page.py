@@ -8,10 +8,8 @@ from kurt2rt.channel.protocol.state import ShownState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.screens import on_each_screen
 
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 SHOWN = ShownState("local", 91, ("forward", "spin_left", "forward"), (100, 280, 340), (180, 60, 240))
 
 
@@ -26,23 +24,12 @@ def lesson(a_lesson: Lesson) -> Lesson:
 def test_shown_segments_are_taught_but_for_those_left_out(lesson: Lesson) -> None:
     phone = lesson.phone
     assert "Teach" in phone.text("#teach-shown")
+    on_each_screen(phone, "18-show-it")
     phone.touch("#shown-list button:nth-child(2)")
     assert phone.text("#teach-shown") == "Teach 2 of 3"
     phone.touch("#teach-shown")
     phone.wait(lambda: lesson.robot.told_of("teach_shown"), "the confirmation is sent")
     assert lesson.robot.told_of("teach_shown") == [("teach_shown", (0, 2), 91)]
-
-
-def test_nothing_chosen_cannot_be_taught(lesson: Lesson) -> None:
-    for number in (1, 2, 3):
-        lesson.phone.touch(f"#shown-list button:nth-child({number})")
-    assert lesson.phone.has("#teach-shown:disabled")
-
-
-def test_not_now_leaves_the_drive_untaught(lesson: Lesson) -> None:
-    lesson.phone.touch("#drop-shown")
-    lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")
-    assert lesson.robot.told_of("teach_shown") == []
 
 
 def test_not_now_is_not_asked_again_at_the_next_stand(lesson: Lesson) -> None:
@@ -62,11 +49,3 @@ def test_not_now_is_not_asked_again_at_the_next_stand(lesson: Lesson) -> None:
 def test_drive_of_no_one_or_of_another_is_not_offered(lesson: Lesson, shown: ShownState | None) -> None:
     lesson.show(shown=shown)
     lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")
-
-
-def test_shown_segments_fit_every_screen(lesson: Lesson) -> None:
-    for size in SIZES:
-        lesson.phone.turn(size, touch=size != LAPTOP)
-        lesson.phone.show(f"18-show it-{size[0]}x{size[1]}")
-        assert_handy(lesson.phone, size, "drive")
-    lesson.phone.turn(PORTRAIT)

@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from kurt2rt.core.teaching.progress import Progress
 from tests.teacher.page.fake_robot import A_SIMULATION, FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL, Phone
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.phone import Phone
+from tests.teacher.page.screens import on_each_screen
 
 CHOOSE = """
 const e = document.querySelector(arguments[0]);
@@ -40,13 +39,7 @@ def test_another_world_and_task_are_two_choices_and_a_touch(lesson: Lesson) -> N
     choose(phone, "#sim-task", "wall_following")
     choose(phone, "#sim-world", "rooms")
     choose(phone, "#sim-number", "9007")
-    for size in (PORTRAIT, SMALL, LANDSCAPE, LAPTOP):
-        phone.turn(size)
-        phone.wait(lambda: phone.run("return innerWidth") == size[0], "the screen is turned")  # noqa: B023
-        phone.middle("#sim-fresh")
-        assert_handy(phone, size, "more")
-        phone.show(f"23-simulation-{size[0]}x{size[1]}")
-    phone.turn(PORTRAIT)
+    on_each_screen(phone, "23-simulation")
     phone.touch("#sim-change")
     phone.wait(lambda: len(lesson.told("next_run")) == 2, "both were told")
     assert [each[1:] for each in lesson.robot.told if each[0] == "next_run"] == [
@@ -80,29 +73,6 @@ def test_speed_is_chosen_and_the_reached_one_shown(lesson: Lesson) -> None:
     assert phone.run("return document.querySelector('#sim-task').value;") == "eight"
     phone.middle("#sim-speed")
     phone.show("25-speed")
-
-
-@pytest.mark.parametrize(("unit", "shown"), [("laps", "laps 2.3"), ("m", "distance 2 m")])
-def test_progress_shows_the_task_s_unit(a_lesson: Lesson, unit: str, shown: str) -> None:
-    def prepare(robot: FakeRobot) -> None:
-        robot.simulated = replace(A_SIMULATION, progress=2.34, unit=unit)
-
-    a_lesson.begin(prepare, progress=Progress(60, 87, 3), rlas=12)
-    a_lesson.reads("#progress", f"by itself 87 % · asks 3 a minute · rules 12 · {shown}")
-    a_lesson.phone.show(f"26-measure-{unit}")
-
-
-def test_generated_world_is_chosen_by_its_number(a_lesson: Lesson) -> None:
-    def prepare(robot: FakeRobot) -> None:
-        robot.simulated = replace(A_SIMULATION, world="rooms-17")
-
-    a_lesson.begin(prepare)
-    phone = a_lesson.phone
-    phone.touch("#tab-more")
-    values = "return ['#sim-world', '#sim-number'].map((each) => document.querySelector(each).value);"
-    phone.wait(lambda: phone.run(values) == ["rooms", "17"], "it shows the world")
-    choose(phone, "#sim-number", "-3")
-    assert phone.run("return document.querySelector('#sim-change').disabled;")
 
 
 def test_a_real_robot_has_no_simulation(a_lesson: Lesson) -> None:

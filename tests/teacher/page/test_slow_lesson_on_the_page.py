@@ -2,8 +2,6 @@
 
 from kurt2rt.core.decision.standing import Standing
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
 
 _CHOOSE = """
 const speed = document.querySelector('#lesson-speed');
@@ -13,25 +11,12 @@ speed.dispatchEvent(new Event('input'));
 _CHOSEN = "return document.querySelector('#lesson-speed').value;"
 
 
-def test_lesson_speed_is_chosen_on_the_page(a_lesson: Lesson) -> None:
+def test_lesson_speed_is_chosen_and_shown_in_place_of_the_phase_s_name(a_lesson: Lesson) -> None:
     a_lesson.begin(standing=Standing(), phase=2)
     a_lesson.phone.touch("#tab-more")
     assert a_lesson.phone.run(_CHOSEN) == "100"
     a_lesson.phone.run(_CHOOSE, "60")
     a_lesson.phone.wait(lambda: a_lesson.told("lesson_speed") == [60], "the robot is told")
-
-
-def test_slow_lesson_is_shown_in_place_of_the_phase_s_name(a_lesson: Lesson) -> None:
-    a_lesson.begin(standing=Standing(), phase=2, lesson_speed=0.35)
+    a_lesson.show(lesson_speed=0.35)
     a_lesson.reads("#phase-name", "slow, 35 %")
-    a_lesson.phone.touch("#tab-more")
     a_lesson.phone.wait(lambda: a_lesson.phone.run(_CHOSEN) == "35", "a speed between those of the list is shown")
-    for size in (PORTRAIT, SMALL, LAPTOP):
-        a_lesson.phone.turn(size, touch=size != LAPTOP)
-        a_lesson.phone.show(f"18-slow-lesson-{size[0]}x{size[1]}")
-        assert_handy(a_lesson.phone, size, "more")
-
-
-def test_later_phase_shows_its_name_at_any_lesson_speed(a_lesson: Lesson) -> None:
-    a_lesson.begin(standing=Standing(), phase=3, lesson_speed=0.35)
-    a_lesson.reads("#phase-name", "einforcement")

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.standing import Standing
 from tests.teacher.page.fake_robot import A_HELLO, FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.teacher.page.test_critic_on_the_page import ACTIONS
-from tests.teacher.page.test_show_it_on_the_page import SHOWN
 
 _TOPS = """
 return [...document.querySelectorAll("#actions button, #rewards button, #tabs button, #go, #stop")]
@@ -45,13 +44,6 @@ def test_a_long_answer_moves_no_button(lesson: Lesson, size: tuple[int, int]) ->
     phone.show(f"20-long-answer-{size[0]}x{size[1]}")
     assert phone.run(_TOPS) == before
     phone.turn(PORTRAIT)
-
-
-def test_a_drive_that_is_offered_moves_no_button(lesson: Lesson) -> None:
-    before = lesson.phone.run(_TOPS)
-    lesson.show(standing=Standing(StandReason.STOPPED), shown=SHOWN, left_m_s=0.0, right_m_s=0.0)
-    lesson.phone.wait(lambda: lesson.phone.shows("#shown"), "the drive is offered")
-    assert lesson.phone.run(_TOPS) == before
 
 
 def test_a_phone_shows_all_actions_without_scrolling(lesson: Lesson) -> None:

@@ -56,11 +56,6 @@ def test_page_says_the_task_and_what_the_phase_changes(a_lesson: Lesson) -> None
     assert all(each.endswith(".") for each in told)
 
 
-def test_page_of_a_robot_that_tells_no_sentence_names_the_task(a_lesson: Lesson) -> None:
-    a_lesson.begin()
-    assert a_lesson.phone.text("h1").endswith("wall following")
-
-
 def test_progress_is_told_with_rules_and_lessons_apart(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare, rlas=12, lessons=14, progress=Progress(0, None, 0))
     phone = a_lesson.phone
@@ -107,10 +102,6 @@ def test_trail_outlives_a_reload_and_ends_with_the_robot_program(a_lesson: Lesso
         stay(phone)
     reload(phone)
     assert {2.0, 3.0} <= xs(phone)
-    a_lesson.show(place=replace(A_PLACE, x_m=2.5))
-    stay(phone)
-    reload(phone)
-    assert {2.0, 3.0, 2.5} <= xs(phone)  # the page after the first reload went on with the trail
     a_lesson.begin(prepare)
     reload(phone)
     assert xs(phone) == {A_PLACE.x_m}
@@ -130,16 +121,6 @@ def reload(phone: Phone) -> None:
 def xs(phone: Phone) -> set[float]:
     """Return the x of each stored point of the trail, in metres."""
     return {x for _, x, _ in phone.run("return JSON.parse(sessionStorage.getItem('kurt2rt.trail')).points;")}
-
-
-def test_view_changed_before_the_first_frame_throws_nothing(a_lesson: Lesson) -> None:
-    a_lesson.begin(prepare)
-    phone = a_lesson.phone
-    phone.complaints()
-    phone.reload()
-    phone.run("setTimeout(() => { for (const _ of '12') document.querySelector('#view').click(); });")
-    phone.pass_time(0.1)  # timers run before frames
-    assert phone.complaints() == []
 
 
 def test_important_sentences_are_never_cut(a_lesson: Lesson) -> None:

@@ -5,10 +5,8 @@ import pytest
 from tests.runs.explain.helpers import facts, level, story
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
-from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
-from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.screens import on_each_screen
 
-SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
 NEAREST, RUNNER_UP = story(1, (120.0, 80.0), "forward", 5.0), story(2, (90.0, 88.0), "spin_left", 34.0)
 DECIDED = facts(level((123.0, 84.0), NEAREST, RUNNER_UP))
 
@@ -30,11 +28,7 @@ def test_a_touch_on_its_sentence_tells_why_it_does_so(lesson: Lesson) -> None:
     rows = phone.text("#explanation-features").splitlines()
     assert len(rows) == 3  # a heading, and both features, the one that differs more first
     assert rows[1].split()[1:] == ["84", "80", "64", "%"]
-    for size in SIZES:
-        phone.turn(size, touch=size != LAPTOP)
-        phone.show(f"15-why-{size[0]}x{size[1]}")
-        assert_handy(phone, size, "teach")
-    phone.turn(PORTRAIT)
+    on_each_screen(phone, "15-why")
     phone.touch("#close-explanation")
     assert not phone.shows("#explanation")
 
