@@ -11,8 +11,6 @@ from kurt2rt.core.rla.events import (
     LessonUndone,
     RlaCreated,
     RlaRewarded,
-    SessionBegun,
-    SessionEnded,
     TeachingEvent,
 )
 from kurt2rt.core.rla.phase import Phase
@@ -115,13 +113,6 @@ def test_agreement_undone_signal_is_removed() -> None:
     one.on_event(LessonRedone("mistaken", origin()))
     one.on_event(LessonRedone("unknown", origin()))
     assert one.share_for(-1) == 2 / 3
-
-
-def test_agreement_ignores_sessions_and_unknown_appraisals() -> None:
-    one = agreement()
-    one.replay([SessionBegun("monday", origin()), SessionEnded(3, origin()), appraisal(1, "splendid")])
-    assert [one.count_for(value) for value in (-1, 0, 1)] == [0, 0, 0]
-    assert one.share_for(1) is None
 
 
 def said_at(tick: int, *, right: bool) -> TeachingEvent:

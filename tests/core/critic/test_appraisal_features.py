@@ -225,10 +225,6 @@ def test_circling_ends_with_a_repositioning_or_a_gap() -> None:
     assert of.perceive(readings(0.1, 0.3, age_s=9.0), driving=True).circling == 0.0
 
 
-def test_circling_without_setting_is_zero() -> None:
-    assert after(60.0, perception(), readings(0.1, 0.3)).circling == 0.0
-
-
 # Grazing
 
 
@@ -247,10 +243,6 @@ def test_grazing_is_about_the_sides() -> None:
     assert of.perceive(readings(s10=0.11, s13=0.11, s15=0.11), driving=True).grazing == 0.0
 
 
-def test_grazing_without_setting_is_zero() -> None:
-    assert perception().perceive(readings(s1=0.11), driving=True).grazing == 0.0
-
-
 # Spun
 
 
@@ -267,10 +259,6 @@ def test_spun_lasts_as_configured_after_a_turn_on_the_spot() -> None:
 
 def test_spun_is_not_about_curves() -> None:
     assert after(2.0, spinning(), readings(0.1, 0.3)).spun == 0.0
-
-
-def test_spun_without_setting_is_zero() -> None:
-    assert after(2.0, perception(), readings(-0.3, 0.3)).spun == 0.0
 
 
 def test_circling_fades_over_the_way_as_configured() -> None:

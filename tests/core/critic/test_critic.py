@@ -1,10 +1,8 @@
 """Opinions of a taught critic."""
 
-import numpy as np
 import pytest
 
 from kurt2rt.core.critic.critic import Critic
-from kurt2rt.core.critic.settings import NAMES
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated
 from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -75,11 +73,3 @@ def test_critic_searches_every_few_ticks_and_after_lessons() -> None:
     now = critic.appraise(18, CLOSE)
     assert now is not None
     assert now.appraisal == "neutral"
-
-
-def test_critic_vector_follows_the_feature_order() -> None:
-    critic = Critic(system(), SETTINGS)
-    assert critic.to_vector(FREE).tolist() == list(FREE)[: len(NAMES)]
-    assert critic.to_vector(FREE).dtype == np.float64
-    assert critic.appraisals == ("bad", "neutral", "good")
-    assert 0 < critic.insert_beyond <= SETTINGS.learning.radius

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from hal.settings import SettingsError, load_settings
+from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import (
     CIRCLING,
     GRAZING,
@@ -16,7 +16,6 @@ from kurt2rt.core.critic.settings import (
     CriticSettings,
     load_critic,
 )
-from kurt2rt.core.task_settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
 
@@ -29,15 +28,6 @@ def checked(content: dict[str, Any]) -> CriticSettings:
     return CriticSettings.model_validate_json(json.dumps(content))
 
 
-def test_builtin_critic_has_bad_neutral_and_good() -> None:
-    assert load_critic().values == {"bad": -1, "neutral": 0, "good": 1}
-
-
-@pytest.mark.parametrize(("task", "critic"), [("fleeing", "fleeing_with_memory"), ("eight", "eight_with_memory")])
-def test_shipped_task_has_its_own_critic(task: str, critic: str) -> None:
-    assert load_task(task).critic == critic
-
-
 def test_circling_feature_needs_its_settings() -> None:
     content = json.loads(load_critic("eight_with_memory").model_dump_json())
     assert checked(content).names == (*NAMES, CIRCLING, GRAZING)
@@ -47,11 +37,6 @@ def test_circling_feature_needs_its_settings() -> None:
     del content["learning"]["weights"]["circling"]
     assert checked(content).names == (*NAMES, GRAZING)
     assert checked(content).feature_hash != load_critic("eight_with_memory").feature_hash
-
-
-def test_load_critic_unknown_name_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"stern: .* critics.*: basic, eight_with_memory"):
-        load_critic("stern")
 
 
 def test_feature_hash_depends_on_features_only() -> None:
@@ -84,11 +69,3 @@ def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights\.lift_m: .*: left_m, front_m, right_m"):
         load_critic(str(wrong))
-
-
-def test_critic_settings_may_have_more_appraisals(tmp_path: Path) -> None:
-    mine = tmp_path / "mine.yaml"
-    long = {"name": "bad_for_long", "value": -1, "trace_s": 3.0}
-    mine.write_text(json.dumps(CONTENT | {"appraisals": [*CONTENT["appraisals"], long]}))
-    assert load_settings(mine, CriticSettings).values["bad_for_long"] == -1
-    assert load_critic(str(mine)).weight_vector.shape == (len(NAMES),)

@@ -13,10 +13,6 @@ from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.critic.sides import critic_of, sides_of
 
 
-def test_critic_of_kurt2_is_the_shipped_one() -> None:
-    assert critic_of("basic", load_robot()) == load_critic("basic")
-
-
 def test_sides_of_kurt2_look_where_the_shipped_critic_says() -> None:
     shipped, found = load_critic("basic").perception.sensors, sides_of(load_robot().infrared)
     assert shipped is not None
@@ -38,11 +34,6 @@ def test_critic_of_each_robot_fits_its_sensors(robot: str) -> None:
     critic = critic_of("basic", settings)
     assert AppraisalPerception(critic, settings)._left_baseline_m == math.inf
     assert critic.feature_hash != load_critic("basic").feature_hash
-
-
-def test_critic_with_own_settings_is_taken_as_it_is() -> None:
-    own = load_critic("basic")
-    assert critic_of(own, load_robot("school")) is own
 
 
 def in_sectors(**changed: object) -> CriticSettings:
@@ -70,13 +61,6 @@ def test_sectors_take_the_sensors_that_look_into_them() -> None:
 def test_sector_without_a_sensor_is_refused_by_its_side() -> None:
     with pytest.raises(SettingsError, match=r"critic: left: .*from 68 to 112 degrees.*-40, -20, 0"):
         critic_of(in_sectors(), load_robot("school"))
-
-
-def test_critic_without_sides_goes_by_headings() -> None:
-    content = load_critic("basic").model_dump(mode="json")
-    del content["perception"]["sensors"]
-    critic, robot = CriticSettings.model_validate_json(json.dumps(content)), load_robot("school")
-    assert critic_of(critic, robot).perception.sensors == sides_of(robot.infrared)
 
 
 def test_sensors_and_sectors_together_are_refused() -> None:

@@ -44,9 +44,6 @@ BY_RLA = Decision(FORWARD, DecisionCause.RLA, "forward", 1, None, True)
 ASKS = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
 
-UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)
-
-
 class LatchingDesk(ChannelFixture):
     """A robot that drives forward by its first RLA, until the guard has a word for it to stand."""
 

@@ -35,30 +35,9 @@ def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = Non
     return make_trace(recent, tick, trace_ticks=TRACE_TICKS, since=since or {})
 
 
-def test_trace_decays_with_age() -> None:
-    shares = trace(drives(7, 7, 8), 3)
-    assert shares == {7: pytest.approx((1 - D) * (D + D * D)), 8: pytest.approx(1 - D)}
-
-
-def test_trace_long_drive_has_nearly_all() -> None:
-    shares = trace(drives(*[7] * 1000), 1000)
-    assert shares == {7: pytest.approx(1.0, abs=0.002)}
-
-
-def test_trace_late_signal_means_its_tick() -> None:
-    recent = drives(*[7] * 100, *[8] * 100)
-    assert trace(recent, 100).keys() == {7}
-    assert trace(recent, 101)[8] == pytest.approx(1 - D)
-
-
 def test_trace_standstill_and_unknown_have_no_share() -> None:
     assert trace(drives(None, None, None), 3) == {}
     assert trace(drives(7, 8, 7, answers=False), 3) == {}
-
-
-def test_trace_standstill_decays_earlier_shares() -> None:
-    shares = trace(drives(*[7] * 50, *[None] * 20), 70)
-    assert shares == {7: pytest.approx((1 - D**50) * D**20)}
 
 
 def test_trace_starts_with_the_present_action() -> None:

@@ -67,15 +67,6 @@ def test_td_lambda_pause_ends_step_and_trace() -> None:
     assert learner.value(1) == V0
 
 
-def test_td_lambda_apply_credits_adds_and_subtracts() -> None:
-    learner = rule()
-    bookings = [CreditUpdate(Credit(1, -0.3), 0), CreditUpdate(Credit(2, 0.2), 0)]
-    learner.apply_credits(bookings, 1)
-    assert (learner.value(1), learner.value(2)) == pytest.approx((0.2, 0.7))
-    learner.apply_credits(bookings, -1)
-    assert (learner.value(1), learner.value(2)) == pytest.approx((V0, V0))
-
-
 def test_td_lambda_reset_and_restore_previous() -> None:
     learner = rule()
     learner.learn(-1, {1: 1.0})
@@ -96,14 +87,6 @@ def test_td_lambda_new_action_has_no_old_trace() -> None:
     learner.reset(1)
     drive(learner, 2, 11, 20)
     assert learner.value(1) == V0
-
-
-def test_td_lambda_restore_continues_saved_values() -> None:
-    learner = rule()
-    learner.learn(-1, HALF_EACH)
-    again = rule()
-    again.restore(Statistics(values=dict(learner.values)))
-    assert [again.value(rla_id) for rla_id in (1, 2, 3)] == [learner.value(rla_id) for rla_id in (1, 2, 3)]
 
 
 def test_td_lambda_trace_size_is_bounded() -> None:

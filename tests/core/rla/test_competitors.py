@@ -30,25 +30,6 @@ def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
     return [rla.rla_id for rla in system.neighbours(rla_id_of(system, rla_id), count)]
 
 
-def test_competitors_single_rla_competes_with_itself() -> None:
-    system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 1e-300)))
-    assert system.competitors(rla_id_of(system, 1)) == (rla_id_of(system, 1),)
-    assert competing(system, 2) == [2]
-
-
-def test_competitors_share_level_behaviour_condition() -> None:
-    system = system_of(
-        created(1, (1.0, 2.0)),
-        created(2, (1.0, 2.0), behaviour="turn_left"),
-        created(3, (1.0, 2.0), "bad", level=CRITIC),
-        created(4, (1.0, 2.0), "back"),
-        created(5, (2.0, 1.0)),
-        created(6, (1.0, 2.0), "left"),
-    )
-    assert competing(system, 1) == competing(system, 4) == competing(system, 6) == [1, 4, 6]
-    assert (competing(system, 2), competing(system, 3)) == ([2], [3])
-
-
 def test_competitors_follow_all_changes() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0)), created(3, (0.0, 0.0)))
     system.apply(replaced(2, "back", "forward"))
@@ -60,15 +41,6 @@ def test_competitors_follow_all_changes() -> None:
     assert system.competitors(gone) == system.competitors(rla_id_of(system, 2))  # those on its place
     system.apply(undone("deletion-1"))
     assert competing(system, 3) == [1, 2, 3]
-
-
-def test_competitors_last_one_deleted_is_empty() -> None:
-    system = system_of(created(1, (0.0, 0.0)))
-    gone = rla_id_of(system, 1)
-    system.apply(deleted(1))
-    assert system.competitors(gone) == ()
-    system.apply(created(2, (0.0, 0.0)))
-    assert competing(system, 2) == [2]
 
 
 def test_neighbours_have_other_conditions_nearest_first() -> None:

@@ -3,23 +3,19 @@
 import numpy as np
 import pytest
 
-from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import (
     BeAt,
-    Command,
     Correct,
     DeleteRla,
     NameSituation,
-    Pursue,
     Resume,
     Stop,
     Teach,
     Undo,
 )
-from kurt2rt.core.tick_record import TickRecord
 from tests.core.rla.helpers import created
 from tests.core.test_tick_learning import Drive
 from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
@@ -57,19 +53,6 @@ def test_expectation_is_learned_in_phases_1_and_5(drive: Drive) -> None:
     assert expected.count == 3
     assert 30 <= expected.ticks < 31
     assert expected.mean[:18].tolist() == [float(FAR)] * 18  # the readings
-
-
-def test_surprise_is_reported_in_the_tick_of_the_end(drive: Drive) -> None:
-    comes_and_goes(drive, times=8)
-    drive.run(counts=NEAR, ticks=30)
-    as_ever = drive.run(counts=FAR)
-    assert as_ever.surprise is not None
-    assert (as_ever.surprise.rla_id, as_ever.surprise.follow_up, as_ever.surprise.surprising) == (1, 2, False)
-    assert drive.run(ticks=11).surprise is None
-    drive.run(counts=NEAR, ticks=30)
-    other = drive.run(counts=FAR + 60)
-    assert other.surprise is not None
-    assert other.surprise.surprising
 
 
 def test_expectation_stop_is_no_follow_up(drive: Drive) -> None:
@@ -137,21 +120,6 @@ def test_mid_expectation_is_the_next_history(town: Town) -> None:
     assert 30 < expected.ticks < 60
 
 
-def test_mid_expectation_follow_up_is_taught_later(town: Town) -> None:
-    for quarters in (1, 1, -1, 1, 1, -1, 1):
-        town.junction(quarters)
-    assert town.run().decision.asks_at == MID
-    assert town.runtime.snapshot().expectations[4].count == 6
-    town.run(the_way("turn_right"))
-    assert town.runtime.snapshot().expectations[4].count == 7
-
-
-def test_mid_expectation_ignores_manual_driving(town: Town) -> None:
-    town.run(Pursue("p", "Ann", "turn_left"))
-    town.junction(1)
-    assert town.runtime.expectations.get(4) is None
-
-
 def test_mid_expectation_ignores_repositioning(town: Town) -> None:
     town.junction(1)
     assert town.runtime.snapshot().expectations[4].count == 1
@@ -184,29 +152,3 @@ def test_mid_expectation_ignores_corrected_rla(town: Town) -> None:
     town.junction(1)
     counts = {rla_id: each.count for rla_id, each in town.runtime.snapshot().expectations.items() if rla_id > 3}
     assert counts == {4: 1, 5: 1}
-
-
-def test_mid_unusual_junction_is_a_surprise() -> None:
-    town = ToldOf()
-    town.way_to_the_first_junction()
-    for number in range(3 * LENGTH):
-        if town.run().decision.asks_at == MID:
-            town.run(the_way("straight_on", f"way-{number}"))
-        town.junction()
-    town.surprises.clear()
-    town.junction()
-    town.junction(1)
-    assert [(each.level, each.surprising) for each in town.surprises] == [(MID, False), (MID, True)]
-
-
-class ToldOf(Town):
-    """Keeps the surprises that its ticks tell."""
-
-    def __init__(self) -> None:
-        self.surprises: list[Surprise] = []
-        super().__init__()
-
-    def run(self, *commands: Command) -> TickRecord:
-        record = super().run(*commands)
-        self.surprises += [] if record.surprise is None else [record.surprise]
-        return record

@@ -5,13 +5,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.event_error import EventFault
-from kurt2rt.core.rla.events import Appraised, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import ASK, CRITIC, rla_title
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
-from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, undone, withdrawn
+from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone, withdrawn
 from tests.examples import examples
 
 CRITICS = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))
@@ -60,13 +59,6 @@ def test_levels_share_ids_lessons_and_undo() -> None:
     system.apply_all([undone("deletion-2"), undone("correction-2"), undone("lesson-1")])
     assert [(rla.rla_id, rla.action) for rla in system.rlas_at(CRITIC)] == [(2, "good")]
     assert len(system) == 1
-
-
-def test_condition_length_must_fit_the_level() -> None:
-    system = system_of()
-    for event in (created(1, (0.0, 0.0), level=CRITIC), created(1, (0.0, 0.0, 0.0))):
-        assert refused_by(system, event).fault is EventFault.BAD_CONDITION
-    assert (system.next_id, system.lessons) == (1, ())
 
 
 def test_critic_rlas_without_critic_are_kept_unmatched() -> None:
@@ -122,14 +114,6 @@ def test_ask_is_no_teachable_action(event: TeachingEvent, fault: EventFault) -> 
     before = system.knowledge_hash(), system.lessons, system.next_id
     assert refused_by(system, event).fault is fault
     assert (system.knowledge_hash(), system.lessons, system.next_id) == before
-
-
-def test_appraised_event_changes_nothing() -> None:
-    system = system_of(created(1, (0.0, 0.0)))
-    before = system.knowledge_hash(), system.lessons
-    system.apply(Appraised("good", 1, 99, origin("same", 100)))
-    assert (system.knowledge_hash(), system.lessons) == before
-    assert system.why_not_undo("same") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="same")
 
 
 def test_rla_title_by_behaviour_and_level() -> None:

@@ -148,26 +148,6 @@ def test_condition_index_5000_clusters_equal_brute_force(spread: float) -> None:
         assert_right(index, rows, rows[position] + chance.normal(0.0, spread, 72))
 
 
-def test_condition_index_duplicates_older_wins() -> None:
-    index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0), (1.0, 2.0)])
-    situation = np.array([1.0, 2.0])
-    first = index.nearest(situation)
-    index.remove(1)
-    second = index.nearest(situation)
-    assert first is not None
-    assert second is not None
-    assert (first.position, first.runner_up) == (1, 2)
-    assert (second.position, second.runner_up) == (1, 2)
-    assert second.distance == second.runner_up_distance == 0.0
-
-
-def test_condition_index_reinserted_row_is_older_again() -> None:
-    index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0)])
-    index.remove(1)
-    index.insert(1, (1.0, 2.0))
-    assert index.nearest(np.array([1.0, 2.0])) == (1, 0.0, 2, 0.0)
-
-
 def test_condition_index_removed_far_row_leaves_no_bound() -> None:
     near = clustered(200, 30.0)
     rows = [tuple(row) for row in near.tolist()]
@@ -194,13 +174,6 @@ def test_condition_index_unfit_condition_is_refused(condition: Point, problem: s
         index.append(condition)
     assert len(index) == 1
     assert_right(index, np.array([[1.0, 2.0]]), np.array([1.0, 2.5]))
-
-
-@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.integers(1, 20))
-def test_exact_square_equals_row_of_exact_distances(values: list[float], rows: int) -> None:
-    row = np.array(values)
-    distances = exact_distances(np.tile(row, (rows, 1)), np.zeros(len(row)))
-    assert set(distances.tolist()) == {math.sqrt(exact_square(row))}
 
 
 @pytest.mark.parametrize("dimensions", [1, 72, 10_000])

@@ -5,7 +5,7 @@ import math
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.lesson_history import lesson_stack
-from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, named, refused_by, undone
@@ -51,9 +51,3 @@ def test_named_situation_unfit_for_level_is_refused() -> None:
     assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.BAD_SITUATION
     assert refused_by(knows, named("door", (1.0, math.nan, 0.0), MID)).fault is EventFault.NOT_FINITE
     assert knows.lessons == ()
-
-
-def test_named_situation_of_unknown_level_is_kept() -> None:
-    knows = system()
-    knows.apply(named("fine", (1.0,), CRITIC))
-    assert knows.named_situations(CRITIC) == {"fine": (1.0,)}

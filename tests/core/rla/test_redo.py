@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import Appraised, LessonRedone, TeachingEvent
-from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, named, origin, refused_by, replaced, rewarded, undone, withdrawn
@@ -78,11 +77,6 @@ def test_redo_standing_or_unknown_lesson_is_refused() -> None:
     system = system_of(FIRST)
     assert system.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
     assert system.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
-
-
-def test_redo_reward_counts_again() -> None:
-    system = system_of(FIRST, rewarded(1, 1, "praise"), undone("praise"), redone("praise"))
-    assert system.appraisal(1) == Appraisal(rewards=1)
 
 
 @examples(100)

@@ -44,12 +44,6 @@ def actions(system: RlaSystem) -> dict[int, str]:
     return {rla.rla_id: rla.action for rla in system.rlas}
 
 
-def test_match_without_rlas_is_none() -> None:
-    system = system_of()
-    assert system.match(np.zeros(2)) is None
-    assert (len(system), system.next_id, system.rlas, system.get(1)) == (0, 1, (), None)
-
-
 def test_match_returns_nearest_and_runner_up() -> None:
     system = system_of(created(1, (0.0, 0.0), "back"), created(2, (10.0, 0.0)), created(3, (0.0, 30.0)))
     match = system.match(np.array([7.0, 4.0]))
@@ -61,12 +55,6 @@ def test_match_returns_nearest_and_runner_up() -> None:
     assert match.runner_up is not None
     assert match.runner_up.rla_id == 1
     assert match.runner_up_distance == pytest.approx(math.sqrt(65), rel=1e-6)
-
-
-def test_match_single_rla_has_no_runner_up() -> None:
-    match = system_of(created(1, (0.0, 0.0))).match(np.array([100.0, 0.0]))
-    assert match is not None
-    assert (match.known, match.runner_up, match.runner_up_distance) == (False, None, math.inf)
 
 
 def test_match_own_radius_overrides_the_system() -> None:
@@ -104,22 +92,6 @@ def test_action_replaced_keeps_all_but_action_and_origin() -> None:
     match = system.match(np.array([1.0, 2.0]))
     assert match is not None
     assert match.rla.rla_id == 1  # still the older one
-
-
-def test_rla_deleted_id_is_not_used_again() -> None:
-    system = system_of(created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), created(3, (9.5, 0.0)))
-    system.apply(deleted(3))
-    assert system.next_id == 4
-    assert system.get(3) is None
-    assert refused_by(system, created(3, (9.5, 0.0), command_id="again")).fault is EventFault.RLA_EXISTS
-    system.apply(deleted(1))
-    match = system.match(np.array([0.0, 0.0]))
-    assert match is not None
-    assert match.rla.rla_id == 2
-    system.apply(created(4, (0.0, 0.0), "back"))
-    assert actions(system) == {2: "forward", 4: "back"}
-    system.apply(replaced(4, "stand", "back"))  # positions have moved up, ids have not
-    assert actions(system) == {2: "forward", 4: "stand"}
 
 
 @pytest.mark.parametrize(
@@ -203,10 +175,6 @@ def test_knowledge_hash_ignores_teachers_and_history() -> None:
     assert detour.knowledge_hash() == direct.knowledge_hash()
 
 
-def test_knowledge_hash_depends_on_numbers_only() -> None:
-    assert system_of(created(1, (1, 2))).knowledge_hash() == system_of(created(1, (1.0, 2.0))).knowledge_hash()
-
-
 def test_match_weights_scale_distances_only() -> None:
     system = RlaSystem(2, 10.0, np.array([1.0, 0.5]))
     system.apply(created(1, (0.0, 0.0)))
@@ -218,42 +186,9 @@ def test_match_weights_scale_distances_only() -> None:
     assert match.rla.condition == (0.0, 0.0)
 
 
-def test_match_weight_zero_ignores_a_feature() -> None:
-    system = RlaSystem(2, 10.0, np.array([1.0, 0.0]))
-    system.apply(created(1, (0.0, 1e9)))
-    match = system.match(np.array([4.0, -1e9]))
-    assert match is not None
-    assert match.distance == 4.0
-
-
 def test_knowledge_hash_unnamed_behaviour_is_unchanged() -> None:
     system = system_of(created(1, (1.0, 2.0), "forward"), created(2, (3.0, 4.0), "back", radius=5.0))
     assert system.knowledge_hash() == "b9a93b6acbee93fddd099ccc5652afdfc5d62e6f1f64db3d67a8c0b3e27715b9"
-
-
-def test_match_compares_rlas_of_one_behaviour() -> None:
-    system = system_of(
-        created(1, (0.0, 0.0), "forward", behaviour="straight_on"),
-        created(2, (0.0, 0.0), "back", behaviour="turn_left"),
-        created(3, (3.0, 0.0), "spin_left", behaviour="turn_left"),
-    )
-    match = system.match(np.array([0.0, 0.0]), "turn_left")
-    assert match is not None
-    assert match.runner_up is not None
-    assert (match.rla.rla_id, match.distance, match.runner_up.rla_id) == (2, 0.0, 3)
-    assert system.match(np.array([0.0, 0.0])) is None
-    assert system.match(np.array([0.0, 0.0]), "turn_right") is None
-    system.apply(deleted(2))
-    match = system.match(np.array([0.0, 0.0]), "turn_left")
-    assert match is not None
-    assert (match.rla.rla_id, match.runner_up) == (3, None)
-
-
-def test_action_replaced_keeps_the_behaviour() -> None:
-    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), replaced(1, "back", "forward"))
-    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("back", "turn_left")]
-    system.apply(undone("correction-1"))
-    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("forward", "turn_left")]
 
 
 _BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
@@ -306,14 +241,6 @@ def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
 
 
-def test_nearest_first_without_rlas_of_the_behaviour_is_empty() -> None:
-    system = system_of(created(1, (0.0, 0.0)))
-    here = np.array([0.0, 0.0])
-    assert (system.nearest_first(here, "turn_left"), system.candidate_count("turn_left")) == ((), 0)
-    system.apply(deleted(1))
-    assert (system.nearest_first(here), system.candidate_count()) == ((), 0)
-
-
 def test_lessons_about_one_rla_are_separate() -> None:
     lessons = (
         created(1, (0.0, 0.0)),
@@ -341,12 +268,3 @@ def test_match_radius_share_narrows_the_basic_level_only() -> None:
     matches = [system.match(np.array([place]), level=level) for place, level in places]
     assert [match.radius for match in matches if match is not None] == [5.0, 10.0, 10.0]
     assert [system.whole_radius(each.rla) for each in (here, own, elsewhere)] == [10.0, 20.0, 10.0]
-
-
-@pytest.mark.parametrize(("share", "known"), [(0.5, False), (1.0, True)])
-def test_match_beyond_the_share_of_its_radius_is_unknown(share: float, known: bool) -> None:
-    system = system_of(created(1, (0.0, 0.0)))
-    system.radius_share = share
-    match = system.match(np.array([4.0, 0.0]))
-    assert match is not None
-    assert match.known is known

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.symbol_index import SymbolIndex, hamming_distances
+from kurt2rt.core.rla.symbol_index import SymbolIndex
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone
 
 Symbols = tuple[float, ...]
@@ -35,14 +35,6 @@ def index_of(histories: list[Symbols]) -> SymbolIndex:
 
 
 @given(HISTORIES)
-def test_hamming_distances_count_different_places(histories: list[Symbols]) -> None:
-    one, rows = histories[0], np.array(histories)
-    assert hamming_distances(rows, np.array(one)).tolist() == [
-        sum(a != b for a, b in zip(one, other, strict=True)) for other in histories
-    ]
-
-
-@given(HISTORIES)
 def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols]) -> None:
     *taught, here = [*histories, histories[0]]
     index = index_of(taught)
@@ -55,17 +47,6 @@ def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols]) -> No
         others = index.distances(np.array(here))[1:].tolist()
         assert nearest.runner_up_distance == min(others)
         assert nearest.runner_up == 1 + others.index(min(others))
-
-
-def test_symbol_index_insert_and_remove_keep_order() -> None:
-    index = index_of([(1.0, 1.0), (3.0, 3.0)])
-    index.insert(1, (2.0, 2.0))
-    here = np.array([2.0, 3.0])
-    assert index.distances(here).tolist() == [2.0, 1.0, 1.0]
-    index.remove(0)
-    assert len(index) == 2
-    assert index.distances(here).tolist() == [1.0, 1.0]
-    assert SymbolIndex(2).nearest(here) is None
 
 
 @pytest.mark.parametrize(("condition", "told"), [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "fin")])

@@ -10,17 +10,15 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
-from kurt2rt.core.rla.events import Lesson, RlaLesson, TeachingEvent
-from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
-from kurt2rt.core.rla.reward_counts import Appraisal
-from kurt2rt.core.rla.rla import ASK, CRITIC
+from kurt2rt.core.rla.events import Lesson, TeachingEvent
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, rewarded, session, undone, withdrawn
 from tests.examples import examples
 
 FIRST = created(1, (0.0, 0.0))
 SECOND = created(2, (0.0, 0.0), "back")
-THIRD = created(3, (9.0, 0.0), "left")
 
 
 def system_of(*events: TeachingEvent) -> RlaSystem:
@@ -33,41 +31,6 @@ def winner(system: RlaSystem, x: float, y: float) -> tuple[int, str]:
     match = system.match(np.array([x, y]))
     assert match is not None
     return match.rla.rla_id, match.rla.action
-
-
-def test_undo_creation_removes_rla_and_keeps_its_id_used() -> None:
-    system = system_of(FIRST, SECOND, THIRD, undone("lesson-3"))
-    assert [rla.rla_id for rla in system.rlas] == [1, 2]
-    assert (system.get(3), system.next_id) == (None, 4)
-    assert winner(system, 9.0, 0.0) == (1, "forward")
-
-
-def test_undo_replacement_restores_action_and_origin() -> None:
-    system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"), undone("b"))
-    rla = system.get(1)
-    assert rla is not None
-    assert (rla.action, rla.origin.command_id) == ("back", "a")
-    system.apply(undone("a"))
-    assert system.get(1) == FIRST.rla
-
-
-def test_undo_deletion_restores_rla_and_rewards() -> None:
-    system = system_of(FIRST, rewarded(1, 1, "r1"), rewarded(1, -1, "r2"), rewarded(1, 1, "r3"), SECOND, THIRD)
-    system.apply(deleted(1))
-    assert winner(system, 0.0, 0.0) == (2, "back")
-    system.apply(undone("deletion-1"))
-    assert winner(system, 0.0, 0.0) == (1, "forward")  # of two equally near ones the older
-    assert system.appraisal(1) == Appraisal(rewards=2, punishments=1)
-    assert system.rlas == (FIRST.rla, SECOND.rla, THIRD.rla)
-
-
-def test_undo_reward_is_not_counted() -> None:
-    system = system_of(FIRST, rewarded(1, 1, "praise"), rewarded(1, -1, "blame"))
-    assert system.appraisal(1) == (1, 1)
-    system.apply(undone("blame"))
-    assert system.appraisal(1) == (1, 0)
-    system.apply(undone("praise"))
-    assert system.appraisal(1) == system.appraisal(77) == (0, 0)
 
 
 def test_undo_withdrawal_restores_the_action() -> None:
@@ -122,15 +85,6 @@ def test_sessions_change_no_rla_and_add_up() -> None:
     assert system.teaching_ticks == 6030
 
 
-@pytest.mark.parametrize(
-    "lesson",
-    [FIRST, replaced(1, "back", "forward"), withdrawn(1), deleted(1), rewarded(1)],
-    ids=lambda each: type(each).__name__,
-)
-def test_rla_id_of_each_lesson_is_that_of_its_rla(lesson: RlaLesson) -> None:
-    assert rla_id_of(lesson) == 1
-
-
 @pytest.mark.parametrize("event", [replaced(1, "back", "forward"), deleted(1), rewarded(1)])
 def test_lesson_records_have_the_behaviour_of_their_rla(event: Lesson) -> None:
     system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), event)
@@ -141,11 +95,6 @@ def test_lesson_records_have_the_behaviour_of_their_rla(event: Lesson) -> None:
     assert (problem.code, problem.fields["says"]) == (RefusalCode.TAUGHT_AFTER, newest.text)
     system.apply(undone(event.origin.command_id))
     assert system.lessons[-1] == replace(newest, undone=True)
-
-
-def test_lesson_records_have_the_level_of_their_rla() -> None:
-    system = system_of(created(1, (0.0, 0.0), "bad", level=CRITIC), replaced(1, "good", "bad"), deleted(1))
-    assert [record.level for record in system.lessons] == [CRITIC] * 3
 
 
 _STEPS = st.lists(

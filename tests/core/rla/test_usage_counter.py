@@ -23,13 +23,6 @@ def test_usage_counter_standstill_ends_the_chain() -> None:
     assert not statistics.transitions
 
 
-def test_usage_counter_continues_saved_counts() -> None:
-    statistics = StatisticsCounter({1: 10}, {(1, 2): 4})
-    drive(statistics, [1, 2])
-    assert statistics.uses == {1: 11, 2: 1}
-    assert statistics.transitions == {(1, 2): 5}
-
-
 def test_usage_counter_drop_deleted_removes_edges() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, 2, 3, 1, 2])

@@ -66,13 +66,6 @@ def test_late_message_drives_until_35_ticks_after_its_state(age: int, driven: in
     assert hands.driven_ticks() == list(range(NOW, NOW + driven))
 
 
-def test_messages_that_keep_coming_keep_the_hand_on_the_wheels(hands: Hands) -> None:
-    for tick in range(NOW, NOW + 290, LEASE - 1):
-        assert not hands.authority.is_press_over(press())
-        hands.drive(tick)
-        assert hands.driven_ticks(tick, tick + LEASE - 1) == list(range(tick, tick + LEASE - 1))
-
-
 def test_unchanging_state_ends_the_drive(hands: Hands) -> None:
     for tick in range(NOW, NOW + REACH):
         hands.drive(tick, seen=NOW)
@@ -85,27 +78,6 @@ def test_ended_press_stays_over_and_the_next_drives(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     hands.authority.expire(NOW + LEASE)
     assert [hands.authority.is_press_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
-
-
-def test_is_manual_after_the_lease_changes_nothing(hands: Hands) -> None:
-    hands.drive(NOW, hold=7)
-    assert not hands.authority.is_manual(NOW + LEASE)
-    assert not hands.authority.is_press_over(press(7))
-    assert hands.authority.is_manual(NOW + LEASE - 1)
-
-
-def test_is_manual_of_a_run_without_teacher_changes_nothing(hands: Hands) -> None:
-    hands.authority.run("a", NOW, 1000)
-    assert not hands.authority.is_manual(NOW)
-    hands.authority.renew_presence("Ann", NOW, NOW)
-    assert hands.authority.is_manual(NOW)
-
-
-def test_expire_within_the_lease_keeps_the_press(hands: Hands) -> None:
-    hands.drive(NOW, hold=7)
-    hands.authority.expire(NOW + LEASE - 1)
-    assert hands.authority.is_manual(NOW + LEASE - 1)
-    assert not hands.authority.is_press_over(press(7))
 
 
 def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> None:
@@ -136,11 +108,6 @@ def test_a_late_message_takes_nothing_from_a_newer_one(hands: Hands) -> None:
     assert hands.authority.is_present(NOW + LEASE - 1)
 
 
-def test_drive_renews_presence(hands: Hands) -> None:
-    hands.drive(NOW)
-    assert [hands.authority.is_present(NOW + LEASE - 1), hands.authority.is_present(NOW + LEASE)] == [True, False]
-
-
 def test_only_the_teacher_is_anybody(hands: Hands) -> None:
     hands.authority.renew_presence("Ben", NOW, NOW)
     assert not hands.authority.is_present(NOW)
@@ -148,16 +115,6 @@ def test_only_the_teacher_is_anybody(hands: Hands) -> None:
 
 def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
     assert Hands(attended=False).authority.is_present(NOW)
-
-
-def test_first_teacher_gets_authority_and_the_next_is_refused() -> None:
-    authority = ControlAuthority({}, attended=True)
-    assert authority.refusal_for("Ann") is None
-    authority.claim("Ann")
-    authority.claim("Ben")
-    assert authority.teacher == "Ann"
-    assert authority.refusal_for("Ann") is None
-    assert authority.refusal_for("Ben") == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
 def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -> None:

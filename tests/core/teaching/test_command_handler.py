@@ -106,12 +106,6 @@ def test_teach_puts_an_rla_on_the_present_situation() -> None:
     assert lesson.small.at(2.5).action == "a"
 
 
-def test_teach_close_to_an_rla_inserts_another_one() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    lesson.say(teach("b"), place=0.001)
-    assert lesson.actions == {1: "a", 2: "b"}
-
-
 def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
     """A second RLA there would be accepted and never win, because the older one does."""
     lesson = Lesson()
@@ -146,18 +140,6 @@ def test_the_border_is_a_share_of_the_nearest_rlas_own_radius() -> None:
     assert lesson.actions == {1: "a", 2: "b"}
 
 
-def test_a_correction_before_the_first_lesson_teaches() -> None:
-    lesson = Lesson()
-    assert lesson.say(correct("b")).outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="b")
-
-
-def test_a_correction_to_what_it_says_already_changes_nothing() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    result = lesson.say(correct("a"), place=1.0)
-    assert result.outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="a")
-    assert len(lesson.events) == 1
-
-
 def test_rla_is_replaced_or_deleted_by_its_id() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).outcome == Outcome.of(
@@ -171,14 +153,6 @@ def test_rla_is_replaced_or_deleted_by_its_id() -> None:
     assert lesson.actions == {2: "c"}
 
 
-def test_stop_and_resume() -> None:
-    lesson = Lesson()
-    assert lesson.say(stop()).outcome == Outcome(ResultCode.STOPPED)
-    assert lesson.school.active_stop
-    assert lesson.say(resume()).outcome == Outcome(ResultCode.RESUMED)
-    assert not lesson.school.active_stop
-
-
 def test_phase_is_in_the_origin_of_later_lessons() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "t-1"), place=0.0)
@@ -189,7 +163,10 @@ def test_phase_is_in_the_origin_of_later_lessons() -> None:
     assert [event.origin.phase for event in lesson.events] == [Phase.SUPERVISED, Phase.CORRECTIONS]
 
 
-@pytest.mark.parametrize("command", [teach("fly"), correct("fly"), replace_action(1, "fly")])
+@pytest.mark.parametrize(
+    "command",
+    [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)],
+)
 def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(command, place=100.0)
@@ -382,20 +359,6 @@ def test_undo_without_name_undoes_newest_first() -> None:
     assert result.outcome == Outcome(RefusalCode.NO_LESSON)
 
 
-def test_undo_by_name_keeps_later_lessons_of_other_rlas() -> None:
-    lesson = Lesson()
-    lesson.say(teach("a", "1"), place=0.0)
-    lesson.say(teach("b", "2"), place=50.0)
-    assert lesson.say(Undo("u-1", "Ann", "1")).accepted
-    assert lesson.actions == {2: "b"}
-
-
-def test_an_undo_says_what_it_took_back() -> None:
-    lesson = Lesson()
-    lesson.say(teach("a", "1"))
-    assert lesson.say(Undo("u-1", "Ann")).outcome == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: a")
-
-
 def test_impossible_undo_is_refused_unchanged() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"), place=0.0)
@@ -516,13 +479,6 @@ def test_run_behaviour_ends_after_its_ticks_and_stands() -> None:
     assert lesson.school.active_stop == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
 
 
-def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
-    lesson = Lesson()
-    result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
-    assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
-    assert not lesson.school.active_stop
-
-
 def test_resume_ends_what_the_hand_was_doing() -> None:
     lesson = Lesson()
     lesson.drive(hold=4)
@@ -583,14 +539,6 @@ def test_command_from_before_a_stop_does_not_move_the_robot(
     assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
     assert lesson.school.active_stop
     assert lesson.say(late(lesson.tick)).accepted
-
-
-def test_end_of_session_keeps_the_earlier_stop() -> None:
-    lesson = Lesson()
-    lesson.say(BeginSession("1", "Ann", "monday"))
-    lesson.say(Stop("2", "Ben"))
-    lesson.say(EndSession("3", "Ann"))
-    assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Ben")
 
 
 # Several taught behaviours.

@@ -7,15 +7,6 @@ from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositione
 from tests.teacher.helpers import resume, stop, teach
 
 
-def test_commands_are_taken_once_and_in_the_order_they_came() -> None:
-    inbox = TeacherInbox()
-    commands = (teach("a"), stop(), resume())
-    for command in commands:
-        inbox.put(command)
-    assert inbox.pop_all() == commands
-    assert inbox.pop_all() == ()
-
-
 def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
     inbox = TeacherInbox(capacity=2)
     inbox.put(teach("a"))

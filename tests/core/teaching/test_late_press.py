@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.core.outcome import RefusalCode, ResultCode
-from kurt2rt.core.teaching.commands import CommandResult, Correct, Undo
+from kurt2rt.core.teaching.commands import CommandResult, Correct
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.teaching.teacher_delay import CORRECTION_PART, DEFAULT_TICKS
 from tests.core.test_tick import Corridor
@@ -131,12 +131,6 @@ def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:
 def test_blind_robot_takes_a_late_press(driving: Corridor) -> None:
     driving.robot.infrared_age_s = 1.0
     assert given(driving, press(driving)).accepted
-
-
-def test_late_press_can_be_undone(driving: Corridor) -> None:
-    given(driving, press(driving))
-    assert driving.run(100, Undo("u", "Ann")).results[0].accepted
-    assert [rla.action for rla in driving.system.rlas] == ["forward"]
 
 
 def test_correction_without_the_option_is_about_the_present(driving: Corridor) -> None:

@@ -41,10 +41,6 @@ def test_question_keeps_the_words_it_is_asked_with() -> None:
     assert ask(system.match(here), here, system.weights, ("s9",), words=words).words is words
 
 
-def test_it_names_an_own_radius() -> None:
-    assert asked((0,) * 7, (100,) * 7, radius=50.0).radius == 50.0
-
-
 def test_features_that_do_not_differ_are_not_named() -> None:
     assert [each.name for each in asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0)).differing] == ["s3"]
 
@@ -52,11 +48,6 @@ def test_features_that_do_not_differ_are_not_named() -> None:
 def test_of_features_that_differ_alike_the_first_come_first() -> None:
     names = [each.name for each in asked((0,) * 7, (9, -9, 9, 9, 9, 9, 9)).differing]
     assert names == ["s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)"]
-
-
-def test_before_the_first_lesson_it_asks_without_comparison() -> None:
-    question = ask(None, np.zeros(7), np.ones(7), NAMES)
-    assert (question.nearest_rla, question.action, question.differing) == (None, None, ())
 
 
 def test_question_is_about_the_active_behaviour() -> None:
