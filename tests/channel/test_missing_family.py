@@ -9,10 +9,8 @@ import pytest
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.pairing import pair
 from kurt2rt.channel.server.endpoint import open_endpoint
-from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.transport import open_requests
 from tests.channel.missing_family import remove_family
-from tests.channel.robot_at_work import robot_at_work
 from tests.channel.server.test_endpoint import Site, robot_at
 
 
@@ -33,16 +31,6 @@ async def test_endpoint_without_ipv6_has_no_ipv6_address(monkeypatch: pytest.Mon
     remove_family(monkeypatch, socket.AF_INET6)
     with pytest.raises(ChannelError, match="::1 is no address of this machine"):
         await open_endpoint(Site(), "::1", 0)
-
-
-@pytest.mark.parametrize("host", ["127.0.0.1", "localhost"])
-async def test_teacher_without_ipv6_takes_the_robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, host: str) -> None:
-    remove_family(monkeypatch, socket.AF_INET6)
-    async with (
-        robot_at_work(tmp_path) as robot,
-        TeacherClient(robot.pairing.device.folder, host, robot.port) as teacher,
-    ):
-        assert (await teacher.take()).accepted
 
 
 async def test_teacher_without_ipv6_notices_that_no_robot_listens(

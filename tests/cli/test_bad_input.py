@@ -198,11 +198,6 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     assert "'s99'" in last
 
 
-def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandLine, lessons: Path) -> None:
-    said = kurt2rt.refused("exam", lessons, "--world", "a", "--world", "nope")
-    assert unknown_name("worlds", "nope") in said
-
-
 @pytest.mark.parametrize(
     ("where", "command"),
     [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("lesson",)), ("exam", ("lesson", "--seeds", "1,2"))],
@@ -218,35 +213,6 @@ def test_task_with_unknown_world_is_refused_before_the_lesson(
     task = changed("tasks", "wall_following", tmp_path, somewhere_else)
     assert unknown_name("worlds", "nope") in kurt2rt.refused(*command, "--task", task, "--out", tmp_path / "out")
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize(
-    ("kind", "name", "key", "words"),
-    [
-        ("tasks", "wall_following", "radius", ("lesson", "--task")),
-        ("robots", "kurt2", "cycle_s", ("lesson", "--robot-settings")),
-        ("runtime", "default", "status_period_s", ("run", "--settings")),
-        ("worlds", "a", "x_m", ("run", "--world")),
-    ],
-)
-def test_not_a_number_in_a_settings_file_names_file_and_key(
-    kurt2rt: CommandLine, tmp_path: Path, kind: str, name: str, key: str, words: tuple[str, ...]
-) -> None:
-    mine = tmp_path / "mine.yaml"
-    lines = (CONFIG_DIR / kind / f"{name}.yaml").read_text(encoding="utf-8")
-    before, found, after = lines.partition(f"{key}: ")
-    assert found
-    number = after.split()[0].rstrip(",}")
-    mine.write_text(before + found + after.replace(number, ".nan", 1), encoding="utf-8")
-    said = kurt2rt.refused(*words, mine)
-    assert "mine.yaml: " in said
-    assert key in said
-
-
-def test_settings_that_are_no_text_are_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    mine = tmp_path / "mine.yaml"
-    mine.write_bytes(b"\xff\xfe\x00name: x")
-    assert f"{mine}: " in kurt2rt.refused("demo", "--task", mine)
 
 
 def test_file_with_a_writer_is_closed_to_writers_not_to_readers(

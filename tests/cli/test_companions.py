@@ -88,17 +88,6 @@ def test_child_process_that_failed_stays_a_trouble() -> None:
     assert told.empty()
 
 
-def test_child_process_that_finished_is_no_trouble(births: Births) -> None:
-    told = Told()
-    with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as children:
-        children.start("the scripted teacher", "teach", "--auto", restarts=False)
-        births.next()
-        children.start("the page", "teach", restarts=True)
-        births.next()
-        assert "code 0" in told.next()
-        assert "scripted teacher" not in children.trouble
-
-
 def test_child_process_output_goes_to_its_reader() -> None:
     told, heard = Told(), Told()
     says = "import sys; print('out', flush=True); print('err', file=sys.stderr, flush=True); sys.exit(3)"

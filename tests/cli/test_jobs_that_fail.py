@@ -1,6 +1,5 @@
 """Failures of one job among many: one line with the job and its seed."""
 
-import errno
 from pathlib import Path
 
 import pytest
@@ -25,24 +24,6 @@ def test_the_job_stands_before_what_is_wrong(
     with pytest.raises(SystemExit, match="2"):
         main.main()
     assert capsys.readouterr().err == f"kurt2rt: circle, seed 3: {trouble}\n"
-
-
-def test_errors_of_several_tasks_are_printed_once_each(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    not_saved = KnowledgeError(KnowledgeCode.NOT_DURABLE, reason="not saved")
-    full = OSError(errno.EROFS, "Read-only file system")
-    group = ExceptionGroup("tasks", [not_saved, full, not_saved])
-
-    def command_line(_words: object) -> object:
-        raise group
-
-    monkeypatch.setattr("kurt2rt.cli.command_line.command_line", command_line)
-    with pytest.raises(SystemExit, match="2"):
-        main.main()
-    told = capsys.readouterr().err
-    assert told.startswith(f"kurt2rt: {not_saved}; {full}")
-    assert len(told.splitlines()) == 1
 
 
 def test_a_lesson_of_many_says_whose_file_is_of_no_use(kurt2rt: CommandLine) -> None:

@@ -1,14 +1,11 @@
 """--json in every command that reports: one JSON document on standard output, nothing else, and the same exit code."""
 
 import json
-import math
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.cli.json_output import plain
 from tests.cli.helpers import CommandLine
-from tests.cli.test_help import commands
 from tests.runs.replay.stored_runs import STORED
 
 WALLS = str(STORED / "walls.mcap")
@@ -37,22 +34,11 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     },
     ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
 }
-REPORTING = {
-    *(("demo",), ("doctor",), ("exam",), ("lesson",), ("pair",), ("paper",), ("phases",)),
-    *(("replay",), ("service", "check"), ("status",), ("why",)),
-    *(("study", name) for name in ("transfer", "compare", "doubt", "certify", "search")),
-    *(("knowledge", name) for name in ("list", "lessons", "show", "contradictions", "check", "diff", "table")),
-    *(("plugin", "list"), ("export", "lerobot")),
-}
 
 
 @pytest.fixture
 def mine(lessons: Path, tmp_path: Path) -> None:
     (tmp_path / "mine.knowledge").write_bytes(lessons.read_bytes())
-
-
-def test_every_command_that_reports_has_the_option() -> None:
-    assert {words for words, names in commands().items() if "--json" in names} == REPORTING
 
 
 @pytest.mark.usefixtures("mine")
@@ -61,15 +47,6 @@ def test_json_is_one_document_and_nothing_else(kurt2rt: CommandLine, words: tupl
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     assert set(json.loads(said.out)) == keys
-
-
-@pytest.mark.usefixtures("mine")
-def test_json_keeps_the_exit_code_of_a_failure(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    file = tmp_path / "mine.knowledge"
-    file.write_bytes(file.read_bytes().replace(b'"teacher":"scripted teacher"', b'"teacher":"scripted preacher"'[:28]))
-    said = kurt2rt("knowledge", "check", file, "--json")
-    assert said.exit_code == 1
-    assert json.loads(said.out)["sound"] is False
 
 
 def test_json_of_refused_input_leaves_standard_output_empty(kurt2rt: CommandLine) -> None:
@@ -86,8 +63,3 @@ def test_rlas_come_with_conditions_and_teachers(kurt2rt: CommandLine) -> None:
     whole = json.loads(kurt2rt("knowledge", "show", "mine.knowledge", "--rla", "1", "--json").out)
     assert whole["condition"] == first["condition"]
     assert kurt2rt("knowledge", "show", "mine.knowledge", "--limit", "1", "--json").out.count('"rla":') == 1
-
-
-def test_no_number_is_one_that_json_does_not_have() -> None:
-    document = json.dumps(plain({"far": [math.inf, -math.inf], "none": (math.nan, 0.5)}), allow_nan=False)
-    assert json.loads(document) == {"far": [None, None], "none": [None, 0.5]}

@@ -1,6 +1,5 @@
 """`kurt2rt knowledge`: looked at, put out as a table, and taken back lesson by lesson."""
 
-import csv
 import json
 import re
 import shutil
@@ -105,17 +104,6 @@ def named_in(out: str) -> list[str]:
 
 def _by_critic(command_id: str) -> Origin:
     return Origin(command_id, CRITIC, Phase.AUTONOMOUS, tick=100)
-
-
-def test_table_folder_is_made_and_nothing_overwritten(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    for _ in range(2):
-        said = kurt2rt("knowledge", "table", lessons, "--out", tmp_path / "tables")
-        assert said.exit_code == 0
-        table = Path(said.out.split()[1])
-        with table.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
-        assert [int(row["id"]) for row in rows] == [rla.rla_id for rla in folded(lessons).rlas]
-    assert len(list((tmp_path / "tables").iterdir())) == 2
 
 
 def test_table_unwritable_folder_is_refused(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:

@@ -1,6 +1,5 @@
 """`kurt2rt lesson --exams batch` and `--lessons batch`."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -8,15 +7,6 @@ import pytest
 from tests.cli.helpers import CommandLine
 
 SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
-
-
-@pytest.mark.parametrize("driven", [pytest.param("--exams", marks=pytest.mark.deep), "--lessons"])
-def test_lesson_has_the_same_results_in_a_batch(kurt2rt: CommandLine, driven: str) -> None:
-    words = ("lesson", *SHORT, "--seeds", "1-2", "--jobs", "1", "--json", driven)
-    batch, bus = (kurt2rt(*words, each) for each in ("batch", "bus"))
-    assert "2 jobs in the batch, 2 of them on the CAN bus too\n" in batch.err
-    assert len(list(Path("results/lesson/results/witnesses").glob("*.json"))) == 2
-    assert json.loads(batch.out)["robots"] == json.loads(bus.out)["robots"]
 
 
 @pytest.mark.parametrize("option", ["--exams", "--lessons"])

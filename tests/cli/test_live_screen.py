@@ -1,26 +1,20 @@
 """The terminal of `kurt2rt run`: what stays in place, and what is printed above it."""
 
 import io
-import json
 import math
 import os
-import signal
 import stat
 from pathlib import Path
-from urllib.parse import urlsplit
 
 import pytest
 from rich.console import Console
-from websockets.sync.client import connect
 
 from kurt2rt.channel.security.pairing import pair
 from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.core.teaching.question import Question
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
-from tests.cli.helpers import running
 from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal
-from tests.teacher.page.test_teach_command import cookie_of
 
 LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
 PHONE = PageAddress("phone", "http://192.168.100.100:8642/pair?token=" + 32 * "b")
@@ -81,15 +75,6 @@ def test_show_long_status_keeps_the_code_in_24_lines() -> None:
         assert len(lines) <= 24
 
 
-def test_show_further_addresses_only_beside_the_code() -> None:
-    further = PageAddress("phone", "http://10.42.0.1:8642/pair?token=" + 32 * "b")
-    for height in (24, 30):
-        shown = Shown(height=height)
-        shown.screen.pin(ServedPages((LOCAL, PHONE, further), network=True, trouble=""))
-        assert any(FULL_BLOCK in line for line in shown.lines())
-        assert any(further.link in line for line in shown.lines()) == (height == 30)
-
-
 def test_show_unreachable_phone_has_no_code_and_a_reason() -> None:
     shown = Shown()
     shown.screen.pin(ServedPages((LOCAL,), network=True, trouble="no phone can reach this machine"))
@@ -135,29 +120,6 @@ def test_run_at_a_terminal_pins_page_and_code(tmp_path: Path) -> None:
     assert opened.read_text(encoding="utf-8") == page.as_uri()
     assert "url=http://127.0.0.1:" in page.read_text(encoding="utf-8")
     assert stat.S_IMODE(page.stat().st_mode) == 0o600
-
-
-def test_run_in_a_pipe_prints_lines_and_accepts_a_phone(tmp_path: Path) -> None:
-    words = ("run", "--phone", "--port", "0", "--page-port", "0", "--page-address", "127.0.0.1", "--no-record")
-    with running(*words, folder=tmp_path, environment=opener(tmp_path)) as robot:
-        local = urlsplit(robot.wait_for("/pair?token=").strip())
-        pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
-        robot.wait_for("page for phone:")
-        phone = urlsplit(robot.wait_for("/pair?token=").strip())
-        assert phone.port == local.port
-        # What listens on 127.0.0.1 alone is not at 127.0.0.2.
-        at = f"127.0.0.2:{phone.port}"
-        headers = {"Cookie": cookie_of(phone._replace(netloc=at).geturl()), "Origin": f"http://{at}"}
-        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None, open_timeout=60) as websocket:
-            websocket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
-            while json.loads(websocket.recv(timeout=60))["kind"] != "state":
-                continue
-        robot.wait_for("RLAs | ")
-        said = robot.end(signal.SIGTERM)
-    assert (said.exit_code, said.err) == (0, "")
-    assert "\x1b" not in said.out
-    assert not (tmp_path / "opened").exists()
-    assert not (tmp_path / "var" / "devices" / "local" / "open.html").exists()
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """Reports at 80 columns: they break no word of the wide report."""
 
-import io
 from collections.abc import Callable
 from pathlib import Path
 
@@ -80,16 +79,6 @@ def require_whole(narrow: str, wide: str) -> None:
     assert set(wide.split()) - lines - shown == set()
     for line in narrow.splitlines():
         assert cell_len(line) <= 80 or len(line.split()) == 1, line
-
-
-@pytest.mark.parametrize("report", REPORTS.values(), ids=REPORTS)
-def test_reports_break_no_word_at_80_columns(report: Print) -> None:
-    texts = []
-    for width in (80, 100_000):
-        out = io.StringIO()
-        report(Console(file=out, width=width))
-        texts.append(out.getvalue())
-    require_whole(*texts)
 
 
 @pytest.mark.parametrize(

@@ -16,11 +16,9 @@ from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
-from kurt2rt.core.decision.errors import UnknownActionError
 from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import BeginSession, SetPhase, Take
 from kurt2rt.knowledge.exchange.package import export_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
@@ -53,24 +51,6 @@ def names_in(folder: Path) -> list[str]:
 def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
     first = SimulatedRun("a", TASK, "wall_following", folder / "walls.knowledge")
     return SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=taught_by_script)
-
-
-async def test_next_run_of_another_task_has_its_own_world_and_file(tmp_path: Path) -> None:
-    runs = runs_in(tmp_path)
-    outcome = await runs.prepare(None, "eight", False, TEACHER)
-    assert outcome == Outcome.of(ResultCode.NEXT_RUN, world="two_objects", task="eight")
-    assert runs.present.task_name == "wall_following"
-    assert runs.advance() == ""
-    assert (runs.present.world, runs.present.knowledge) == ("two_objects", tmp_path / "eight.knowledge")
-    assert (await runs.view()).task == "eight"
-    await runs.prepare("rooms-3", "wall_following", False, TEACHER)
-    runs.advance()
-    assert (runs.present.world, runs.present.knowledge) == ("rooms-3", tmp_path / "walls.knowledge")
-    take, phase, session = runs.present.first_commands
-    assert isinstance(take, Take)
-    assert isinstance(phase, SetPhase)
-    assert isinstance(session, BeginSession)
-    assert (take.teacher, phase.phase, session.name) == ("phone", Phase.CORRECTIONS, "noon")
 
 
 async def test_next_run_in_phase_5_with_a_session_stands_until_go(tmp_path: Path) -> None:
@@ -106,14 +86,6 @@ async def test_next_run_with_unknown_world_or_task_is_refused(
     if code is RefusalCode.NO_TASK:
         given = {"task": task, "known": tuple(each.name for each in view.tasks)}
     assert caught.value.outcome == Outcome(code, given)
-    assert runs.next is None
-
-
-async def test_next_run_with_knowledge_of_another_task_is_refused(tmp_path: Path) -> None:
-    open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("fleeing")).close()
-    runs = runs_in(tmp_path)
-    with refused(KnowledgeCode.OTHER_TASK, taught="fleeing", wanted="eight"):
-        await runs.prepare(None, "eight", False, TEACHER)
     assert runs.next is None
 
 
@@ -205,13 +177,6 @@ async def test_verdict_of_an_exam_stays_with_its_knowledge_file(tmp_path: Path) 
     assert (await after(None, None, fresh=True)).status == NO_EXAM
 
 
-async def test_upload_of_another_tasks_knowledge_is_refused(tmp_path: Path) -> None:
-    other = tmp_path / "eight.knowledge"
-    open_knowledge(other, ROBOT, load_task("eight")).close()
-    with pytest.raises(KnowledgeError, match="'eight'"):
-        await runs_in(tmp_path).load(other.read_bytes(), TEACHER)
-
-
 def unable(path: Path) -> Path:
     """Make a knowledge file that fits, with an action that no repertoire here has."""
     with open_knowledge(path, ROBOT, TASK) as journal:
@@ -227,16 +192,6 @@ async def test_upload_with_an_unknown_action_is_refused(tmp_path: Path) -> None:
         await runs.load(content, TEACHER)
     assert runs.next is None
     assert not [name for name in names_in(tmp_path) if name.startswith(".")]
-
-
-async def test_next_run_with_an_unknown_action_is_refused(tmp_path: Path) -> None:
-    runs = runs_in(tmp_path)
-    await runs.prepare(None, "eight", False, TEACHER)
-    runs.advance()
-    unable(tmp_path / "walls.knowledge")
-    with pytest.raises(UnknownActionError, match=r"RLA 1 .*fly"):
-        await runs.prepare(None, "wall_following", False, TEACHER)
-    assert runs.next is None
 
 
 async def test_present_file_under_another_tasks_name_is_set_aside(tmp_path: Path) -> None:

@@ -2,19 +2,14 @@ import json
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from urllib.parse import urlsplit
 
 import pytest
-import yaml
 
-from config import CONFIG_DIR
-from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import Device, local_pairing, read_device
 from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.teacher.page import own_addresses
 from kurt2rt.teacher.page.own_addresses import NO_ADDRESS
-from kurt2rt.teacher.page.served_pages import page_link
 from tests.cli.helpers import CommandLine
 
 TEACHERS, DEVICES = Path("var/teachers"), Path("var/devices")
@@ -33,22 +28,6 @@ def test_pair_prints_link_and_code(kurt2rt: CommandLine) -> None:
     assert str(TEACHERS / "anna-phone") in said.out
     assert str(DEVICES / "anna-phone") in said.out
     assert "kurt2rt run --phone" in said.out
-
-
-def test_pair_makes_the_robot_accept_the_device(kurt2rt: CommandLine) -> None:
-    kurt2rt("pair", "anna-phone")
-    teachers = Teachers(TEACHERS)
-    assert teachers.names == ("anna-phone",)
-    assert not teachers.only_local
-    teachers.close()
-
-
-def test_pair_lists_the_addresses_and_shows_the_first(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(own_addresses, "_ranked", lambda: iter([((True,), "fd00::1"), ((False,), "10.42.0.1")]))
-    said = kurt2rt("pair", "phone")
-    links = [line.split()[-1] for line in said.out.splitlines() if "?token=" in line]
-    assert [urlsplit(each).netloc for each in links] == ["10.42.0.1:8642", "[fd00::1]:8642"]
-    assert qr_code(links[0]).plain in said.out
 
 
 def test_pair_without_a_network_shows_no_code(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -82,33 +61,6 @@ def test_pair_asks_the_running_program_for_its_port(kurt2rt: CommandLine, monkey
 def test_pair_address_of_another_form_is_refused(kurt2rt: CommandLine, address: str) -> None:
     assert "without http:// and port" in kurt2rt.misused("pair", "phone", "--page-address", address)
     assert not DEVICES.exists()
-
-
-def test_page_link_ipv6_address_is_in_brackets(tmp_path: Path) -> None:
-    pairing = local_pairing(tmp_path / "teachers", tmp_path / "devices")
-    assert page_link(pairing.device, "fe80::7", 80).startswith("http://[fe80::7]:80/pair?token=")
-
-
-def test_pair_uses_folders_and_ports_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    content = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
-    content |= {"teachers": "keys/robot", "devices": "keys/out", "port": 6000, "page_port": 9000}
-    content["page_address"] = "robot.lan"
-    (tmp_path / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-    said = kurt2rt("pair", "phone", "--settings", tmp_path / "mine.yaml")
-    assert read_device(Path("keys/out/phone")).port == 6000
-    assert Path("keys/robot/phone/secret.json").exists()
-    assert "http://robot.lan:9000/pair?token=" in said.out
-
-
-def test_pair_twice_is_refused_with_renew_as_the_cure(kurt2rt: CommandLine) -> None:
-    kurt2rt("pair", "phone")
-    before = device_of("phone")
-    assert "kurt2rt pair phone --renew" in kurt2rt.refused("pair", "phone")
-    assert device_of("phone") == before
-    said = kurt2rt("pair", "phone", "--renew")
-    assert said.exit_code == 0
-    assert device_of("phone").token != before.token
-    assert device_of("phone").token in said.out
 
 
 def test_a_revoked_device_is_listed_no_longer(kurt2rt: CommandLine) -> None:

@@ -11,7 +11,6 @@ from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.cli.qr_code import NO_CODE
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.helpers import CommandLine
-from tests.cli.test_help import commands
 from tests.runs.replay.stored_runs import STORED
 
 WALLS = str(STORED / "walls.mcap")
@@ -55,10 +54,6 @@ def terminals(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, lessons: Pa
     return Terminals(kurt2rt, monkeypatch)
 
 
-def words_in(text: str) -> set[str]:
-    return set(text.encode("ascii", "replace").decode().split())
-
-
 @pytest.mark.parametrize("words", REPORTS, ids=" ".join)
 def test_reports_are_alike_on_every_terminal(terminals: Terminals, words: tuple[str, ...]) -> None:
     wide = terminals(*words)
@@ -72,16 +67,6 @@ def test_reports_are_alike_on_every_terminal(terminals: Terminals, words: tuple[
         else:
             assert poor[1].translate(LIKE) == wide[1].translate(LIKE)
         assert "?" not in poor[1].replace("?token=", "") or "?" in wide[1]
-
-
-def test_help_of_every_command_is_whole_on_poor_terminals(terminals: Terminals) -> None:
-    for words in commands():
-        code, wide, _ = terminals(*words, "--help")
-        assert code == 0
-        for encoding, columns in (("ascii", None), ("utf-8", "0")):
-            code, poor, err = terminals(*words, "--help", encoding=encoding, columns=columns)
-            assert (code, err) == (0, "")
-            assert {each for each in words_in(wide) if each.isalpha()} <= words_in(poor), words
 
 
 def test_live_screen_without_blocks_says_so() -> None:

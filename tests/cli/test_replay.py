@@ -24,27 +24,10 @@ def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return segment
 
 
-def test_a_run_is_the_same_again(kurt2rt: CommandLine, short: Path) -> None:
-    said = kurt2rt("replay", short)
-    assert said.exit_code == 0, said.err
-    assert all(word in said.out for word in ("wall_following", "kurt2-indoor", "story"))
-    assert "the same: 1300 ticks" in said.out
-
-
 @pytest.mark.deep
 def test_a_whole_run_is_the_same_again(kurt2rt: CommandLine) -> None:
     said = json.loads(kurt2rt("replay", WALLS, "--json").out)
     assert (said["same"], said["ticks"]) == (True, 4400)
-
-
-def test_the_newest_run_is_meant_where_none_is_named(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    for name, story in (("20261122T031005Z-walls", "walls"), ("20261123T031005Z-errand", "errand")):
-        (tmp_path / name).mkdir()
-        slim(STORED / f"{story}.mcap", tmp_path / name / "0001.mcap", 5.0)
-    said = json.loads(kurt2rt("replay", "--runs", tmp_path, "--json").out)
-    assert (said["task"], said["same"], said["ticks"], said["trouble"]) == ("errands", True, 500, "")
-    said = json.loads(kurt2rt("replay", "20261122T031005Z-walls", "--runs", tmp_path, "--json").out)
-    assert said["task"] == "wall_following"
 
 
 def test_settings_of_today_change_nothing(

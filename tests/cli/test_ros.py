@@ -56,11 +56,3 @@ def test_device_waits_for_robot_and_router_and_serves_them(kurt2rt: CommandLine,
             said = device.process.wait()
             assert said == 2
             assert "its pairing was revoked" in (device.process.stderr.read() if device.process.stderr else "")
-
-
-def test_device_ends_quietly_on_a_signal(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    kurt2rt("pair", "ros")
-    with running("ros", "--listen", free_locator(), folder=tmp_path) as device:
-        device.wait_for("no robot answers yet")
-        said = device.end(signal.SIGTERM)
-    assert (said.exit_code, said.err) == (0, "")

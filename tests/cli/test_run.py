@@ -48,19 +48,6 @@ def lesson(folder: Path) -> Iterator[Lesson]:
             yield Lesson(robot, person, folder / "mine.knowledge")
 
 
-def test_sigterm_after_a_lesson_keeps_the_lesson(tmp_path: Path) -> None:
-    with lesson(tmp_path) as (robot, person, knowledge):
-        person.wait_for("I know nothing yet, teach me")
-        person.type("forward")
-        person.wait_for("RLA 1 taught: forward")
-        robot.wait_for("  1 RLAs")
-        said = robot.end(signal.SIGTERM)
-    assert said.exit_code == 0
-    assert said.err == ""
-    assert re.findall("1 RLAs|mine.knowledge", said.out.splitlines()[-1]) == ["1 RLAs", "mine.knowledge"]
-    assert actions_in(knowledge) == ["forward"]
-
-
 def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
     with lesson(tmp_path) as (_, person, knowledge):
         for line, answer in (
@@ -193,12 +180,6 @@ def test_run_can_log_is_read_by_other_tools(kurt2rt: CommandLine, tmp_path: Path
 
     said = kurt2rt(*words)
     assert " drive-2.log" in said.out
-
-
-def test_another_task_has_its_own_world_and_its_own_knowledge(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    said = kurt2rt("run", "--seconds", "0.1", "--teacher", "none", "--task", "circle")
-    assert " var/circle.knowledge" in said.out
-    assert (tmp_path / "var" / "circle.knowledge").is_file()
 
 
 def test_the_scripted_teacher_does_not_teach_ways_in_real_time(kurt2rt: CommandLine) -> None:

@@ -12,7 +12,7 @@ from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
 from kurt2rt.runs.recording.topics import GROUND, SCENE, TICK, TRUTH
 from kurt2rt.runs.replay.reader import read_run
-from tests.cli.helpers import CommandLine, running
+from tests.cli.helpers import CommandLine
 
 WORDS = ("run", "--seconds", "0.5", "--teacher", "none", "--knowledge", "mine.knowledge")
 
@@ -45,18 +45,6 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     assert min(times) >= datetime.strptime(run.name[:16], "%Y%m%dT%H%M%S%z").timestamp() * 1e9
 
 
-def test_run_records_to_the_given_folder(kurt2rt: CommandLine, folder: Path) -> None:
-    kurt2rt(*WORDS, "--record", "elsewhere")
-    assert len(runs_in(folder / "elsewhere")) == 1
-    assert not (folder / "var").exists()
-
-
-def test_no_record_leaves_no_recording(kurt2rt: CommandLine, folder: Path) -> None:
-    said = kurt2rt(*WORDS, "--no-record")
-    assert "recorded" not in said.out
-    assert not (folder / "var").exists()
-
-
 def test_a_live_view_needs_no_recording(kurt2rt: CommandLine, folder: Path) -> None:
     said = kurt2rt(*WORDS, "--no-record", "--live-view", "0")
     assert " ws://127.0.0.1:" in said.out
@@ -81,20 +69,3 @@ def test_a_folder_that_cannot_be_made_costs_no_tick_and_is_told(kurt2rt: Command
     said = kurt2rt(*WORDS, "--record", "runs")
     assert said.exit_code == 0
     assert "recording: " in said.out
-
-
-def test_a_killed_program_leaves_a_run_that_can_be_read(folder: Path) -> None:
-    words = ("run", "--seconds", "60", "--teacher", "none", "--knowledge", "mine.knowledge")
-    with running(*words, folder=folder) as robot:
-        for _ in range(3):  # the newest second may be lost
-            robot.wait_for(" s | ")
-        robot.process.kill()
-        robot.process.wait()
-    (run,) = runs_in(folder / "var" / "runs")
-    entries = entries_of(run)
-    assert entries[-1].now_s - entries[0].now_s > 1.0
-    assert [entry.number for entry in entries] == list(range(entries[0].number, entries[0].number + len(entries)))
-    (segment,) = segments_in(run)
-    reader = SegmentReader(segment)
-    assert list(reader.messages({TICK}))
-    assert reader.truncated

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.scripted_file import own_file, people_agree
+from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.core.rla.events import SessionBegun
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import AUTO
@@ -27,10 +27,6 @@ def taught_by(path: Path, *teachers: str) -> Path:
         ]
         journal.append([JournalEntry(event, utc_now()) for event in events])
     return path
-
-
-def test_own_file_stands_next_to_that_of_the_settings() -> None:
-    assert own_file(Path("var/wall_following.knowledge")) == Path("var/wall_following.auto.knowledge")
 
 
 def test_run_auto_leaves_the_usual_file_alone(kurt2rt: CommandLine, tmp_path: Path) -> None:

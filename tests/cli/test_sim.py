@@ -1,13 +1,11 @@
 """`kurt2rt sim`: the simulated robot as a program of its own, and a runtime that meets it on a bus."""
 
 import os
-import re
-import signal
 from pathlib import Path
 
 import pytest
 
-from tests.cli.helpers import CommandLine, running, unknown_name
+from tests.cli.helpers import CommandLine, unknown_name
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, kill_and_return, teach_kill_and_return
 
 
@@ -25,20 +23,6 @@ async def test_sim_kill_prints_the_time_until_control(tmp_path: Path, capsys: py
     away_s = [await kill_and_return(a_bus("away"), tmp_path) for _ in range(5)]
     with capsys.disabled():
         print(f"\nfrom kill -9 to the next CONTROL: {', '.join(f'{each:.2f}' for each in away_s)} s; wanted: 2 s")
-
-
-def test_sim_console_places_the_robot_and_shares_no_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    bus = a_bus("desk")
-    with running("sim", "--bus", bus, "--start", "1", folder=tmp_path) as sim:
-        sim.wait_for("a simulated kurt2-indoor in world a is on bus shared:desk")
-        sim.type("start 2")
-        sim.wait_for("the robot stands at 1.45 3.50 m, -90 deg")
-        line = sim.wait_for(" s | at 1.45 3.50 m, -90 deg | wheels +0.00 +0.00 m/s")
-        assert line.endswith(" braked\n")
-        assert f"bus {bus}: " in kurt2rt.refused("sim", "--bus", bus)
-        said = sim.end(signal.SIGTERM)
-    assert (said.exit_code, said.err) == (0, "")
-    assert re.search(r" \d+\.\d\d s: 0 collisions, .* [0-9a-f]{16}$", said.out.rstrip())
 
 
 def test_it_ends_when_its_time_or_its_input_is_over(kurt2rt: CommandLine) -> None:

@@ -81,28 +81,6 @@ def test_the_robot_is_put_where_there_is_room(table: Table) -> None:
     assert table.robot.pose == pytest.approx((1.0, 1.0, math.pi / 2))
 
 
-def test_a_wall_is_moved(table: Table) -> None:
-    before = WORLD.walls[0].from_m
-    assert table.desk.obey("move tongue 0 -0.1") == "tongue moved"
-    assert table.robot.world.settings.walls[0].from_m == pytest.approx((before[0], before[1] - 0.1))
-    no_wall = WorldRefusedError(WorldRefusal.NO_WALL, world="A", name="ceiling", known=("tongue",))
-    assert table.desk.obey("move ceiling 0 1") == str(no_wall)
-    assert "NAME DX DY" in table.desk.obey("move tongue 1")
-
-
-def test_a_lifted_robot_turns_its_wheels_in_the_air(table: Table) -> None:
-    pose = table.robot.pose
-    table.desk.obey("lift")
-    assert table.robot.lifted
-    table.cycles(50, SLOWLY)
-    assert table.robot.wheel_speeds.left_m_s > 0.05
-    assert table.robot.pose == pose
-    assert StatusLine(table.standalone).next().endswith(" block")
-    table.desk.obey("lower")
-    table.cycles(50, SLOWLY)
-    assert table.robot.pose != pose
-
-
 @pytest.mark.parametrize(("line", "said"), [("help", HELP), ("", ""), ("dance", f"not understood: dance\n{HELP}")])
 def test_sim_console_with_help_or_nonsense_lists_the_commands(table: Table, line: str, said: str) -> None:
     assert table.desk.obey(line) == said
@@ -120,35 +98,6 @@ def test_news_are_told_once(table: Table) -> None:
     assert len(table.cycles(1, SystemControl(Mode.MC_RESET))) == 1
     table.end.shutdown()
     assert table.end.name in table.cycles(3)[0]
-
-
-def test_a_collision_is_told_with_its_place(table: Table) -> None:
-    table.desk.obey("place 0.5 0.27 -90")
-    (collision,) = (line for line in table.cycles(100, SLOWLY) if "collision" in line)
-    assert collision.endswith(" 1 at 0.50 0.22 m, -90 deg")
-
-
-def test_the_status_line_tells_where_it_is_and_what_it_was_told(table: Table) -> None:
-    line = StatusLine(table.standalone)
-    assert NUMBER.findall(line.next()) == [
-        "0.0",
-        "0.54",
-        "3.63",
-        "0",
-        "+0.00",
-        "+0.00",
-        "+0.00",
-        "+0.00",
-        "0",
-        "0",
-        "0",
-        "0",
-    ]
-    table.cycles(200, SLOWLY)
-    now = NUMBER.findall(line.next())
-    assert now[:3] == ["2.0", "0.73", "3.63"]
-    assert now[4:] == [*["+0.10"] * 4, "100", *["0"] * 3]
-    assert "CONTROL 0 " in line.next()
 
 
 def test_lines_are_there_when_they_are_looked_for() -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.health_codec import report_of
-from kurt2rt.service.health.status_error import StatusCode, StatusError
 from tests.cli.helpers import ROOT, CommandLine, running
 
 
@@ -40,11 +39,6 @@ def test_status_by_file_and_over_the_channel_is_of_one_robot(
         )
         assert by_file.boot == over_the_channel.boot
         assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
-
-
-def test_status_without_a_robot_is_one_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    error = StatusError(StatusCode.NO_PROGRAM, knowledge=tmp_path / "none.knowledge")
-    assert str(error) in kurt2rt.refused("status", tmp_path / "none.knowledge")
 
 
 def test_an_address_is_for_the_channel_only(kurt2rt: CommandLine) -> None:

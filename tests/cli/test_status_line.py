@@ -38,11 +38,6 @@ def status() -> ProgramStatus:
     return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
-def test_status_line_of_a_healthy_robot_ends_with_the_timing(status: ProgramStatus) -> None:
-    assert WELL.trouble == ""
-    assert status_line(status, WELL).split(" | ")[-1].startswith("missed")
-
-
 def test_status_line_of_a_stopped_robot_names_the_stop() -> None:
     desk = ChannelFixture()
     desk.runtime.handler.stop(STARTED)
@@ -67,22 +62,8 @@ def test_status_line_shows_the_error_of_the_knowledge_updater() -> None:
     assert status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 
 
-def test_status_line_shows_a_passive_bus_while_driving(status: ProgramStatus) -> None:
-    assert status_line(status, PASSIVE).endswith(f" | {PASSIVE.controller_trouble}")
-
-
-def test_status_line_shows_a_lost_bus_until_resume(status: ProgramStatus) -> None:
-    assert status_line(status, LOST).endswith(f" | {LOST.bus_trouble}")
-    assert LOST.bus_trouble not in status_line(status, replace(LOST, latched=None))
-
-
 def test_status_line_shows_the_alarm_with_its_count(status: ProgramStatus) -> None:
     stopped = replace(WELL, alarm="another node sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
     *_, alarm, count = status_line(status, stopped).split(" | ")
     assert alarm == stopped.alarm
     assert count.startswith("2 CONTROL ")
-
-
-def test_health_trouble_prefers_the_controller_to_the_bus() -> None:
-    off = replace(LOST, controller=ControllerState.OFF, controller_trouble="bus can0: bus-off")
-    assert off.trouble == off.controller_trouble

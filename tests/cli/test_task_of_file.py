@@ -28,19 +28,6 @@ def fleeing(tmp_path: Path) -> Path:
     return path
 
 
-def test_exam_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
-    short = ("--set", "exam.duration_s=1", "--world", "a")
-    named = kurt2rt("exam", fleeing, "--task", "fleeing", *short)
-    assert named.exit_code == 0, named.err
-    assert kurt2rt("exam", fleeing, *short).out == named.out
-
-
-def test_run_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
-    said = kurt2rt("run", "--seconds", "0.1", "--port", "0", "--no-record", "--knowledge", fleeing)
-    assert said.exit_code == 0, said.err
-    assert said.out.startswith("task fleeing")
-
-
 def test_lesson_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
     short = ("--set", "teaching.supervised_s=1", "--set", "teaching.corrections_s=1")
     said = kurt2rt("lesson", "--knowledge", fleeing, *short, "--out", "made")
@@ -123,27 +110,6 @@ def test_strangers_file_runs_no_code_by_a_name_in_it(kurt2rt: CommandLine, plugi
         Knowledge.load("mine.knowledge")
     assert [each for each in (*said, str(refused.value)) if "which is neither shipped nor installed" not in each] == []
     assert not (plugin_folder / "owned").exists()
-
-
-def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task("streets"))).close()
-    short = ("--set", "exam.duration_s=1")
-    assert kurt2rt("exam", "mine.knowledge", "--task", "route", *short).exit_code == 0
-
-
-@pytest.mark.parametrize("command", ["demo", "exam", "lesson", "phases", "run", "sim"])
-def test_task_and_world_read_alike_in_every_command(
-    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, command: str
-) -> None:
-    monkeypatch.setattr("typer.rich_utils.MAX_WIDTH", 400)
-    monkeypatch.setenv("COLUMNS", "400")
-    told = kurt2rt(command, "--help").out
-    lines = [" ".join(line.strip("│ ").split()) for line in told.splitlines()]
-    named = [line for line in lines if line.startswith(("--task ", "--world "))]
-    assert named
-    for line in named:
-        assert " NAME|PATH " in line
-        assert "config/tasks" in line or "config/worlds" in line
 
 
 @pytest.mark.parametrize(

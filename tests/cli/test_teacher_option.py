@@ -4,35 +4,9 @@ import json
 from pathlib import Path
 
 import pytest
-import yaml
 
-from config import CONFIG_DIR
 from tests.cli.helpers import CommandLine, unknown_name
 from tests.cli.test_paper import short_task
-
-
-def test_lesson_teacher_by_name_is_in_json(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    task = short_task(tmp_path)
-    done = kurt2rt("lesson", "--task", task, "--teacher", "ordinary", "--json")
-    assert done.exit_code == 0, done.err
-    assert json.loads(done.out)["lesson"]["teacher"] == "ordinary"
-
-
-def test_demo_teacher_by_path_is_in_the_table(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    content = yaml.safe_load((CONFIG_DIR / "teachers" / "slow.yaml").read_text())
-    mine = tmp_path / "mine.yaml"
-    mine.write_text(yaml.safe_dump(content | {"name": "grandmother"}))
-    done = kurt2rt("demo", "--task", short_task(tmp_path), "--teacher", mine)
-    assert done.exit_code == 0, done.err
-    assert "grandmother" in done.out
-
-
-def test_lesson_without_teacher_is_taught_by_superhuman(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    task = short_task(tmp_path)
-    words = ("lesson", "--task", task, "--seeds", "1", "--jobs", "1", "--json")
-    plain, named = (json.loads(kurt2rt(*words, *more).out) for more in ((), ("--teacher", "superhuman")))
-    assert plain == named
-    assert plain["teacher"] == "superhuman"
 
 
 @pytest.mark.parametrize("words", [("lesson",), ("demo",), ("paper",), ("phases",), ("run", "--auto")])

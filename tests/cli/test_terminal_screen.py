@@ -8,7 +8,6 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.cli.terminal_screen import TerminalScreen
-from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
 from tests.channel.channel_fixture import ChannelFixture
@@ -57,14 +56,6 @@ def test_page_line_that_is_no_address_is_printed() -> None:
     assert shown.screen.links == ()
 
 
-def test_show_on_a_stream_prints_every_status(status: ProgramStatus) -> None:
-    shown = Shown()
-    for trouble in ("", "no simulator"):
-        shown.screen.show_status(status, WELL, trouble)
-        (line,) = shown.lines()
-        assert line.endswith(trouble)
-
-
 def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) -> None:
     shown = Shown(as_service=True)
     shown.screen.show_status(status, WELL, "")
@@ -76,25 +67,6 @@ def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) 
     assert len(shown.lines()) == 1
     shown.screen.show_status(status, WELL, "")
     assert len(shown.lines()) == 1
-
-
-def test_tell_in_the_journal_marks_the_level(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
-    shown = Shown(as_service=True)
-    shown.screen.print_line("disk full", "red")
-    shown.screen.print_line("no browser", "yellow")
-    shown.screen.print_line("ready")
-    assert shown.lines() == ["<3>disk full", "<5>no browser", "ready"]
-
-
-def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("JOURNAL_STREAM", "8:1")
-    desk = ChannelFixture()
-    desk.runtime.handler.stop(STARTED)
-    shown = Shown(as_service=True)
-    shown.screen.show_status(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
-    (line,) = shown.lines()
-    assert not line.startswith("<")
 
 
 def test_taught_on_a_stream_prints_nothing() -> None:

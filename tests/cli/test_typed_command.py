@@ -6,7 +6,6 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.lesson_options import LessonOptions
 from kurt2rt.cli.options import Jobs
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
@@ -30,16 +29,4 @@ def test_typed_command_leaves_out_defaults_and_paths() -> None:
     )
     assert typed_command("try", options, {"taught": "other"}) == (
         "kurt2rt try other --seconds 3 --set-down 0.5 --mute --loop batch --world a --world b.yaml"
-    )
-
-
-def test_typed_command_states_given_values_that_are_defaults() -> None:
-    given = {"set_down": 1.0, "taught": None}
-    assert typed_command("try", Options(Path("made")), given) == "kurt2rt try --set-down 1"
-
-
-def test_typed_command_quotes_values_for_a_shell() -> None:
-    options = LessonOptions(task="/x/mine.yaml", changes=["learning.weights=[{weight: 1.0}]"], seeds="1-3", plain=True)
-    assert typed_command("lesson", options, {"seeds": "1,2,3"}) == (
-        "kurt2rt lesson --task mine.yaml --plain --set 'learning.weights=[{weight: 1.0}]' --seeds 1,2,3"
     )

@@ -33,21 +33,6 @@ def test_a_moment_is_explained_and_drawn(kurt2rt: CommandLine, tmp_path: Path) -
     assert "RLA 3" in picture.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize(
-    ("at", "facts"),
-    [
-        ("3", {"cause": "stopped", "stopped": {"reason": "started", "name": ""}}),
-        ("6.5", {"cause": "unknown", "action": None}),
-        ("14.2", {"cause": "unsaved", "trouble": "the disk is full", "hindrances": ["unsaved"]}),
-        pytest.param("28.3", {"cause": "teacher", "action": "curve_left"}, marks=pytest.mark.deep),
-        pytest.param("36", {"cause": "unknown", "taught_now": True}, marks=pytest.mark.deep),
-    ],
-)
-def test_a_robot_that_stood_or_was_led_says_why(kurt2rt: CommandLine, at: str, facts: dict[str, object]) -> None:
-    told = json.loads(kurt2rt("why", WALLS, "--at", at, "--json").out)["facts"]
-    assert told == told | facts
-
-
 def test_the_level_above_is_told_too(kurt2rt: CommandLine) -> None:
     mid = json.loads(kurt2rt("why", ERRAND, "--at", "20", "--json").out)["facts"]["mid"]["driver"]
     out = kurt2rt("why", ERRAND, "--at", "20").out
@@ -62,15 +47,6 @@ def test_a_whole_run_is_told_as_stretches(kurt2rt: CommandLine, tmp_path: Path) 
     for words in ("stands: stopped", "stands: unsaved", "session walls"):
         assert words in said.out
     assert picture.stat().st_size > 10_000
-
-
-def test_a_part_of_a_run_is_told_whole(kurt2rt: CommandLine) -> None:
-    words = ("why", WALLS, "--from", "30", "--to", "33")
-    assert "100 %" in kurt2rt(*words).out
-    told = json.loads(kurt2rt(*words, "--json").out)
-    assert {each["kind"] for each in told["stretches"]} == {"drives"}
-    assert (told["stretches"][0]["from_s"], told["ticks"]) == (30.0, 301)
-    assert len(told["notes"]) == 6
 
 
 def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:

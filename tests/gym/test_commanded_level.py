@@ -41,11 +41,6 @@ def decide(level: CommandedLevel, blocked: DecisionCause | None = None) -> Decis
     return level.decide(SITUATION, READINGS, blocked)
 
 
-def test_level_without_a_command_asks() -> None:
-    decision = decide(CommandedLevel({}))
-    assert (decision.asking, decision.driving, decision.wheel_speeds) == (True, False, STANDSTILL)
-
-
 def test_level_drives_the_command_unless_it_is_blocked() -> None:
     level = CommandedLevel({"on": MotorPrimitive(AHEAD)})
     level.command("on")

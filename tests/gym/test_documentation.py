@@ -10,7 +10,6 @@ import pytest
 from gymnasium.spaces import Box
 
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.gym.endings import Ending
 from kurt2rt.gym.registration import ENVIRONMENTS
 from tests.gym.helpers import environment
 
@@ -36,14 +35,6 @@ def test_page_lists_each_value_with_its_bounds() -> None:
         assert re.findall(r"`([^`]+)`", words)[:2] == [names[values][0], names[values][-1]]
         assert np.all(space.low[values] == float(low))
         assert np.all(space.high[values] == float(high))
-
-
-def test_page_lists_each_ending_and_each_information() -> None:
-    endings = re.findall(r"^\| `([a-z ]+)` \| .+ \| (?:terminated|truncated) \|$", PAGE, re.MULTILINE)
-    assert endings == [ending.value for ending in Ending]
-    with environment() as env:
-        info = env.reset(seed=1)[1]
-    assert re.findall(r"^\| `([a-z_]+)` \| [^|]+ \|$", PAGE, re.MULTILINE) == list(info)
 
 
 @pytest.mark.deep

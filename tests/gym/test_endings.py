@@ -1,6 +1,5 @@
 """Episodes end at a collision, stuck, stopped, off course or at the end of their time."""
 
-import math
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 
@@ -35,15 +34,6 @@ def test_episode_that_collides_is_terminated() -> None:
             env.step(0)
 
 
-def test_episode_may_go_on_after_a_collision() -> None:
-    with environment(ends_at=("stuck",)) as env:
-        env.reset(seed=1)
-        last = press_on(env, "flee", 100)
-        assert not last.terminated
-        assert last.info["collisions"] >= 1
-        assert last.info["guard"] == (GuardReason.FRONT_BUMPER.value,)
-
-
 def test_episode_of_a_standing_robot_ends_stuck() -> None:
     with environment() as env:
         env.reset(seed=1)
@@ -59,35 +49,8 @@ def test_episode_at_the_end_of_its_time_is_truncated() -> None:
         assert (drive[-1].terminated, drive[-1].truncated, drive[-1].info["ending"]) == (False, True, "time")
 
 
-def test_episode_without_a_street_ahead_is_truncated() -> None:
-    with environment("straight_on") as env:
-        last = follow_teacher(env, 200, seed=1)[-1]
-        assert (last.terminated, last.truncated, last.info["ending"]) == (False, True, "off course")
-        assert last.info["progress"] == 1.0
-
-
 def test_episode_ends_at_an_emergency_stop() -> None:
     with episode() as drive:
         drive.drive("forward", 10)
         drive.simulation.robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
         assert drive.drive("forward", 10).ending is Ending.STOPPED
-
-
-def test_episode_time_ends_it_in_the_tick_of_a_collision() -> None:
-    with episode("collision") as drive:
-        while drive.drive("flee", 1).ending is None:
-            pass
-        collided_after = drive.moment.ticks
-    with episode(ticks=collided_after) as drive:
-        assert drive.drive("flee", collided_after).ending is Ending.TIME
-
-
-def test_guard_stops_an_agent_that_pushes_on() -> None:
-    with episode() as drive:
-        while not drive.simulation.touching:
-            drive.drive("flee", 1)
-        drive.drive("flee", 50)
-        before = drive.simulation.pose
-        pressed = [drive.drive("flee", 1) for _ in range(50)]
-        assert any(GuardReason.FRONT_BUMPER in moment.guard for moment in pressed)
-        assert math.dist(before[:2], drive.simulation.pose[:2]) < 0.01

@@ -86,22 +86,6 @@ def test_pressed_on_action_ends_alike_in_both_loops(action: str) -> None:
         assert_equal(one.info, other.info)
 
 
-def test_robot_at_a_wall_is_held_alike_in_both_loops() -> None:
-    with environment(ends_at=("stuck",)) as bus, environment(ends_at=("stuck",), loop="batch") as batch:
-        for env in (bus, batch):
-            env.reset(seed=1)
-        one, other = (press_on(env, "flee", STEPS) for env in (bus, batch))
-        assert_equal(one.info, other.info)
-        assert one.info["collisions"] > 0 or not IS_COMPILED
-
-
-def test_episode_ends_stuck_in_the_batch_too() -> None:
-    with environment(loop="batch", world="b") as batch:
-        batch.reset(seed=1)
-        last = press_on(batch, "stand", 400)
-        assert (last.terminated, last.info["ending"]) == (True, "stuck")
-
-
 def test_robot_that_leaves_the_batch_goes_on_over_the_bus() -> None:
     # With such a short time any sensor repeats itself for too long at times, and the robot stops.
     guard = ROBOT.guard.model_copy(update={"frozen_infrared_s": 0.11})

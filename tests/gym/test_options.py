@@ -20,14 +20,6 @@ def test_reset_sets_the_robot_down_at_the_start_given() -> None:
         assert info["pose"] == pytest.approx(FREE, abs=1e-3)
 
 
-def test_reset_in_another_world_lasts_one_episode() -> None:
-    with environment() as env:
-        ours = env.reset(seed=1)[0]
-        theirs = env.reset(seed=1, options={"world": "c"})[0]
-        assert ours.tobytes() != theirs.tobytes()
-        assert ours.tobytes() == env.reset(seed=1)[0].tobytes()
-
-
 @pytest.mark.parametrize(
     ("options", "says"),
     [
@@ -72,15 +64,6 @@ def test_step_before_reset_and_unknown_action_are_refused() -> None:
             env.step(18)
 
 
-def test_averages_double_the_observation() -> None:
-    with environment() as env, environment(averages=True) as longer:
-        short, long = (follow_teacher(each, 20, seed=1)[-1].observation for each in (env, longer))
-        assert (short.shape, long.shape) == ((36,), (72,))
-        assert np.array_equal(long[:36], short)
-        assert longer.observation_space.contains(long)
-        assert longer.observation_names[36] == "s1 (10 s average)"
-
-
 def frame(env: TaskEnvironment) -> NDArray[np.uint8]:
     drawn = env.render()
     assert drawn is not None
@@ -103,16 +86,3 @@ def test_environment_without_render_mode_draws_nothing() -> None:
     with environment() as env:
         env.reset(seed=1)
         assert env.render() is None
-
-
-def test_vector_environment_equals_its_environments_alone() -> None:
-    vector = gymnasium.make_vec("kurt2rt/WallFollowing-v0", num_envs=2, vectorization_mode="sync")
-    observations, infos = vector.reset(seed=1)
-    for _ in range(20):
-        observations, *_, infos = vector.step(infos["teacher"]["index"])
-    vector.close()
-    with environment() as env:
-        for place, seed in enumerate((1, 2)):
-            alone = follow_teacher(env, 20, seed=seed)[-1]
-            assert observations[place].tobytes() == alone.observation.tobytes()
-            assert infos["pose"][place].tobytes() == alone.info["pose"].tobytes()

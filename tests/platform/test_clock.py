@@ -15,13 +15,6 @@ async def test_lockstep_clock_alternates_world_and_runtime() -> None:
     assert seen_s == [0.0, 0.01, 0.02]  # one step of the world before each deadline
 
 
-async def test_time_never_goes_back() -> None:
-    clock = LockstepClock(lambda: None)
-    await clock.wait_until(5.0)
-    await clock.wait_until(3.0)
-    assert clock.now_s() == 5.0
-
-
 async def test_others_get_their_turn_every_so_often() -> None:
     clock = LockstepClock(lambda: None, steps_per_checkpoint=10)
     turns_at_s: list[float] = []

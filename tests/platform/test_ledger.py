@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
+from kurt2rt.platform.ledger import Stage, TickTimer
 
 
 def tick(ledger: TickTimer, lateness_s: float) -> None:
@@ -10,11 +10,6 @@ def tick(ledger: TickTimer, lateness_s: float) -> None:
     for stage in Stage:
         ledger.lap(stage)
     ledger.end()
-
-
-def test_before_the_first_tick_all_shares_are_zero() -> None:
-    ledger = TickTimer()
-    assert ledger.tick() == ledger.lateness() == Percentiles(0.0, 0.0, 0.0)
 
 
 def test_shares_are_median_99th_percentile_and_worst() -> None:
@@ -35,14 +30,3 @@ def test_the_stages_make_up_the_tick(monkeypatch: pytest.MonkeyPatch) -> None:
         ledger.lap(stage)
     ledger.end()
     assert ledger.tick().worst_us == len(Stage)
-
-
-def test_only_the_last_ticks_are_kept() -> None:
-    ledger = TickTimer(capacity=10)
-    tick(ledger, 1.0)
-    for _ in range(9):
-        tick(ledger, 0.001)
-    assert ledger.lateness().worst_us == pytest.approx(1e6)
-    tick(ledger, 0.002)
-    assert ledger.lateness().worst_us == pytest.approx(2e3)
-    assert ledger.ticks == 11

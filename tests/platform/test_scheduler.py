@@ -156,15 +156,6 @@ async def test_scheduler_runs_or_counts_every_tick(
         assert -1e-9 <= late_s <= PERIOD_S + 1e-9
 
 
-async def test_scheduler_second_run_goes_on_without_misses() -> None:
-    run = Run(HandClock())
-    assert await run.ticks(3) == [1, 2, 3]
-    run.clock.time_s += 100.0
-    assert await run.ticks(2) == [4, 5]
-    assert run.ledger.missed_ticks == 0
-    assert run.records[-1].now_s == pytest.approx(100.03 + 2 * PERIOD_S)
-
-
 async def test_end_lets_it_return_after_the_tick_it_is_in() -> None:
     run = Run(HandClock())
 
@@ -174,9 +165,3 @@ async def test_end_lets_it_return_after_the_tick_it_is_in() -> None:
 
     assert await run.ticks(None, end_in_third) == [1, 2, 3]
     assert await run.ticks(2) == [4, 5]
-
-
-async def test_no_ticks_are_no_ticks() -> None:
-    run = Run(HandClock())
-    assert await run.ticks(0) == []
-    assert run.clock.deadlines_s == []

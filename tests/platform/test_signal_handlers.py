@@ -4,8 +4,6 @@ import signal
 import threading
 from types import FrameType
 
-import pytest
-
 from kurt2rt.platform.signal_handlers import SignalHandlers, heeded_signals
 
 
@@ -29,20 +27,6 @@ def test_signal_handlers_restore_the_previous_ones() -> None:
     assert signal.getsignal(signal.SIGUSR1) is signal.getsignal(signal.SIGUSR2) is signal.SIG_DFL
 
 
-def test_signal_handlers_restored_in_a_handler_run_once() -> None:
-    always, once = Ear(), Ear()
-
-    def hear(number: int, frame: FrameType | None) -> None:
-        hearing.restore()
-        once.hear(number, frame)
-
-    with SignalHandlers({signal.SIGUSR1: always.hear}), (hearing := SignalHandlers({signal.SIGUSR1: hear})):
-        for _ in range(3):
-            signal.raise_signal(signal.SIGUSR1)
-    assert once.heard == [signal.SIGUSR1]
-    assert always.heard == [signal.SIGUSR1] * 2
-
-
 def test_signal_ignored_at_the_start_stays_ignored() -> None:
     ear, ending = Ear(), {signal.SIGUSR1: None, signal.SIGUSR2: None}
     before = signal.signal(signal.SIGUSR1, signal.SIG_IGN)  # as nohup and shells start a program
@@ -55,13 +39,6 @@ def test_signal_ignored_at_the_start_stays_ignored() -> None:
     finally:
         signal.signal(signal.SIGUSR1, before)
     assert ear.heard == [signal.SIGUSR2]
-
-
-def test_it_is_given_back_by_who_fails() -> None:
-    before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(ZeroDivisionError), SignalHandlers({signal.SIGINT: signal.SIG_IGN}):
-        raise ZeroDivisionError
-    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_other_threads_hear_no_signals() -> None:

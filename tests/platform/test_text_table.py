@@ -1,15 +1,12 @@
 """Tables at any width: no word is broken, nothing is lost."""
 
-from io import StringIO
-
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
-from rich.console import Console
 from rich.text import Text
 
-from kurt2rt.platform.text_table import TextTable, print_whole, wrapped
+from kurt2rt.platform.text_table import TextTable
 from tests.examples import examples
 
 WORDS = st.text(st.characters(categories=("L", "N", "P", "S")), min_size=1, max_size=30)
@@ -42,24 +39,11 @@ def test_no_word_is_split_at_any_width(drawn: tuple[TextTable, list[str]], width
         assert cell_len(line) <= width or len(line.split()) == 1, "only one word may be too long"
 
 
-@examples(100)
-@given(tables(), st.sampled_from([60, 80]))
-def test_console_prints_the_lines_as_they_are(drawn: tuple[TextTable, list[str]], width: int) -> None:
-    console = Console(width=width, no_color=True)
-    with console.capture() as capture:
-        print_whole(console, drawn[0])
-    assert capture.get().split("\n")[:-1] == [line.plain for line in drawn[0].lines(width)]
-
-
 def table_of(*row: str) -> TextTable:
     table = TextTable("file")
     table.add_column("RLAs", number=True)
     table.add_row(*row)
     return table
-
-
-def test_table_that_fits_is_a_table() -> None:
-    assert [line.plain for line in table_of("a b", "12").lines(20)] == ["file  RLAs", "─" * 10, "a b     12"]
 
 
 def test_table_that_does_not_fit_is_a_block_a_row() -> None:
@@ -85,22 +69,6 @@ def test_words_wrap_at_spaces_and_keep_their_style() -> None:
         "       today",
     ]
     assert all("red" in str(line.spans) for line in lines[2:])
-
-
-def test_a_word_longer_than_the_line_stands_alone_and_whole() -> None:
-    assert [line.plain for line in wrapped(Text("see /a/very/long/path now"), 10)] == [
-        "see",
-        "/a/very/long/path",
-        "now",
-    ]
-
-
-def test_text_that_must_not_wrap_is_printed_in_one_line() -> None:
-    printed = StringIO()
-    console = Console(width=20, file=printed)
-    command = "kurt2rt exam mine.knowledge --seed 20017"
-    print_whole(console, Text(command, no_wrap=True), "a text that is too long")
-    assert printed.getvalue() == f"{command}\na text that is too\nlong\n"
 
 
 def test_row_with_another_number_of_cells_is_refused() -> None:

@@ -23,14 +23,6 @@ def in_a_thread(work: Callable[[], object]) -> None:
     thread.join()
 
 
-def test_the_items_are_the_same() -> None:
-    assert list(yield_gil(iter(range(10_000)))) == list(range(10_000))
-    assert list(yield_gil([])) == []
-    found: list[int] = []
-    in_a_thread(lambda: found.extend(yield_gil(range(10))))
-    assert found == list(range(10))
-
-
 def test_yield_gil_sleeps_in_other_threads_only(slept: list[float]) -> None:
     list(yield_gil(range(10)))
     assert slept == []

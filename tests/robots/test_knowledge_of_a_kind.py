@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hal.robot_plugins import find_task_of_robot, robots_task
-from hal.robot_settings import load_robot, load_robot_of, robot_that_task_names
+from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from hal.settings_files import find_config
 from kurt2rt.core.task_settings import load_task
@@ -28,20 +28,6 @@ def test_knowledge_names_the_task_of_its_robot(tmp_path: Path) -> None:
     path = tmp_path / "taught.knowledge"
     open_knowledge(path, SCHOOL, FLEEING).close()
     assert task_of_file(path) == "school/fleeing"
-
-
-@pytest.mark.parametrize(("task", "robot"), [("school/circle", "school"), ("fleeing", "kurt2"), ("no/task", "kurt2")])
-def test_task_brings_its_robot(task: str, robot: str) -> None:
-    assert load_robot_of(None, task).kind == robot
-    assert load_robot_of("turtlebot", task).kind == "turtlebot"
-
-
-def test_task_in_a_file_may_name_its_robot(tmp_path: Path) -> None:
-    path = tmp_path / "mine.yaml"
-    path.write_text(find_config("tasks", "school/fleeing").read_text(encoding="utf-8") + "robot: school\n")
-    assert load_robot_of(None, str(path)).kind == "school"
-    assert load_task(str(path)).robot == "school"
-    assert robot_that_task_names("fleeing") is None
 
 
 def test_first_task_of_a_robot_is_wall_following() -> None:

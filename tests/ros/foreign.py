@@ -127,9 +127,3 @@ class DiagnosticArray(IdlStruct):
 @dataclass
 class String(IdlStruct):
     data: str
-
-
-@dataclass
-class TriggerResponse(IdlStruct):
-    success: bool
-    message: str

@@ -24,8 +24,3 @@ def test_errors_of_endless_names_are_held_as_64_and_one_more() -> None:
     assert told(errors, 2, *names) == "motor 0: hot"
     assert len(errors._errors) == 65
     assert told(errors, 0, *names) == "more than 64 parts: mend them, and start the program again"
-
-
-def test_error_text_of_two_errors_does_not_change_to_and_fro() -> None:
-    errors = DiagnosticErrors(["motor"])
-    assert [told(errors, 2, name) for name in ("motor 1", "motor 2", "motor 1", "motor 2")] == ["motor 1: hot"] * 4

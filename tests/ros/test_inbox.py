@@ -35,15 +35,6 @@ def text_of(message: String, _age_s: float) -> str:
     return message.data
 
 
-def test_inbox_messages_come_out_in_order_and_once() -> None:
-    topics = LocalTopics(RosSettings())
-    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
-    for text in ("a", "b", "c"):
-        sender.publish(String(text))
-    assert list(inbox.take(text_of)) == ["a", "b", "c"]
-    assert list(inbox.take(text_of)) == []
-
-
 def test_inbox_age_is_of_stamp_and_waiting_together() -> None:
     topics, clock = LocalTopics(RosSettings()), SetClock()
     twists = topic_of("twists", TwistStamped)

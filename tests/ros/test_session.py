@@ -7,12 +7,11 @@ import pytest
 import zenoh
 from zenoh.ext import Int64, z_deserialize
 
-from kurt2rt.ros.messages import String, Twist, decode
+from kurt2rt.ros.messages import String, Twist
 from kurt2rt.ros.port import RosConnectionError
 from kurt2rt.ros.session import TriggerRequest, ZenohSession
 from kurt2rt.ros.settings import Naming, RosSettings
 from kurt2rt.ros.topic import key_expression, topic_of, trigger_service
-from tests.patience import PATIENCE_S
 from tests.ros.examples import TWIST
 from tests.ros.helpers import free_locator, wait_for
 
@@ -56,13 +55,6 @@ def bridged() -> Iterator[Ends]:
         yield Ends(stack, Naming.BRIDGE)
 
 
-def test_session_message_arrives_as_it_was_sent(ends: Ends) -> None:
-    received: list[bytes] = []
-    ends.robot.subscribe(CMD_VEL, received.append)
-    ends.deliver(received)
-    assert decode(received[0], Twist) == TWIST
-
-
 def test_session_service_answers_from_another_thread(ends: Ends) -> None:
     requests: list[TriggerRequest] = []
 
@@ -100,20 +92,6 @@ def test_session_rmw_zenoh_message_carries_an_attachment() -> None:
         fields = [z_deserialize(tuple[Int64, Int64, bytes], each.attachment) for each in seen if each.attachment]
         assert [number for number, _, _ in fields] == [fields[0][0] + index for index in range(len(seen))]
         assert {len(gid) for _, _, gid in fields} == {16}
-
-
-def test_session_rmw_zenoh_entities_are_seen_by_their_tokens() -> None:
-    with ExitStack() as stack:
-        ends = Ends(stack, Naming.RMW_ZENOH)
-        publisher = ends.runtime.publisher(CMD_VEL)
-        watcher = stack.enter_context(zenoh.open(_client(ends.locator)))
-
-        def tokens() -> set[str]:
-            replies = watcher.liveliness().get("@ros2_lv/0/**", timeout=PATIENCE_S)
-            return {str(each.ok.key_expr).split("/")[5] for each in replies if each.ok}
-
-        wait_for(lambda: {"NN", "MP"} <= tokens())
-        publisher.publish(TWIST)
 
 
 def test_session_other_end_closed_is_noticed_and_found_again(bridged: Ends) -> None:

@@ -32,7 +32,7 @@ SAYS = {
     "loop": (timeout_message(ShutdownStage.LOOP),),
 }
 """Last words by what hangs. Of two, a busy machine has the second: its time is over before the wait for the disk is."""
-RARE = {"start", "recorder", "keys"}
+RARE = {"start", "recorder", "keys", "network"}
 
 
 def is_from_the_tick(frame: can.Message) -> bool:

@@ -54,13 +54,6 @@ def test_live_measure_ignores_a_repositioned_robot() -> None:
     assert drive.measure.progress == pytest.approx(2.0, abs=0.01)
 
 
-def test_laps_are_those_of_the_simulation() -> None:
-    drive = Drive("wall_following")
-    drive.simulation.laps = 1.25
-    drive.go(1.0, 1.0)
-    assert (drive.measure.progress, drive.measure.unit) == (1.25, "laps")
-
-
 @pytest.mark.parametrize("task", ["eight", "streets", "fleeing"])
 def test_live_measure_without_live_metric_counts_metres(task: str) -> None:
     drive = Drive(task)

@@ -27,7 +27,6 @@ from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot, reply_of, turns
 from tests.core.rla.helpers import created, origin
-from tests.core.teaching.test_teacher_delay import asked_and_answered
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
 SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
@@ -88,27 +87,6 @@ def shift(tmp_path: Path) -> Iterator[Shift]:
     shift.writer.close()
 
 
-def test_post_tick_command_acts_in_the_next_tick(shift: Shift) -> None:
-    first = shift.run()
-    shift.next_command = Teach("t-1", "Ann", "forward")
-    assert shift.run().results == ()
-    assert [result.command_id for result in shift.run().results] == ["t-1"]
-    assert [record.tick for record in shift.seen] == [first.tick, first.tick + 1, first.tick + 2]
-
-
-def test_post_tick_durable_lesson_is_acknowledged(shift: Shift) -> None:
-    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
-    shift.run()
-    shift.write()
-    shift.run()
-    assert shift.settled == [Acknowledgement("t-1", 1, None, STAMP)]
-    assert shift.stamps == {"t-1": STAMP}
-    shift.run(10)
-    assert len(shift.settled) == 1
-    with Journal.read_only(shift.path) as journal:
-        assert [event.origin.command_id for event in journal.events()] == ["t-1"]
-
-
 def test_post_tick_lost_lesson_has_no_stamp(shift: Shift) -> None:
     shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     shift.run()
@@ -119,14 +97,6 @@ def test_post_tick_lost_lesson_has_no_stamp(shift: Shift) -> None:
     assert (good.error, bad.command_id, bad.sequence) == (None, "t-1", None)
     assert "row 1" in str(bad.error)
     assert shift.stamps == {"t-1": STAMP}
-
-
-def test_a_status_comes_once_per_period(shift: Shift) -> None:
-    assert shift.rounds.last is None
-    shift.run(2 * STATUS)
-    assert [status.record.tick for status in shift.statuses] == [10_000 + STATUS, 10_000 + 2 * STATUS]
-    assert shift.rounds.last is shift.statuses[-1]
-    assert (shift.rounds.last.unsaved_lessons, shift.rounds.last.saving_error) == (0, None)
 
 
 def knows(shift: Shift, rla_id: int) -> RlaCreated:
@@ -164,19 +134,6 @@ def test_post_tick_values_are_saved_and_restored(shift: Shift) -> None:
     assert again.reinforcement.value(7) == -0.25
 
 
-def test_learned_delay_of_a_teacher_is_saved_and_restored(shift: Shift) -> None:
-    delay = shift.desk.runtime.handler.delay
-    delay.on_decision(0, asks=False)  # the question of the fixture's first tick is over
-    asked_and_answered(delay, 30, 40, 50, 60)
-    shift.run(CHECKPOINT)
-    shift.write()
-    with Journal.read_only(shift.path) as journal:
-        saved = journal.statistics()
-    again = runtime_from(saved)
-    assert again.handler.delay.ticks("Ann", 1) == delay.ticks("Ann", 1) == 50
-    assert again.snapshot().answer_delays == {"Ann": (30, 40, 50, 60)}
-
-
 def runtime_from(saved: Statistics, *events: RlaCreated) -> Runtime:
     """Return the runtime of the next start of the program."""
     clock = LockstepClock(lambda: None)
@@ -203,18 +160,6 @@ def test_post_tick_question_comes_once(shift: Shift) -> None:
     (question,) = shift.questions
     assert isinstance(question, Question)
     assert question.nearest_rla is None
-
-
-def test_post_tick_question_at_the_border_of_r_comes_once(shift: Shift) -> None:
-    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
-    shift.run(2 * SECOND)  # it asked nothing: it was taught in its first tick
-    for _ in range(SECOND):
-        shift.run(1, counts=900)
-        shift.run(1, counts=100)
-    assert len(shift.questions) == 1
-    shift.run(SECOND, counts=100)
-    shift.run(1, counts=900)
-    assert shift.questions[1].nearest_rla == 1
 
 
 async def test_post_tick_channel_lesson_is_answered_once_durable(

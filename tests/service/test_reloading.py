@@ -12,7 +12,7 @@ import yaml
 from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.service.config_reload import ConfigReloader
-from kurt2rt.service.settings import ServiceSettings, load_service, reloaded_settings, with_unit_priority
+from kurt2rt.service.settings import ServiceSettings, load_service, with_unit_priority
 from kurt2rt.service.systemd.notifier import Notifier
 from tests.service.systemd.manager import manager
 
@@ -83,20 +83,6 @@ async def test_config_reload_requested_before_serve_is_done(tmp_path: Path) -> N
         await program.reload(lambda: None)
         assert len(program.told) == 1
         assert program.taken == [load_service()]
-
-
-@pytest.mark.parametrize("key", ["robot", "task", "knowledge", "port", "teachers"])
-def test_reloaded_settings_of_the_robot_are_postponed(key: str) -> None:
-    now = load_service()
-    read = now.model_copy(update={key: 9 if key == "port" else "other"})
-    reloaded = reloaded_settings(now, read)
-    assert reloaded == (now, (), (key,))
-
-
-def test_the_periods_of_the_rounds_may_change() -> None:
-    now = load_service()
-    read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5, "recordings_mb": 500})
-    assert reloaded_settings(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
 
 
 def test_settings_auto_priority_is_for_units_only() -> None:

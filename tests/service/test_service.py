@@ -5,9 +5,7 @@ import pytest
 
 from hal.control import encode_brake
 from hal.guard_reason import GuardReason
-from hal.robot import STANDSTILL
 from hal.settings import SettingsError
-from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import Question
@@ -67,19 +65,6 @@ async def test_the_next_run_goes_on_from_the_file(tmp_path: Path) -> None:
         statistics = journal.statistics()
         assert statistics.uses.keys() <= {rla.rla_id for rla in fold_journal(journal, 1.0).rlas}
         assert statistics.uses[1] >= 1
-
-
-async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
-    with rig() as here:
-        last = await here.serve(tmp_path / "knowledge", lambda _: None, duration_s=0.3)
-    assert here.now.tick >= 30  # beyond, when the last ones were missed
-    causes = {record.decision.cause for record in here.records}
-    assert causes - {DecisionCause.BLIND} == {DecisionCause.UNKNOWN}  # a loop that hung has old readings
-    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in here.records)
-    assert len(here.questions) == 1
-    assert last is not None
-    assert here.statuses[-1] is last
-    assert (last.unsaved_lessons, last.saving_error) == (0, None)
 
 
 async def test_serve_unknown_action_is_refused_before_driving(tmp_path: Path) -> None:

@@ -58,12 +58,6 @@ async def test_gate_with_one_error_twice_logs_it_once() -> None:
     assert [each.says for missing in gate.seen for each in missing] == ["off", "down"]
 
 
-async def test_gate_without_a_missing_dependency_logs_nothing() -> None:
-    gate = Gate()
-    await gate.gate.wait_for_all()
-    assert gate.seen == []
-
-
 async def test_gate_with_another_error_raises_it() -> None:
     with pytest.raises(ExceptionGroup) as raised:
         await Gate(ZeroDivisionError()).gate.wait_for_all()

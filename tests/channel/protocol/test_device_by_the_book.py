@@ -122,12 +122,3 @@ def test_device_by_the_book_answers_challenge_after_restart(tmp_path: Path) -> N
     assert numbers == sorted(set(numbers))
     stored = json.loads((tmp_path / "devices" / "local" / "sequence.json").read_text(encoding="utf-8"))
     assert stored == {"next-to-send": numbers[-1] + 1, "received": "unknown"}
-
-
-def test_a_folder_is_one_programs(tmp_path: Path) -> None:
-    async def story() -> None:
-        async with the_robot_and_its_device(tmp_path) as (at_work, _):
-            with pytest.raises(BlockingIOError):
-                Device(at_work.pairing.device.folder, at_work.port)
-
-    run_jumping(story)

@@ -1,19 +1,15 @@
 """Facts of a decision over the wire and back."""
 
-import math
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 
 import pytest
 
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.channel.protocol.schema import WireError
-from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.collect import LiveExplainer
-from kurt2rt.runs.explain.facts import MOST_OTHERS
-from tests.runs.explain.helpers import Lesson, facts, level, story, with_mid
+from tests.runs.explain.helpers import Lesson, facts, level, story
 from tests.teacher.helpers import teach
 
 
@@ -29,23 +25,6 @@ def lesson() -> Iterator[Lesson]:
 def test_the_facts_of_a_robot_survive_the_wire(lesson: Lesson) -> None:
     told = decode_answer(encode_answer({"why": plain_of_facts(lesson.facts)}))
     assert facts_of_plain(told["why"]) == lesson.facts
-
-
-def test_facts_codec_not_finite_is_null() -> None:
-    place = story(12, (0.0, 1.0), "turn_left", math.inf)
-    lost = replace(level((math.nan, 1.0), place), driver=None, level=MID)
-    asks = replace(with_mid(facts(level((1.0,)), "unknown", None), lost), asks_at=MID, infrared_age_s=math.inf)
-    plain = plain_of_facts(asks)
-    assert plain["mid"]["vector"] == [None, 1.0]
-    again = facts_of_plain(decode_answer(encode_answer(plain)))
-    assert repr(again) == repr(asks)
-
-
-def test_facts_codec_keeps_nearest_rlas_and_count() -> None:
-    crowd = level((0.0,), *(story(rla_id, (float(rla_id),), "back", float(rla_id)) for rla_id in range(1, 50)))
-    again = facts_of_plain(plain_of_facts(facts(crowd)))
-    assert [each.rla_id for each in again.basic.others] == list(range(2, 2 + MOST_OTHERS))
-    assert again.basic.count == 49
 
 
 def test_facts_codec_malformed_is_refused() -> None:

@@ -2,7 +2,6 @@
 
 import asyncio
 import json
-import os
 import secrets
 import shutil
 import subprocess
@@ -16,27 +15,16 @@ import anyio
 import pytest
 from aiocoap import oscore
 
-from kurt2rt.channel.protocol.codec import PATHS, decode_answer, decode_state, encode_request
+from kurt2rt.channel.protocol.codec import decode_answer, decode_state, encode_request
 from kurt2rt.channel.protocol.requests import TakeRequest
 from kurt2rt.channel.security.pairing import Pairing
 from kurt2rt.core.outcome import ResultCode
-from tests.channel.robot_at_work import RobotAtWork, journal_of, robot_at_work
+from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 from tests.patience import PATIENCE_S
 
 _NAMES = ("coap-client", "coap-client-notls", "coap-client-openssl", "coap-client-gnutls")
 _SECONDS = "5"
 _OSCORE_SWITCH = "-E "
-
-
-@pytest.fixture
-def coap_client() -> str:
-    """Client of libcoap, from Debian's libcoap3-bin."""
-    found = next(filter(None, map(shutil.which, _NAMES)), None)
-    if found is None:
-        if os.environ.get("CI") == "true":
-            pytest.fail("no coap-client on PATH; on Debian: apt-get install libcoap3-bin")
-        pytest.skip("no coap-client on PATH (Debian: libcoap3-bin)")
-    return found
 
 
 @pytest.fixture
@@ -58,24 +46,6 @@ async def said(client: str, *arguments: str) -> tuple[str, str]:
 
 def address(at_work: RobotAtWork, path: str) -> str:
     return f"coap://127.0.0.1:{at_work.port}{path}"
-
-
-async def test_aiocoap_stranger_discovers_and_is_refused(coap_client: str, tmp_path: Path) -> None:
-    async with robot_at_work(tmp_path) as at_work:
-        links, _ = await said(coap_client, address(at_work, "/.well-known/core"))
-        assert {link.split(">")[0] for link in links.strip().split(",")} == {f"<{path}" for path in ("/state", *PATHS)}
-        for path in ("/state", *PATHS, "/nowhere"):
-            method = ("-m", "get") if path == "/state" else ("-m", "post", "-e", "%80")
-            assert await said(coap_client, *method, address(at_work, path)) == ("", "4.01\n")
-        assert at_work.runtime.handler.authority.teacher is None
-        assert at_work.channel.site.observers == 0
-    assert journal_of(tmp_path) == []
-
-
-async def test_a_stranger_cannot_observe(coap_client: str, tmp_path: Path) -> None:
-    async with robot_at_work(tmp_path) as at_work:
-        assert await said(coap_client, "-s", "1", address(at_work, "/state")) == ("", "4.01\n")
-        assert at_work.channel.site.observers == 0
 
 
 @asynccontextmanager

@@ -30,11 +30,6 @@ def test_it_comes_back_as_it_went(report: HealthReport) -> None:
     assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
 
 
-def test_health_codec_drops_unknown_keys() -> None:
-    plain = plain_of(WELL)
-    assert report_of({**plain, "mood": "good", "ages": {**plain["ages"], "lidar_s": 1.0}}) == WELL
-
-
 def test_health_codec_any_error_text_stays_readable() -> None:
     odd = Trouble(TroubleCode.PROGRAM, 1.0, False, "channel", (), "first line\nsecond\t" + "x" * 1000)
     told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))

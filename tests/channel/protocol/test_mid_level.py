@@ -8,11 +8,8 @@ from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     CorrectRequest,
-    HelloRequest,
     LessonsRequest,
     NameRequest,
-    PlaceRequest,
-    PursueRequest,
     SeekLikeRequest,
     SeekRequest,
     SeekRlaRequest,
@@ -50,14 +47,6 @@ async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) ->
     return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, alternative)))
 
 
-async def test_the_robot_introduces_its_mid_level(desk: ChannelFixture) -> None:
-    hello = (await desk.ask(HelloRequest())).body
-    assert hello["mid"] == ["history", 12, 6.0]
-    assert hello["seeks"] is True
-    without = (await ChannelFixture(behaviours=TURNS).ask(HelloRequest())).body
-    assert (without["mid"], without["seeks"]) == (None, False)
-
-
 async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> None:
     told = picture(desk)
     assert (told.cause, told.asks_at, told.question) == ("unknown", MID, ())
@@ -89,14 +78,6 @@ async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> No
     assert {"mid-level", "RLA", "turn_left"} <= set(lessons[0][1].split())
 
 
-async def test_mid_level_device_without_levels_teaches_basic(desk: ChannelFixture) -> None:
-    reply = await desk.ask(desk.answer("forward"))
-    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="forward")
-    told = picture(desk)
-    assert told.mid is not None
-    assert told.mid.asks
-
-
 async def test_mid_level_correction_and_alternative_are_taught(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(CorrectRequest, "straight_on", None, MID))
@@ -112,20 +93,6 @@ async def test_mid_level_correction_and_alternative_are_taught(desk: ChannelFixt
     await desk.ask(desk.command(UndoRequest, None))
     added = await teach(desk, "turn_right", alternative=True)
     assert added == Outcome.of(ResultCode.RLA_ADDED, rla=3, level=MID, action="turn_right", next_to=1)
-
-
-async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: ChannelFixture) -> None:
-    await teach(desk, "turn_left")
-    reply = await desk.ask(desk.command(PursueRequest, "turn_right"))
-    assert outcome_of(reply) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_right")
-    told = picture(desk)
-    assert told.mid is not None
-    assert (told.behaviour, told.mid.behaviour, told.mid.rla, told.mid.overridden) == (
-        "turn_right",
-        "turn_right",
-        None,
-        True,
-    )
 
 
 async def test_mid_level_unknown_level_or_behaviour_is_refused(
@@ -195,27 +162,3 @@ async def test_surprise_between_states_is_told(desk: ChannelFixture) -> None:
     desk.run(3)
     desk.channel._states.on_tick(desk.record._replace(surprise=usual))
     assert picture(desk).surprise == SurpriseState(desk.tick - 3, MID, 1, 3, 3.0, True)
-
-
-async def test_reposition_resets_the_mid_level(desk: ChannelFixture) -> None:
-    mid = desk.runtime.mid
-    assert mid is not None
-    mid.situation.vector[0] = 2.0  # as if it had turned left somewhere
-    assert picture(desk).mid is not None
-    await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))
-    desk.run()
-    told = picture(desk).mid
-    assert told is not None
-    assert told.here == NOTHING_YET
-
-
-async def test_mid_level_without_place_still_has_state() -> None:
-    desk = ChannelFixture(behaviours=TURNS, mid="places", ground=Yard())
-    for way in TURNS[:2]:
-        await teach(desk, way, alternative=True)
-    desk.runtime.reposition()
-    desk.run()
-    told = picture(desk)
-    assert told.mid is not None
-    assert (told.cause, told.asks_at, told.mid.asks) == ("unknown", MID, True)
-    assert (told.nearest, told.distance, told.mid.distance) == (1, math.inf, math.inf)

@@ -54,46 +54,6 @@ class SlowDisk:
                 thread.join(timeout=PATIENCE_S)
 
 
-def test_context_request_is_unprotected_with_teacher_name(pairing: Pairing) -> None:
-    device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
-    answer_challenge(device, robot)
-    assert ask(device, robot, "forward") == "forward"
-    assert robot.authenticated_claims == ["phone"]
-    device.close()
-    robot.close()
-
-
-def test_context_in_use_stores_reservation_without_window(pairing: Pairing) -> None:
-    robot = opened(pairing.teacher, chunk=100)
-    assert json.loads(sequence_of(pairing.teacher)) == {"next-to-send": 100, "received": "unknown"}
-    robot.close()
-
-
-def test_closed_in_order_no_number_is_wasted(pairing: Pairing) -> None:
-    device, robot = opened(pairing.device.folder), opened(pairing.teacher)
-    answer_challenge(device, robot)
-    for _ in range(3):
-        ask(device, robot, "forward")
-    device.close()
-    robot.close()
-    assert json.loads(sequence_of(pairing.device.folder)) == {"next-to-send": 5, "received": "unknown"}
-
-
-def test_numbers_are_reserved_in_a_thread_before_they_run_out(
-    pairing: Pairing, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    context = opened(pairing.teacher, chunk=10)
-    disk = SlowDisk(monkeypatch)
-    numbers = [context.new_sequence_number() for _ in range(6)]
-    disk.wait()
-    numbers += [context.new_sequence_number() for _ in range(10)]
-    disk.wait()
-    assert numbers == list(range(16))
-    assert json.loads(sequence_of(pairing.teacher))["next-to-send"] == 30
-    assert disk.in_place == 0
-    context.close()
-
-
 def test_a_number_that_is_not_stored_yet_is_not_given_out(pairing: Pairing, monkeypatch: pytest.MonkeyPatch) -> None:
     context = opened(pairing.teacher, chunk=10)
     disk = SlowDisk(monkeypatch)
@@ -189,16 +149,6 @@ def test_two_programs_cannot_use_the_same_side(pairing: Pairing) -> None:
         oscore.FilesystemSecurityContext(str(pairing.teacher))  # aiocoap's own tools are kept out as well
     first.close()
     OscoreContext(pairing.teacher).close()
-
-
-def test_aiocoaps_own_context_reads_what_is_left(pairing: Pairing) -> None:
-    opened(pairing.teacher).close()
-    theirs = oscore.FilesystemSecurityContext(str(pairing.teacher))
-    assert theirs.new_sequence_number() == 0
-    theirs._destroy()
-    ours = opened(pairing.teacher)
-    assert ours.sender_sequence_number == 1
-    ours.close()
 
 
 def test_a_folder_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:

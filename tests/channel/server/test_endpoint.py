@@ -2,7 +2,6 @@
 
 import asyncio
 import gc
-import logging
 import random
 import weakref
 from collections.abc import AsyncIterator, Callable
@@ -156,15 +155,6 @@ async def test_a_request_is_answered(listens: str, asked: str) -> None:
         assert robot.endpoint.counters == Counters(received=1)
 
 
-async def test_aiocoaps_own_client_is_answered() -> None:
-    async with robot_at() as robot:
-        client = await aiocoap.Context.create_client_context(transports=["udp6"])
-        uri = f"coap://127.0.0.1:{robot.endpoint.port}/echo"
-        answer = await client.request(aiocoap.Message(code=aiocoap.POST, uri=uri, payload=b"left")).response
-        assert answer.payload == b"left"
-        await client.shutdown()
-
-
 @pytest.mark.parametrize(("listens", "asked"), [("127.0.0.1", "127.0.0.2"), ("127.0.0.1", "::1"), ("::1", "127.0.0.1")])
 async def test_bound_to_one_address_it_is_not_there_at_others(listens: str, asked: str) -> None:
     async with robot_at(listens) as robot:
@@ -180,12 +170,6 @@ async def test_a_second_robot_on_the_port_is_refused(second: str) -> None:
     async with robot_at() as robot:
         with pytest.raises(ChannelError, match=f" {robot.endpoint.port} "):
             await open_endpoint(Site(), second, robot.endpoint.port)
-
-
-async def test_closed_the_port_is_free_again() -> None:
-    async with robot_at() as robot:
-        port = robot.endpoint.port
-    await (await open_endpoint(Site(), "127.0.0.1", port)).close()
 
 
 @pytest.mark.parametrize(
@@ -266,18 +250,6 @@ async def test_a_site_that_fails_is_counted_and_nothing_is_written(caplog: pytes
     assert caplog.records == []
 
 
-async def test_of_single_messages_nothing_is_logged(caplog: pytest.LogCaptureFixture) -> None:
-    caplog.set_level(logging.DEBUG)
-    async with robot_at() as robot:
-        sender = await robot.sender()
-        caplog.clear()
-        sender.post("echo")
-        await sender.answer()
-        sender.send(b"junk")
-        await sender.ping()
-    assert caplog.records == []
-
-
 async def test_of_a_request_without_an_answer_nothing_is_left() -> None:
     async with robot_at() as robot:
         sender = await robot.sender()
@@ -324,15 +296,6 @@ async def test_endpoint_library_error_is_counted_and_next_is_read(
         assert "backlogs relation violated" in robot.endpoint.newest_failure
         sender.post("echo", b"still here")
         assert (await sender.answer()).payload == b"still here"
-
-
-async def test_closing_ends_what_is_being_answered() -> None:
-    async with robot_at() as robot:
-        robot.site.may_answer.clear()
-        sender = await robot.sender()
-        sender.post("echo")
-        await robot.site.asked.wait()
-    assert asyncio.all_tasks() == {asyncio.current_task()}
 
 
 def test_close_with_unanswered_request_raises_nothing_later() -> None:

@@ -1,7 +1,5 @@
 """The same command sent again gets the same reply, for as long as anybody may send it."""
 
-import pytest
-
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import done, refusal
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
@@ -24,23 +22,6 @@ async def test_the_first_reply_stands() -> None:
     outcomes.settle("x", done(7))
     outcomes.settle("x", refusal("refused", Outcome(RefusalCode.TOO_MANY), 8))
     assert waiting.result() == done(7)
-
-
-async def test_pending_settle_of_unknown_command_is_ignored() -> None:
-    outcomes = PendingCommands()
-    outcomes.settle("of the scripted teacher", done(7))
-    assert outcomes.get("of the scripted teacher") is None
-
-
-@pytest.mark.parametrize("capacity", [1, 3])
-async def test_the_oldest_settled_one_makes_room(capacity: int) -> None:
-    outcomes = PendingCommands(capacity)
-    for number in range(5):
-        outcomes.begin(f"{number}")
-        outcomes.settle(f"{number}", done(number))
-    assert len(outcomes) == capacity
-    kept = [number for number in range(5) if outcomes.get(f"{number}") is not None]
-    assert kept == list(range(5 - capacity, 5))
 
 
 async def test_pending_command_is_never_dropped() -> None:

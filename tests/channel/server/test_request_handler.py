@@ -1,20 +1,15 @@
 """The rules by which the robot takes what its teachers send, on ticks that the test makes."""
 
 import hashlib
-import re
 from collections.abc import Callable
 
 import pytest
 
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
-from kurt2rt.channel.protocol.facts_codec import facts_of_plain
-from kurt2rt.channel.protocol.health_codec import report_of
 from kurt2rt.channel.protocol.lesson_list import Contradicting, lesson_lines_of
-from kurt2rt.channel.protocol.limits import PART_BYTES
 from kurt2rt.channel.protocol.request_types import CommandRequest, StreamRequest
 from kurt2rt.channel.protocol.requests import (
-    PACKAGE,
     AnswerRequest,
     AppraiseRequest,
     BackToStartRequest,
@@ -61,21 +56,17 @@ from kurt2rt.channel.protocol.simulation import SIMULATION
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
-from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.commands import Stop, Teach, Watch
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import SimulatedClock
-from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of, turns, why
+from tests.channel.channel_fixture import BOOT, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
-from tests.service.health.reports import ILL
 
 LAST_START = b"last"
 MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
@@ -140,12 +131,6 @@ def test_every_path_has_a_rule_here() -> None:
 # Streams.
 
 
-async def test_press_drives_in_next_tick_and_is_answered_at_once(desk: ChannelFixture) -> None:
-    reply = await desk.stream(desk.press())
-    assert reply == Reply(ReplyStatus.DONE, {"t": desk.tick})
-    assert desk.run().decision.cause is DecisionCause.TEACHER
-
-
 async def test_hold_drives_and_its_release_tells_the_lessons(desk: ChannelFixture) -> None:
     desk.run()
     assert await desk.stream(desk.hold()) == Reply(ReplyStatus.DONE, {"t": desk.tick})
@@ -183,21 +168,6 @@ async def test_lessons_of_a_hold_are_one_line_and_undone_as_one(desk: ChannelFix
     assert (await desk.ask(LessonsRequest(1))).body["lessons"][0][6] is True
 
 
-async def test_late_correction_is_answered_with_its_decision(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer())
-    late = await desk.ask(desk.command(CorrectRequest, "back", None, "basic", True))
-    outcome = outcome_of(late)
-    assert outcome is not None
-    assert set(outcome.fields) >= {"decision_tick", "decided_by", "put_back_ticks"}
-
-
-async def test_watching_makes_the_teacher_be_there(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer())
-    assert desk.record.decision.cause is DecisionCause.UNATTENDED
-    await desk.stream(desk.watch())
-    assert desk.run().decision.cause is DecisionCause.RLA
-
-
 @pytest.mark.parametrize("kind", ["watch", "press"])
 @pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
 async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
@@ -223,17 +193,6 @@ async def test_only_the_newest_message_of_a_device_counts(desk: ChannelFixture) 
     assert why(await desk.stream(desk.press(), number=7)) == "old"
     assert why(await desk.stream(desk.watch(), number=6)) == "old"
     assert why(await desk.stream(desk.press(), number=8)) == ""
-
-
-async def test_each_device_counts_for_itself(desk: ChannelFixture) -> None:
-    await desk.stream(desk.watch(), "ann", number=1000)
-    assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
-
-
-async def test_stream_renewed_pairing_restarts_numbers(desk: ChannelFixture) -> None:
-    await desk.stream(desk.watch(), number=1000)
-    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == ""
-    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == "old"
 
 
 async def test_stream_stale_message_leaves_order_unchanged(desk: ChannelFixture) -> None:
@@ -331,21 +290,6 @@ async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[Com
     assert desk.shelf.labels == []
 
 
-async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: ChannelFixture) -> None:
-    task = await desk.send(desk.command(PhaseRequest, Phase.CORRECTIONS))
-    assert not task.done()
-    tick = desk.run().tick
-    phase_set = Outcome.of(ResultCode.PHASE_SET, phase=2, name="corrections")
-    assert await reply_of(task) == done(tick, phase_set)
-
-
-async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: ChannelFixture) -> None:
-    request = AnswerRequest(BOOT, bytes.fromhex("00ff00ff00ff00ff"), desk.tick, "forward", None)
-    await desk.ask(request, "ann-phone")
-    assert [event.origin.command_id for event in desk.notebook.events] == ["ann-phone-00ff00ff00ff00ff"]
-    assert desk.notebook.events[0].origin.teacher == "ann-phone"
-
-
 async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture) -> None:
     task = await desk.send(desk.answer())
     desk.run(50)
@@ -357,29 +301,6 @@ async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture
     lesson = desk.notebook.events[0].origin.command_id
     taught = Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward")
     assert reply == done(desk.tick, taught, lesson=lesson, row=1)
-
-
-async def test_answer_without_a_lesson_has_no_key_for_it(desk: ChannelFixture) -> None:
-    taught = await desk.ask(desk.answer())
-    agreed = await desk.ask(desk.answer(), write=False)
-    undone = await desk.ask(desk.command(UndoRequest, taught.body["lesson"]))
-    assert outcome_of(undone) == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: forward")
-    assert ["lesson" in each.body for each in (taught, agreed, undone)] == [True, False, False]
-
-
-async def test_answer_to_the_release_of_a_hold_names_its_lessons(desk: ChannelFixture) -> None:
-    await desk.ask(desk.command(TakeRequest))
-    await desk.stream(desk.hold("back"))
-    desk.run(11)
-    released = await desk.ask(StopRequest(desk.new_id(), 1))
-    assert released.body["lesson"] == released.body["fields"]["lesson"] == "ann-hold-1"
-    assert (await desk.ask(desk.command(UndoRequest, released.body["lesson"]))).status is ReplyStatus.DONE
-
-
-async def test_command_without_change_is_answered_without_disk(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer())
-    reply = await desk.ask(desk.answer(), write=False)
-    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
 
 
 async def test_command_repeated_while_pending_counts_once(desk: ChannelFixture) -> None:
@@ -396,13 +317,6 @@ async def test_command_repeated_while_pending_counts_once(desk: ChannelFixture) 
     assert replies[1:] == [replies[0]] * 2
     assert await reply_of(await desk.send(request)) == replies[0]
     assert len(desk.notebook.events) == 1
-
-
-async def test_command_copy_with_old_state_gets_same_reply(desk: ChannelFixture) -> None:
-    request = desk.answer()
-    first = await desk.ask(request)
-    desk.run(COMMAND_TICKS + 100)
-    assert await reply_of(await desk.send(request)) == first
 
 
 async def test_command_of_earlier_start_is_answered_as_repeated(
@@ -428,15 +342,6 @@ async def test_the_same_id_of_two_devices_is_two_commands(desk: ChannelFixture) 
     request = desk.command(PhaseRequest, Phase.CORRECTIONS)
     assert (await desk.ask(request, "ann")).status is ReplyStatus.DONE
     assert why(await desk.ask(request, "ben")) == "held"
-
-
-async def test_command_refusal_is_kept_as_reply(desk: ChannelFixture) -> None:
-    request = desk.command(DeleteRequest, 1)
-    refused = await desk.ask(request)
-    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.NO_RLA, rla=1))
-    await desk.ask(desk.answer())
-    assert await reply_of(await desk.send(request)) == refused
-    assert len(desk.runtime.level.system) == 1
 
 
 async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: ChannelFixture) -> None:
@@ -547,48 +452,6 @@ async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: ChannelFi
 
 
 # Copies of the knowledge.
-
-
-async def test_save_repeated_makes_one_copy_with_name_and_hash(desk: ChannelFixture) -> None:
-    request = desk.command(SaveRequest, "before lunch")
-    desk.shelf.may_finish.clear()
-    first, again = await desk.send(request), await desk.send(request)
-    desk.run(20)
-    assert not first.done()
-    desk.shelf.may_finish.set()
-    reply = await reply_of(first)
-    assert reply.body == {
-        "t": desk.tick,
-        "ok": True,
-        "text": text_of(Outcome.of(ResultCode.COPIED, name="lessons.knowledge", size=4096)),
-        "code": "copied",
-        "fields": {"name": "lessons.knowledge", "size": 4096},
-        "name": "lessons.knowledge",
-        "sha256": "ab" * 32,
-        "size": 4096,
-    }
-    assert await reply_of(again) == reply
-    assert desk.shelf.labels == ["before lunch"]
-
-
-async def test_export_writes_one_file(desk: ChannelFixture) -> None:
-    reply = await desk.ask(desk.command(ExportRequest))
-    assert (reply.status, reply.body["name"]) == (ReplyStatus.DONE, "lessons.csv")
-
-
-async def test_an_export_as_package_makes_the_archive(desk: ChannelFixture) -> None:
-    reply = await desk.ask(desk.command(ExportRequest, PACKAGE))
-    assert (reply.status, reply.body["name"]) == (ReplyStatus.DONE, "lessons.zip")
-
-
-async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: ChannelFixture) -> None:
-    content = bytes(range(256)) * 80
-    desk.shelf.files["lessons.zip"] = content
-    parts = [await desk.ask(FileRequest("lessons.zip", offset)) for offset in (0, PART_BYTES, 2 * PART_BYTES)]
-    assert b"".join(each.body["part"] for each in parts) == content
-    assert [each.body["size"] for each in parts] == [len(content)] * 3
-    unknown = await desk.ask(FileRequest("../robot.key", 0))
-    assert (why(unknown), outcome_of(unknown)) == ("refused", Outcome.of(RefusalCode.NO_FILE, name="../robot.key"))
 
 
 def not_durable(code: RefusalCode, line: str) -> Outcome:
@@ -779,25 +642,6 @@ async def test_a_real_robot_has_no_next_run(desk: ChannelFixture) -> None:
 # Looking.
 
 
-async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: ChannelFixture) -> None:
-    reply = await desk.ask(HelloRequest())
-    told = decode_answer(encode_answer(reply.body))
-    assert told["boot"] == BOOT
-    assert told["tick"] == desk.tick
-    assert (told["robot"], told["task"], told["simulated"]) == (ROBOT.name, "wall_following", False)
-    assert told["actions"] == list(desk.runtime.level.repertoire)
-    assert len(told["sensors"]) == len(ROBOT.infrared.sensors)
-    assert told["period_s"] == 0.01
-
-
-async def test_health_returns_last_report_to_any_device(desk: ChannelFixture) -> None:
-    assert (await desk.ask(HealthRequest())).body == {"health": None}
-    desk.health = ILL
-    for device in ("ann", "bob"):
-        told = decode_answer(encode_answer((await desk.ask(HealthRequest(), device)).body))
-        assert report_of(told["health"]) == ILL
-
-
 async def test_why_is_limited_to_ten_a_second(desk: ChannelFixture) -> None:
     """An answer takes a millisecond of the loop, so each device has a limit."""
     desk.run(1)
@@ -810,48 +654,6 @@ async def test_why_is_limited_to_ten_a_second(desk: ChannelFixture) -> None:
         desk.run(1)
         answered += (await desk.ask(WhyRequest(), "bob")).status is ReplyStatus.DONE
     assert answered == 10
-
-
-async def test_why_returns_facts_to_any_device(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer("forward"))
-    told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))
-    facts = facts_of_plain(told["why"])
-    assert facts.tick == desk.tick
-    assert facts.basic.nearest is not None
-    (taught,) = facts.basic.nearest.acts
-    assert (taught.teacher, taught.stamp) == ("ann", STAMP)
-    assert taught.text.startswith("RLA 1 ")
-    assert "forward" in taught.text
-
-
-async def test_lessons_are_listed_newest_first_with_origin(desk: ChannelFixture) -> None:
-    assert (await desk.ask(LessonsRequest(20))).body == {"lessons": [], "against": []}
-    await desk.ask(desk.answer("forward"))
-    taught_at = desk.tick
-    await desk.ask(desk.command(CorrectRequest, "back", None))
-    corrected_at = desk.tick
-    await desk.ask(desk.command(UndoRequest, None))
-    task = await desk.send(desk.command(CorrectRequest, "stand", None))
-    desk.run()
-    rows = (await desk.ask(LessonsRequest(20), "ben", write=False)).body["lessons"]
-    assert [row[2:] for row in rows] == [
-        ["ann", 1, desk.tick, "", False],
-        ["ann", 1, corrected_at, STAMP, True],
-        ["ann", 1, taught_at, STAMP, False],
-    ]
-    named = [re.findall("RLA 1|stand|back|forward", row[1]) for row in rows]
-    assert named == [["RLA 1", "stand", "forward"], ["RLA 1", "back", "forward"], ["RLA 1", "forward"]]
-    assert all(row[0].startswith("ann-") for row in rows)
-    assert (await desk.ask(LessonsRequest(1))).body["lessons"] == rows[:1]
-    assert (await desk.ask(LessonsRequest(0))).body["lessons"] == []
-    desk.write()
-    await reply_of(task)
-
-
-async def test_a_real_robot_has_no_world_to_tell_of(desk: ChannelFixture) -> None:
-    for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
-        reply = await desk.ask(request)
-        assert (reply.status, outcome_of(reply)) == (ReplyStatus.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
 
 
 async def test_a_simulated_world_is_told_and_changed() -> None:
@@ -890,29 +692,6 @@ async def test_impossible_change_of_the_world_is_refused_with_code() -> None:
 # The critic.
 
 
-async def test_the_robot_tells_what_its_critic_can_be_taught(desk: ChannelFixture) -> None:
-    hello = (await desk.ask(HelloRequest())).body
-    assert hello["appraisals"] == [["bad", -1], ["neutral", 0], ["good", 1]]
-    assert hello["trusted_from"] == load_critic().agreement.bound
-
-
-async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: ChannelFixture) -> None:
-    meant = desk.run(400, counts=100).tick
-    desk.run(400, counts=700)
-    blame = desk.command(AppraiseRequest, "bad", meant)
-    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
-    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
-    assert opinion_at(desk, 700) is None
-    assert opinion_at(desk, 100) == -1
-    again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
-    assert (again.status, outcome_of(again)) == (
-        ReplyStatus.DONE,
-        Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"),
-    )
-    lessons = (await desk.ask(LessonsRequest(5))).body["lessons"]
-    assert [text.startswith("appraisal RLA 1 ") for _, text, *_ in lessons] == [True]  # that it agreed is no lesson
-
-
 async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: ChannelFixture) -> None:
     refused = await desk.ask(desk.command(AppraiseRequest, "lovely", None))
     known = ("bad", "neutral", "good")
@@ -920,28 +699,7 @@ async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Cha
     assert outcome_of(refused) == Outcome.of(RefusalCode.NO_APPRAISAL, appraisal="lovely", known=known)
 
 
-def opinion_at(desk: ChannelFixture, counts: int) -> int | None:
-    """Return the critic's opinion after the sensors have shown the same for a while."""
-    return desk.channel._states.build(desk.run(400, counts=counts)).opinion
-
-
 # Several taught behaviours.
-
-
-async def test_pursue_selects_one_of_the_behaviours() -> None:
-    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
-    assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
-    reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
-    assert (reply.status, outcome_of(reply)) == (
-        ReplyStatus.DONE,
-        Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left"),
-    )
-    reply = await desk.ask(desk.command(PursueRequest, "fly"))
-    assert why(reply) == "refused"
-    assert outcome_of(reply) == Outcome.of(
-        RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=("straight_on", "turn_left")
-    )
-    assert desk.runtime.active_behaviour.behaviour == "turn_left"
 
 
 async def test_pursue_before_stop_or_other_behaviour_is_refused() -> None:
@@ -981,20 +739,6 @@ async def test_stop_copy_sent_before_resume_does_not_stop() -> None:
     assert await desk.ask(stop, "ann") == answered
     assert outcome_of(await desk.ask(go)) == Outcome(ResultCode.RESUMED)
     assert desk.run().decision.cause is not DecisionCause.STOPPED
-
-
-async def test_place_sent_before_stop_is_refused() -> None:
-    yard = Yard()
-    desk = ChannelFixture(ground=yard)
-    before = desk.command(PlaceRequest, 1.0, 2.0, 0.5)
-    desk.run(5)
-    await desk.ask(desk.stop(), "ben")
-    refused = await desk.ask(before)
-    assert why(refused) == "refused"
-    assert outcome_of(refused) == Outcome(RefusalCode.STOPPED_SINCE)
-    assert yard.changes == []
-    await desk.ask(desk.command(PlaceRequest, 3.0, 1.0, 0.5))
-    assert yard.changes == [(3.0, 1.0, 0.5)]
 
 
 async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixture) -> None:

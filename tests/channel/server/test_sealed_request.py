@@ -125,8 +125,3 @@ def test_changed_datagrams_pass_only_with_a_whole_seal(sides: Sides, draws: int)
 )
 def test_sealed_request_incomplete_is_none(rest: str, why: str) -> None:
     assert SealedRequest.parse(bytes((0x50, 2, 0, 1)) + bytes.fromhex(rest)) is None, why
-
-
-def test_a_key_context_is_read() -> None:
-    sealed = SealedRequest.parse(bytes((0x50, 2, 0, 1)) + bytes.fromhex("98 19 07 02 c0c1 aabbcc ff 00"))
-    assert sealed == SealedRequest(b"\xaa\xbb\xcc", b"\xc0\xc1", b"\x07", b"\x00")

@@ -38,10 +38,3 @@ def test_upload_unfit_part_is_refused_with_code() -> None:
     with pytest.raises(CommandRefusedError) as refused:
         upload.pop("phone", b"1", ABC)
     assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
-
-
-def test_another_file_or_device_takes_the_place() -> None:
-    upload = Upload()
-    upload.add("phone", b"1", 0, b"ab")
-    assert upload.add("laptop", b"1", 0, b"x") == 1
-    assert add(upload, 2, b"c") == Outcome(RefusalCode.UPLOAD_UNKNOWN)

@@ -1,6 +1,5 @@
 """The checklist from end to end: a robot on a block, an operator who does as asked, and the stored progress."""
 
-import json
 from pathlib import Path
 
 import pytest
@@ -9,8 +8,7 @@ from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, step_named, steps_to_run
-from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text
+from kurt2rt.checks.commission.fault import SkipCode
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, load_progress
 from kurt2rt.checks.commission.report import passed
@@ -102,33 +100,6 @@ async def test_checklist_left_session_brakes_a_standing_robot(tmp_path: Path) ->
         assert workshop.robot.controller.commands == (0.0, 0.0, True, True)
 
 
-async def test_failed_step_can_be_repeated_after_the_repair(tmp_path: Path) -> None:
-    def mend(question: OperatorQuestion) -> str | None:
-        if question.about is not QuestionKind.AFTER_FAILURE:
-            return None
-        workshop.wiring.reversed_motors = ()
-        return "r"
-
-    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
-        session = Session(workshop, tmp_path, mend)
-        session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.run("wheels")
-    assert session.person.lines(Tone.TO_DO) == [fault_text(StepFault.of(FaultCode.MOTOR_REVERSED, side="right"))]
-    assert session.outcome("wheels") is StepOutcome.PASSED
-    assert blocking_failures(session.progress) == []
-
-
-async def test_passed_step_skipped_later_stays_passed(tmp_path: Path) -> None:
-    with Workshop() as workshop:
-        session = Session(workshop, tmp_path)
-        await session.run("bumpers")
-        again = Session(workshop, tmp_path, lambda question: SKIP if question.about is QuestionKind.BEGIN else None)
-        again.progress = session.progress
-        await again.run("bumpers", "sensors")
-    assert again.outcome("bumpers") is StepOutcome.PASSED
-    assert again.outcome("sensors") is StepOutcome.SKIPPED
-
-
 def skips_what_failed(again: str) -> Instead:
     """Return answers that skip a failed step: when it begins again (`again`: "r"), or at once in another session."""
     failed = not again
@@ -157,17 +128,6 @@ async def test_failed_step_skipped_later_stays_failed(tmp_path: Path) -> None:
     (stands,) = another_day.person.lines(Tone.BAD)
     assert stands.startswith(step_named("wheels").title)
     assert f"{StepOutcome.FAILED} on {TODAY}" in stands
-
-
-async def test_failed_step_skipped_on_purpose_keeps_its_to_do(tmp_path: Path) -> None:
-    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
-        session = Session(workshop, tmp_path)
-        session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.run("wheels")
-        await session.run("bumpers", skipped=("wheels",))
-    assert blocking_failures(session.progress) == []
-    assert session.outcome("wheels") is StepOutcome.SKIPPED
-    assert session.faults("wheels") == (StepFault.of(FaultCode.MOTOR_REVERSED, side="right"),)
 
 
 async def test_findings_of_another_robot_are_refused(tmp_path: Path) -> None:
@@ -201,11 +161,3 @@ def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(SettingsError) as refused:
         load_progress(path)
     assert refused.value.where == str(path)
-
-
-def test_progress_of_an_earlier_version_has_no_codes(tmp_path: Path) -> None:
-    path = tmp_path / "robbie.json"
-    record = {"outcome": "failed", "at": TODAY, "who": "anna", "measured": [], "to_do": ["Mend it"]}
-    path.write_text(json.dumps({"name": "robbie", "base": "kurt2", "bus": "can0", "steps": {"wheels": record}}))
-    wheels = load_progress(path).steps["wheels"]
-    assert (wheels.to_do, wheels.faults, wheels.skipped) == (("Mend it",), (), None)

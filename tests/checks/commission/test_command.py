@@ -81,29 +81,6 @@ def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tm
     assert not (tmp_path / "var" / "robots").exists()
 
 
-def test_findings_are_written_if_the_rest_is_skipped(type_at: Type, tmp_path: Path) -> None:
-    earlier(tmp_path, "sensors", "infrared")
-    with Workshop() as workshop:
-        said = type_at(
-            Typed(),
-            workshop.spec,
-            "--name",
-            "robbie",
-            "--skip",
-            "sensors,infrared",
-            "--out",
-            "mine.yaml",
-            "--who",
-            "ber\nt",
-        )
-    assert said.exit_code == 0
-    assert "robbie: not" in said.out
-    assert (tmp_path / "mine.yaml").read_text().startswith("# robbie, ")
-    assert "NOT PASSED" in (tmp_path / "mine.yaml").read_text()
-    assert "# sensors: skipped, " in (tmp_path / "mine.yaml").read_text()
-    assert " UTC, ber t\n" in (tmp_path / "mine.yaml").read_text()
-
-
 @pytest.mark.parametrize("in_the_way", ["robbie.json", "robbie.json.new"])
 def test_commission_unusable_progress_file_prints_one_line(
     kurt2rt: CommandLine, tmp_path: Path, in_the_way: str

@@ -10,23 +10,9 @@ from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
-from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop, with_channels
+from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop
 
 # Sensors
-
-
-async def test_sensors_step_exchanged_channels_are_found(tmp_path: Path) -> None:
-    with Workshop(with_channels(s1="ADC08", s2="ADC07", s11="BDC10")) as workshop:
-        session = Session(workshop, tmp_path)
-        await session.run("sensors")
-    found = session.progress.findings.channels
-    assert (found["s1"], found["s2"], found["s11"]) == ("ADC08", "ADC07", "BDC10")
-    assert session.outcome("sensors") is StepOutcome.PASSED
-    table = session.measured("sensors")
-    assert len(table) == 18
-    assert table[0].startswith("s1 left front: ADC08, ")
-    assert table[0].endswith(" ADC07")
-    assert table[2].startswith("s3 left mid front: BDC00, ")
 
 
 async def test_a_dead_sensor_is_given_up_and_told(tmp_path: Path) -> None:
@@ -48,30 +34,6 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
     assert QuestionKind.HAND not in [question.about for question in session.person.asked]
     assert session.faults("sensors") == (StepFault(FaultCode.CHANNELS_SILENT),)
     assert session.progress.findings.channels == {"s9": "BDC04"}
-
-
-async def test_sensors_step_skipped_sensor_is_neither_found_nor_dead(tmp_path: Path) -> None:
-    def skip(question: OperatorQuestion) -> str | None:
-        return SKIP if question.about is QuestionKind.HAND and question.subject != "s9" else None
-
-    with Workshop() as workshop:
-        session = Session(workshop, tmp_path, skip)
-        await session.run("sensors")
-    assert session.progress.findings.channels == {"s9": "BDC04"}
-    assert session.progress.findings.dead_sensors == ()
-    assert re.findall("s1|[AB]DC..", session.measured("sensors")[0]) == ["s1", "ADC07"]
-    others = ", ".join(each.name for each in BASE.infrared.sensors if each.name != "s9")
-    assert session.faults("sensors") == (StepFault.of(FaultCode.SENSORS_NOT_TRIED, sensors=others),)
-
-
-async def test_sensors_step_keeps_channels_found_before(tmp_path: Path) -> None:
-    with Workshop() as workshop:
-        session = Session(workshop, tmp_path)
-        session.knows(channels={each.name: each.channel for each in BASE.infrared.sensors if each.name != "s9"})
-        await session.run("sensors")
-    assert [question.subject for question in session.person.asked if question.about is QuestionKind.HAND] == ["s9"]
-    assert session.outcome("sensors") is StepOutcome.PASSED
-    assert len(session.progress.findings.channels) == 18
 
 
 @dataclass

@@ -4,19 +4,14 @@ import random
 from pathlib import Path
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from hal.kurt2_settings import Kurt2Settings
-from hal.robot_settings import InfraredSettings
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.fault_text import fields_of
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
 from kurt2rt.checks.commission.step import StepOutcome
-from tests.checks.commission.workshop import BASE, Session, Workshop
-from tests.examples import examples
+from tests.checks.commission.workshop import Session, Workshop
 
 USUAL = IrLaw(86.016, 0.04, 64.4)
 
@@ -39,30 +34,6 @@ def test_exact_readings_give_the_law_back() -> None:
     assert fit.law.bias_counts == pytest.approx(64.4, abs=2.0)
     assert fit.outliers == ()
     assert max(map(abs, fit.residuals)) < 0.5
-
-
-@examples(40)
-@given(
-    st.builds(IrLaw, st.floats(70.0, 110.0), st.floats(0.02, 0.06), st.floats(30.0, 80.0)).filter(
-        lambda law: 260.0 < law.counts_at(0.10) < 990.0 and 20.0 < law.counts_at(0.60) < 0.35 * law.counts_at(0.10)
-    ),
-    st.integers(0, 9),
-)
-def test_fit_law_finds_any_plausible_law_in_noisy_readings(law: IrLaw, seed: int) -> None:
-    """Compare predicted readings, with a tolerance for the error of a ruler."""
-    fit = fit_law(readings(law, 0.01, seed))
-    for distance_m in (0.12, 0.25, 0.35, 0.45):
-        assert fit.law.counts_at(distance_m) == pytest.approx(law.counts_at(distance_m), rel=0.03, abs=3.0)
-
-
-@pytest.mark.parametrize("at", range(len(DISTANCES_M)))
-def test_one_reading_with_the_board_elsewhere_is_left_out(at: int) -> None:
-    taken = readings(USUAL, 0.01)
-    taken[at] = taken[at]._replace(counts=taken[at].counts * 1.8)
-    fit = fit_law(taken)
-    assert fit.outliers == (at,)
-    for distance_m in (0.15, 0.25, 0.35, 0.45):
-        assert fit.law.counts_at(distance_m) == pytest.approx(USUAL.counts_at(distance_m), rel=0.06, abs=4.0)
 
 
 @pytest.mark.parametrize(
@@ -101,37 +72,6 @@ def test_fit_law_implausible_readings_are_refused(
 
 
 # The step
-
-
-def other_law(**changes: float) -> Kurt2Settings:
-    """Return a robot whose sensors have another law; plateau and floor follow from that law."""
-    law = BASE.infrared.model_copy(update=changes)
-    near, far = law.counts_at(law.near_m), law.counts_at(law.far_m)
-    update = {"plateau_counts": round(near), "floor_counts": round(far)}
-    return BASE.model_copy(update={"infrared": law.model_copy(update=update)})
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [pytest.param({"numerator_counts_m": 100.0}, marks=pytest.mark.deep), {"offset_m": 0.055, "bias_counts": 50.0}],
-    ids=str,
-)
-async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[str, float]) -> None:
-    true = other_law(**changes)
-    with Workshop(true, seed=4) as workshop:
-        session = Session(
-            workshop, tmp_path, lambda question: "s11 s1 s5" if question.about is QuestionKind.WHICH else None
-        )
-        await session.run("infrared")
-    assert session.outcome("infrared") is StepOutcome.PASSED
-    found = session.progress.findings.law
-    assert found is not None
-    fitted = InfraredSettings.model_construct(**{**BASE.infrared.model_dump(), **found.model_dump()})
-    for distance_m in (0.12, 0.2, 0.3, 0.45):
-        # Three sensors with gains of their own, 5 % either way.
-        assert fitted.counts_at(distance_m) == pytest.approx(true.infrared.counts_at(distance_m), rel=0.04)
-    assert found.far_m == pytest.approx(0.6, abs=0.03)
-    assert found.floor_counts == pytest.approx(true.infrared.floor_counts, abs=3)
 
 
 async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Path) -> None:

@@ -3,8 +3,6 @@
 import io
 import os
 import pty
-import re
-from pathlib import Path
 
 import anyio
 import pytest
@@ -26,14 +24,6 @@ async def test_a_pipe_keeps_each_line_for_its_question() -> None:
         os.close(writing)
         assert await keyboard.line() is None
         assert not keyboard.echoes
-
-
-async def test_a_file_is_read_to_its_end(tmp_path: Path) -> None:
-    path = tmp_path / "answers"
-    path.write_text("one\n\n")
-    with path.open() as lines:
-        keyboard = Keyboard(lines)
-        assert [await keyboard.line() for _ in range(3)] == ["one", "", None]
 
 
 async def test_keyboard_discards_input_typed_before_the_question() -> None:
@@ -83,23 +73,3 @@ async def test_console_operator_repeats_questions_and_labels_lines() -> None:
     assert said.splitlines()[:3] == ["", "Which?", "  TO DO: Exchange them"]
     assert "  The wheels turn.\n    [Enter] turn them  [s] skip this step  [q] leave > " in said
     assert "'maybe'" in said
-
-
-async def test_words_stay_whole_on_a_narrow_terminal() -> None:
-    screen = io.StringIO()
-    console = Console(file=screen, no_color=True, width=40, force_terminal=True, legacy_windows=False)
-    person = ConsoleOperator(io.StringIO("\n"), console)
-    person.tell("Why: Frames that are missing, slow or junk would stop the robot later.")
-    question = OperatorQuestion(
-        QuestionKind.BEGIN, "Ready?", (AnswerChoice("", "begin"), AnswerChoice("s", "skip this step"))
-    )
-    assert await person.answer(question) == ""
-    said = re.sub(r"\x1b\[\d*m", "", screen.getvalue())
-    assert [line.rstrip() for line in said.splitlines()][:5] == [
-        "  Why: Frames that are missing, slow or",
-        "junk would stop the robot later.",
-        "  Ready?",
-        "    [Enter] begin  [s] skip this step",
-        "[q] leave >",
-    ]
-    assert "leave > " in said

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 import yaml
 
-from config import CONFIG_DIR
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
@@ -17,7 +16,6 @@ from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.progress import Progress, StepRecord
 from kurt2rt.checks.commission.robot_file import commissioned_settings, robot_file, write_robot_file
 from kurt2rt.checks.commission.step import StepOutcome
-from kurt2rt.service.settings import load_service
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, TODAY, Session, Workshop, with_channels
 
@@ -90,10 +88,6 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
     assert Kurt2Settings.model_fields.keys() == yaml.safe_load(text).keys()
 
 
-def test_commissioned_settings_without_findings_equal_the_base() -> None:
-    assert commissioned_settings(BASE, BASE.name, Findings()) == BASE
-
-
 def test_all_that_was_found_is_in_the_settings() -> None:
     robot = commissioned_settings(
         BASE,
@@ -122,11 +116,6 @@ def test_words_that_mean_something_to_yaml_survive(tmp_path: Path) -> None:
     assert loaded == robot.model_copy(update={"name": "robbie"})
 
 
-def test_full_speed_is_kept_in_speed_mode_only() -> None:
-    robot = commissioned_settings(BASE, "robbie", Findings(speed_mode=SpeedMode.SPEED_CM, full_speed_m_s=0.72))
-    assert robot.motors.full_speed_m_s == BASE.motors.full_speed_m_s
-
-
 def test_commissioned_settings_channel_taken_twice_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"s2.*ADC08.*s1"):
         commissioned_settings(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
@@ -135,13 +124,3 @@ def test_commissioned_settings_channel_taken_twice_is_refused() -> None:
 def test_commissioned_settings_bumper_bit_taken_twice_is_refused() -> None:
     with pytest.raises(SettingsError, match="front left 3"):
         commissioned_settings(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
-
-
-def test_the_runtime_settings_take_the_file_by_its_path(tmp_path: Path) -> None:
-    out = tmp_path / "robots" / "robbie.yaml"
-    write_robot_file(out, BASE, progress(Findings(speed_mode=SpeedMode.RAW)), STEPS)
-    default = (CONFIG_DIR / "runtime" / "default.yaml").read_text()
-    mine = tmp_path / "mine.yaml"
-    mine.write_text(default.replace("robot: kurt2 ", f"robot: {out} "))
-    assert load_kurt2(load_service(str(mine)).robot).can.speed_mode is SpeedMode.RAW
-    assert out.read_text().splitlines()[0].endswith(" can0: PASSED")

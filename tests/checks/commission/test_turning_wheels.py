@@ -42,17 +42,6 @@ async def turned(
 # Which mode answers
 
 
-@pytest.mark.parametrize(
-    "modes", [pytest.param((SpeedMode.SPEED, SpeedMode.RAW), marks=pytest.mark.deep), (SpeedMode.RAW,)]
-)
-async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, modes: tuple[SpeedMode, ...]) -> None:
-    session = await turned(tmp_path, "modes", wiring=Wiring(modes=modes))
-    assert session.outcome("modes") is StepOutcome.PASSED
-    assert session.progress.findings.speed_mode is modes[0]
-    assert session.measured("modes")[0].startswith("SPEED_CM: ")
-    assert "m/s" not in session.measured("modes")[0]
-
-
 async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Path) -> None:
     session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(modes=()))
     assert session.faults("modes") == (StepFault(FaultCode.MODE_MISSING),)
@@ -92,12 +81,6 @@ async def test_modes_step_other_encoders_name_the_settings_to_change(tmp_path: P
     assert fault.fields["ticks"] == pytest.approx(21938, abs=0.5)
     assert session.progress.findings.speed_mode is SpeedMode.SPEED_CM
     assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
-
-
-async def test_fault_of_an_unneeded_speed_mode_is_ignored(tmp_path: Path) -> None:
-    session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
-    assert session.outcome("modes") is StepOutcome.PASSED
-    assert any(line.startswith("SPEED: ") and RAN_AWAY in line for line in session.measured("modes"))
 
 
 async def test_modes_step_skipped_mode_is_left_out(tmp_path: Path) -> None:
@@ -263,17 +246,6 @@ def test_wiring_faults_order_turning_both_names_both_motors() -> None:
         (FaultCode.MOTOR_ODD, "left"),
         (FaultCode.MOTOR_ODD, "right"),
     ]
-
-
-def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
-    still = Motion(0, 0)
-    trials = [
-        WheelTrial(Motion(1, 0), still, still),
-        WheelTrial(Motion(-1, 0), still, still),
-        WheelTrial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
-        WheelTrial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
-    ]
-    assert wiring_faults(trials) == [StepFault.of(FaultCode.MOTOR_DEAD, side="left")]
 
 
 # Stopping

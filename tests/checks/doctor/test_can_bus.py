@@ -70,35 +70,11 @@ def test_the_socket_that_was_tried_is_closed_again() -> None:
     assert tried.fileno() == -1
 
 
-def test_a_kernel_that_only_lacks_the_module_is_told_to_load_it(modules: Path) -> None:
-    finding = check_can_kernel(no_can, modules)
-    assert finding.status is CheckStatus.MISSING
-    assert finding.code is FindingCode.CAN_UNLOADED
-
-
 def test_check_can_kernel_without_can_still_allows_a_run(tmp_path: Path) -> None:
     finding = check_can_kernel(no_can, tmp_path)
     assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.CAN_MISSING
     assert not finding.forbids_run
-
-
-def test_the_interfaces_of_this_machine_can_be_looked_at() -> None:
-    assert check_can_interfaces()
-    assert check_vcan().code.startswith("vcan")
-
-
-def test_no_can_interface_among_the_others(net: Net) -> None:
-    (finding,) = check_can_interfaces(net.folder)
-    assert finding.status is CheckStatus.MISSING
-    assert not finding.forbids_run
-    assert finding.code is FindingCode.CAN_INTERFACE_NONE
-    assert finding.values["up"] == "sudo ip link set can0 up type can bitrate 1000000"
-
-
-def test_a_machine_without_sysfs_has_no_interface(tmp_path: Path) -> None:
-    (finding,) = check_can_interfaces(tmp_path / "nowhere")
-    assert finding.status is CheckStatus.MISSING
 
 
 def test_each_interface_with_hardware_is_looked_at(net: Net) -> None:
@@ -118,12 +94,6 @@ def test_an_interface_that_went_off_the_bus_points_to_the_wiring(net: Net) -> No
     assert finding.code is FindingCode.CAN_INTERFACE_OFF_BUS
 
 
-def test_check_can_interfaces_slcan_is_set_up_without_bit_rate(net: Net) -> None:
-    net.add("slcan0", flags=DOWN, device=False)
-    (finding,) = check_can_interfaces(net.folder)
-    assert finding.values["up"] == "sudo ip link set slcan0 up"
-
-
 def test_a_virtual_interface_that_is_up_will_do(net: Net) -> None:
     net.add("vcan0", flags=DOWN, device=False)
     net.add("vcan1", device=False)
@@ -141,9 +111,3 @@ def test_a_virtual_interface_that_is_down_is_to_be_set_up(net: Net) -> None:
 def test_a_module_that_is_there_can_make_a_virtual_interface(net: Net, modules: Path) -> None:
     net.add("can0")
     assert check_vcan(net.folder, modules).code is FindingCode.VCAN_NONE
-
-
-def test_without_the_module_another_kernel_is_wanted(net: Net, tmp_path: Path) -> None:
-    finding = check_vcan(net.folder, tmp_path)
-    assert finding.status is CheckStatus.WARNING
-    assert finding.code is FindingCode.VCAN_NO_MODULE

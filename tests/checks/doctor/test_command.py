@@ -43,11 +43,3 @@ def test_a_program_gets_json_and_code_1_when_there_is_no_disk(kurt2rt: CommandLi
         "knowledge folder"
     ]
     assert findings.keys() >= SUBJECTS - {"free space", "fsync", "SQLite log"}
-
-
-def test_no_ticks_at_all_are_refused(kurt2rt: CommandLine) -> None:
-    assert "--ticks" in kurt2rt.misused("doctor", "--ticks", "0")
-
-
-def test_help_says_what_the_exit_code_means(kurt2rt: CommandLine) -> None:
-    assert "code 1" in " ".join(kurt2rt("doctor", "--help").out.split())

@@ -58,16 +58,6 @@ def test_a_refusal_says_how_to_be_granted_it_next_time(tmp_path: Path) -> None:
     assert not finding.forbids_run
 
 
-def test_limit_and_capability_are_shown(tmp_path: Path) -> None:
-    status = status_file(tmp_path, SYS_NICE)
-    finding = check_real_time_priority(resource.RLIM_INFINITY, lambda *_: None, status)
-    assert finding.values == {"limit": "unlimited", "capability": "with"}
-
-
-def test_the_memory_lock_of_this_machine_is_shown() -> None:
-    assert check_memory_lock().code.startswith("memory lock")
-
-
 @pytest.mark.parametrize(
     ("limit_bytes", "capabilities", "status"),
     [

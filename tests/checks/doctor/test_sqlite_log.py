@@ -8,17 +8,9 @@ from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sqlite_log import check_sqlite, check_sqlite_log, log_fault
 
 
-def test_the_sqlite_of_this_python_will_do() -> None:
-    assert check_sqlite().status is CheckStatus.OK
-
-
 def test_an_sqlite_without_strict_tables_forbids_to_run() -> None:
     assert check_sqlite((3, 36, 0)).forbids_run
     assert check_sqlite((3, 37, 0)).status is CheckStatus.OK
-
-
-def test_a_log_works_on_this_disk(tmp_path: Path) -> None:
-    assert check_sqlite_log(tmp_path).status is CheckStatus.OK
 
 
 def test_a_folder_where_sqlite_cannot_open_a_file_forbids_to_run(tmp_path: Path) -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
-from kurt2rt.checks.doctor.timer import Lateness, check_clock, check_timer, measure_lateness
-from kurt2rt.platform.clock import Clock, LockstepClock
+from kurt2rt.checks.doctor.timer import check_clock, check_timer, measure_lateness
+from kurt2rt.platform.clock import Clock
 
 
 class LateClock:
@@ -32,30 +32,9 @@ def refused() -> AbstractContextManager[Clock]:
     raise OSError(38, "timerfd_create failed; the runtime needs Linux")
 
 
-async def test_lateness_is_median_and_worst_over_the_ticks() -> None:
-    lateness = await measure_lateness(LateClock(0.001, 0.002, 0.009), ticks=3, period_s=0.01)
-    assert lateness.median_s == pytest.approx(0.002)
-    assert lateness.worst_s == pytest.approx(0.009)
-
-
 async def test_deadlines_are_absolute_so_lateness_does_not_add_up() -> None:
     lateness = await measure_lateness(LateClock(*[0.004] * 50), ticks=50, period_s=0.01)
     assert lateness.worst_s == pytest.approx(0.004)
-
-
-async def test_simulated_time_is_never_late() -> None:
-    assert await measure_lateness(LockstepClock(lambda: None), ticks=20, period_s=0.01) == Lateness(0.0, 0.0)
-
-
-def test_check_timer_this_machine_shows_timer_and_asyncio() -> None:
-    finding = check_timer(ticks=5, period_s=0.002)
-    assert finding.status in (CheckStatus.OK, CheckStatus.WARNING)
-    assert (finding.values["ticks"], finding.values["period_ms"]) == (5, 2.0)
-    assert float(finding.values["asyncio_worst_ms"]) >= float(finding.values["asyncio_median_ms"])
-
-
-def test_a_timer_that_is_a_little_late_will_do() -> None:
-    assert check_timer(3, 0.01, lambda: late_by(0.0001, 0.0001, 0.009)).status is CheckStatus.OK
 
 
 @pytest.mark.parametrize("late_s", [(0.002, 0.002, 0.002), (0.0001, 0.0001, 0.011)], ids=["always", "once a period"])
@@ -70,10 +49,6 @@ def test_without_a_timer_the_robot_cannot_run() -> None:
     finding = check_timer(open_clock=refused)
     assert finding.forbids_run
     assert finding.code is FindingCode.TIMER_MISSING
-
-
-def test_the_clock_of_this_machine_is_shown_with_its_resolution() -> None:
-    assert float(check_clock().values["resolution_ns"]) > 0.0
 
 
 def test_a_clock_that_follows_jiffies_is_a_warning(tmp_path: Path) -> None:

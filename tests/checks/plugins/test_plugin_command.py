@@ -28,7 +28,7 @@ def test_kinds_of_the_command_line_are_all_kinds() -> None:
     assert list(KindName) == list(KINDS)
 
 
-@pytest.mark.parametrize("kind", SkeletonKind)
+@pytest.mark.parametrize("kind", [pytest.param(SkeletonKind.LEARNERS, marks=pytest.mark.deep), SkeletonKind.ROBOTS])
 def test_skeleton_installs_and_passes_its_tests(kurt2rt: CommandLine, plugin_folder: Path, kind: SkeletonKind) -> None:
     name = f"own_{kind}"
     made = kurt2rt("plugin", "new", kind, name, "--out", "out")

@@ -5,7 +5,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.bus import BusError
-from hal.robot import STANDSTILL
 from hal.robot_link import NoticeReport, RangeReport, Report, WheelReport
 from kurt2rt.robots.school.lines import COUNTERS, encode
 from tests.robots.school.board import Board
@@ -72,16 +71,6 @@ def test_board_after_49_days_goes_on() -> None:
     assert sum(each.left_ticks for _, each in reports if isinstance(each, WheelReport)) == pytest.approx(6000, abs=80)
 
 
-def test_board_whose_line_lies_once_is_read_on() -> None:
-    board = Board(uptime_ms=1000)
-    greet(board)
-    drive(board, 1.0)
-    board._port.write(encode("sense", 5, 7000, 0, 0, 20, *(9,) * 7))
-    reports = drive(board, 1.0)
-    assert len([each for _, each in reports if isinstance(each, RangeReport)]) == 50
-    assert notices(reports) == []
-
-
 @pytest.mark.parametrize(
     ("garbage", "told"),
     [
@@ -108,21 +97,6 @@ def test_board_that_talks_another_way_after_a_restart_is_named() -> None:
     assert 1 <= len(told) <= 3
     board.garbage = b""
     assert notices(drive(board, 1.0)) == [""]
-
-
-def test_board_that_waits_for_a_greeting_again_gets_one() -> None:
-    board = Board()
-    greet(board)
-    drive(board, 0.5)
-    board.reset(2000)
-    board.link.send(STANDSTILL)
-    board.step()
-    sent = []
-    for _ in range(100):
-        board.now_ms += 10
-        board.link.receive(board.now_s)
-        sent.append(board._port.read())
-    assert any(each.startswith(b"school ") for each in sent)
 
 
 def test_board_that_never_answers_after_a_loss_is_named() -> None:

@@ -39,18 +39,6 @@ class FarEnd:
         self.write("sense", time_ms, left, right, command, *READINGS)
 
 
-def test_link_greets_and_is_silent_until_it_is_greeted() -> None:
-    far = FarEnd(greets=False)
-    far.link.send(FORWARD)
-    far.link.brake()
-    far.sense(20)
-    assert far.link.receive(0.0) == []
-    assert far.port.read() == encode("school", 10, 1)
-    assert (far.link.receive(0.24), far.port.read()) == ([], b"")
-    far.link.receive(0.25)
-    assert far.port.read() == encode("school", 11, 1)
-
-
 @pytest.mark.parametrize("greeting", [(2, 7), (1, 5), (1,)])
 def test_link_another_version_or_robot_is_refused(greeting: tuple[int, ...]) -> None:
     far = FarEnd(greets=False)
@@ -136,15 +124,6 @@ def test_applied_speed_is_whole_and_never_faster(speed_m_s: float) -> None:
     assert math.isclose(left_m_s * 1000, round(left_m_s * 1000))
 
 
-def test_robot_drives_and_stands_as_told() -> None:
-    rig = MemoryRig()
-    assert not rig.run(1.0).latched
-    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
-    assert rig.robot.health.junk == 0
-    rig.run(0.5, STANDSTILL)
-    assert rig.simulated.wheel_speeds == pytest.approx(STANDSTILL, abs=0.001)
-
-
 def test_robot_without_commands_brakes_by_itself() -> None:
     rig = MemoryRig()
     rig.run(1.0)
@@ -181,16 +160,6 @@ def test_robot_silent_line_makes_its_senses_stale() -> None:
         rig.robot.sense(rig.now_s)
         result = rig.robot.drive(FORWARD, rig.now_s, rig.now_s)
     assert result.reasons == (GuardReason.INFRARED_STALE,)
-
-
-def test_robot_line_with_noise_counts_junk_and_drives_on() -> None:
-    rig = MemoryRig()
-    rig.run(0.5)
-    for _ in range(100):
-        rig.line._robot_port.write(b"\xff*sense 1 2 3\n")
-        assert not rig.tick().latched
-    assert rig.robot.health.junk == 100
-    assert rig.simulated.wheel_speeds == pytest.approx(FORWARD, abs=0.001)
 
 
 def test_robot_power_cycle_stops_it_and_the_run_goes_on() -> None:

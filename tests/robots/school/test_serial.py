@@ -1,18 +1,15 @@
 """The school robot on a pseudo-terminal, opened by pyserial as a real port is."""
 
-import threading
 import time
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-import serial
 
 from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult
 from hal.robot_kind import kind_of
-from hal.serial_port import SerialPort
 from hal.settings import SettingsError
 from kurt2rt.robots.school.kind import SCHOOL
 from simbridge.pty_port import PtyPort
@@ -62,27 +59,6 @@ def test_serial_robot_greets_drives_and_is_lost(tmp_path: Path) -> None:
             robot.close()
 
 
-def test_serial_board_that_boots_needs_one_opening(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    openings, open_port = [], SerialPort._open
-
-    def counted(port: SerialPort) -> serial.Serial:
-        openings.append(port)
-        return open_port(port)
-
-    monkeypatch.setattr(SerialPort, "_open", counted)
-    simulated = PtyRobot(tmp_path / "robot")
-    write = simulated.port.write
-    monkeypatch.setattr(simulated.port, "write", lambda data: write(data.replace(b"\n", b"\r\n")))
-    boot = threading.Timer(0.3, simulated.thread.start)
-    boot.start()
-    robot = SCHOOL.open(SETTINGS, str(tmp_path / "robot"))
-    drive_until(robot, lambda result: result.wheel_speeds == FORWARD)
-    robot.close()
-    simulated.unplug()
-    assert len(openings) == 1
-    assert robot.health.junk == 0
-
-
 def test_serial_robot_brakes_when_its_program_ends(tmp_path: Path) -> None:
     with PtyRobot(tmp_path / "robot") as simulated:
         robot = SCHOOL.open(SETTINGS, str(tmp_path / "robot"))
@@ -127,14 +103,6 @@ def test_serial_robot_with_a_tap_is_refused() -> None:
         SCHOOL.open(SETTINGS, "nowhere", Silent())
 
 
-def test_pty_reads_as_text_by_any_serial_program(tmp_path: Path) -> None:
-    with PtyRobot(tmp_path / "robot"), serial.Serial(str(tmp_path / "robot"), 115_200, timeout=PATIENCE_S) as foreign:
-        foreign.readline()  # may have begun before it was opened
-        line = foreign.readline().decode("ascii")
-    assert line.startswith("sense ")
-    assert line.endswith("\n")
-
-
 def test_pty_path_in_use_is_refused_and_left_alone(tmp_path: Path) -> None:
     path = tmp_path / "robot"
     path.write_text("mine")
@@ -152,13 +120,3 @@ def test_pty_link_of_a_killed_program_is_replaced(tmp_path: Path) -> None:
     assert path.exists()
     port.close()
     assert not path.is_symlink()
-
-
-def test_pty_link_of_a_later_program_is_left_alone(tmp_path: Path) -> None:
-    path = tmp_path / "robot"
-    port = PtyPort(str(path))
-    path.unlink()
-    later = PtyPort(str(path))
-    port.close()
-    assert path.exists()
-    later.close()

@@ -50,11 +50,3 @@ def test_lidar_noise_is_that_of_the_settings() -> None:
         lidar.measure_all(pose)
         errors.append(lidar.counts.ranges_m - exact)
     assert np.std(errors) == pytest.approx(SETTINGS.lidar.noise_m, rel=0.05)
-
-
-def test_lidar_ranges_out_of_its_limits_are_infinite() -> None:
-    lidar = lidar_in("turtlebot/a")
-    lidar.measure_all(Pose(0.05, 0.05, 0.0))
-    assert lidar.counts.ranges_m[180] == -math.inf
-    assert lidar.counts[12] == 550
-    assert np.isfinite(lidar.counts.ranges_m[0])

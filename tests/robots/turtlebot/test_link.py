@@ -78,16 +78,6 @@ def test_scan_each_sector_reads_its_nearest_range(wire: Wire) -> None:
     assert {value for sector, value in counts.items() if sector != 6} == {0}
 
 
-def test_scan_sector_without_a_measurement_reports_nothing(wire: Wire) -> None:
-    wire.scan([0.5] * 170 + [math.nan] * 20 + [0.5] * 170)
-    assert sorted(set(range(24)) - set(counts_of(wire.receive()))) == [12]
-
-
-def test_scan_too_near_reads_as_the_nearest_distance(wire: Wire) -> None:
-    wire.scan([-math.inf] * 360)
-    assert set(counts_of(wire.receive()).values()) == {round(SETTINGS.infrared.counts_at(0.12))}
-
-
 def test_scan_with_a_repeated_stamp_is_junk(wire: Wire) -> None:
     for _ in range(3):
         wire.scan([0.5] * 360, stamp_s=1.0)
@@ -129,15 +119,6 @@ def test_scans_of_an_empty_hall_or_that_change_are_no_hang(wire: Wire, ranges: I
     assert alarms_while_driving(wire, ranges, way_m=1.0) == []
 
 
-def test_lidar_without_noise_lets_the_robot_stand_and_see() -> None:
-    settings = SETTINGS.model_copy(update={"lidar": SETTINGS.lidar.model_copy(update={"noise_m": 0.0})})
-    rig = MemoryRig(settings)
-    rig.run(5.0, STANDSTILL)
-    assert rig.readings.infrared_age_s < settings.guard.stale_infrared_s
-    assert rig.run(1.0).wheel_speeds == FORWARD
-    assert rig.robot.health.junk == 0
-
-
 def test_lidar_that_hangs_stops_the_robot_and_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = MemoryRig()
     rig.run(1.0)
@@ -169,14 +150,6 @@ def test_drive_one_lying_message_is_forgotten(topic: str, ahead_s: float) -> Non
     scan = full_turn_scan(np.full(360, 0.5, np.float32), (0.12, 3.5), 0.2, stamp_s)
     rig.send(topic, scan if topic == "scan" else odometry_message(PlanePose(), 0.0, 0.0, stamp_s))
     assert {rig.tick().wheel_speeds for _ in range(500)} == {FORWARD}
-
-
-def test_scan_of_an_empty_hall_may_repeat_itself(wire: Wire) -> None:
-    for _ in range(3):
-        wire.clock.time_s += 0.2
-        wire.scan([math.inf] * 360)
-        assert set(counts_of(wire.receive()).values()) == {0}
-    assert wire.link.junk == 0
 
 
 def test_scan_that_was_delayed_is_as_old_as_its_stamp(wire: Wire) -> None:
@@ -308,30 +281,6 @@ def test_drive_error_of_the_base_stops_and_names_it() -> None:
     assert told in rig.robot.health.alarm  # until a person has seen it
     rig.robot.release()
     assert rig.run(1.0).wheel_speeds == FORWARD
-
-
-def test_drive_error_that_ends_within_the_tick_stops() -> None:
-    rig = MemoryRig()
-    rig.run(1.0)
-    for level in (2, 0):
-        status = DiagnosticStatus(level, "turtlebot3: motors", "too hot", "", [])
-        rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [status]))
-    assert rig.tick().reasons == (GuardReason.ROBOT_FAULT,)
-    rig.robot.release()
-    assert rig.run(1.0).wheel_speeds == FORWARD
-
-
-def test_drive_error_at_a_loss_of_connection_is_not_forgotten() -> None:
-    rig = MemoryRig()
-    rig.run(1.0)
-    status = DiagnosticStatus(2, "turtlebot3: motors", "too hot", "", [])
-    rig.send("diagnostics", DiagnosticArray(Header(Time(1, 0), ""), [status]))
-    rig.link.topics.connected = False
-    assert rig.tick().reasons == (GuardReason.BUS_LOST,)
-    rig.link.topics.connected = True
-    rig.run(1.5)
-    rig.robot.release()
-    assert rig.run(0.1).reasons == (GuardReason.ROBOT_FAULT,)
 
 
 def test_drive_error_of_another_node_is_none_of_the_base() -> None:

@@ -1,33 +1,23 @@
 """The base in another program, over real zenoh, and foreign command line tools that look at its topics."""
 
-import base64
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Any
 
 import pytest
-import zenoh
 
 from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.settings import SettingsError
 from kurt2rt.robots.turtlebot.kind import TURTLEBOT
-from kurt2rt.robots.turtlebot.lidar import lidar_of
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
-from kurt2rt.robots.turtlebot.simulated import TurtlebotElectronics
-from kurt2rt.ros.inbox import MachineClock
-from kurt2rt.ros.session import ZenohSession
-from simbridge.robot_end import LinkRobotEnd, RobotEnd
+from simbridge.robot_end import RobotEnd
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
-from tests.cli.helpers import started
 from tests.robots.turtlebot.rig import FORWARD, SETTINGS
-from tests.ros import foreign
 from tests.ros.helpers import free_locator, wait_for
 
 BIN = Path(sys.executable).parent
@@ -87,29 +77,6 @@ def test_zenoh_base_brakes_when_the_runtime_dies() -> None:
         wait_for(lambda: base.robot.controller.watchdog_expired and base.robot.wheel_speeds.left_m_s == 0.0)
 
 
-def test_zenoh_base_gone_behind_a_router_stops_the_robot() -> None:
-    locator = free_locator()
-    with ExitStack() as stack:
-        stack.enter_context(zenoh.open(_router_at(locator)))
-        session = ZenohSession(SETTINGS.ros, connect=[locator])
-        electronics = lambda *_: TurtlebotElectronics(SETTINGS, session, MachineClock())  # noqa: E731
-        end = LinkRobotEnd(SETTINGS, session, electronics, lidar_of)
-        base = StandaloneRobot(load_world("turtlebot/a", SETTINGS), end, 1, cycle_s=SETTINGS.cycle_s)
-        robot = stack.enter_context(closing(TURTLEBOT.open(SETTINGS, locator)))
-        with base:
-            wait_for(lambda: drive_on(robot)[2] == FORWARD.left_m_s)
-        wait_for(lambda: drive(robot)[2] == 0.0)  # the router is still there, but no message comes
-        assert drive(robot)[1][0] in (GuardReason.ENCODER_STALE, GuardReason.INFRARED_STALE)
-
-
-def _router_at(locator: str) -> zenoh.Config:
-    config = zenoh.Config()
-    config.insert_json5("mode", '"router"')
-    config.insert_json5("listen/endpoints", f'["{locator}"]')
-    config.insert_json5("scouting/multicast/enabled", "false")
-    return config
-
-
 def test_zenoh_nothing_at_the_address_is_one_line() -> None:
     locator = free_locator()
     with pytest.raises(BusError, match=f"zenoh:{locator}: Unable to connect.*; check the address"):
@@ -126,37 +93,9 @@ def test_zenoh_base_with_a_tap_is_refused() -> None:
         TURTLEBOT.open(SETTINGS, free_locator(), Silent())
 
 
-def test_sim_scan_is_read_by_zenoh_cli_and_another_cdr(tmp_path: Path) -> None:
-    locator = free_locator()
-    words = ("sim", "--robot-settings", "turtlebot", "--world", "turtlebot/a", "--bus", locator, "--while-stdin")
-    with started("kurt2rt.cli.main", *words, folder=tmp_path) as simulator:
-        wait_for(lambda: _is_served(locator))
-        command = [str(BIN / "zenoh"), "--mode", "client", "--connect", locator, "subscribe", "--key", "scan"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as tool:
-            assert tool.stdout is not None
-            line = tool.stdout.readline()
-            tool.terminate()
-        said, complaints = simulator.communicate()
-    ranges: Any = foreign.LaserScan.deserialize(base64.b64decode(line)).ranges
-    assert len(ranges) == SETTINGS.lidar.rays
-    assert 0.1 < min(ranges) < 1.0
-    assert complaints == ""
-    assert f"is on zenoh:{locator}" in said.replace("\n", " ")
-
-
 def _is_served(locator: str) -> bool:
     try:
         TURTLEBOT.open(SETTINGS, locator).close()
     except BusError:
         return False
     return True
-
-
-def test_rmw_zenoh_topics_are_listed_by_a_ros_tool() -> None:
-    locator = free_locator()
-    tool = [str(BIN / "zenoh-ros2"), "--no-daemon", "--router", locator.removeprefix("tcp/"), "--timeout", "5", "topic"]
-    with base_at(locator, RMW_SETTINGS):
-        listed = subprocess.run([*tool, "list"], capture_output=True, text=True, check=True).stdout
-        info = subprocess.run([*tool, "info", "/scan"], capture_output=True, text=True, check=True).stdout
-    assert listed.split() == ["/cmd_vel", "/odom", "/scan"]
-    assert info.splitlines()[:2] == ["Type: sensor_msgs/msg/LaserScan", "Publisher count: 1"]

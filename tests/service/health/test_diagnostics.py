@@ -75,10 +75,6 @@ def ward() -> Ward:
     return Ward()
 
 
-def test_a_robot_that_is_well_has_no_trouble(ward: Ward) -> None:
-    assert ward.look() == ()
-
-
 def test_silent_sensors_are_urgent_and_it_is_known_for_how_long(ward: Ward) -> None:
     first = ward.one(replace(CALM, infrared_age_s=0.6))
     assert first == Trouble(TroubleCode.SENSORS_SILENT, 0.0, True, "range sensors", (0.6,))
@@ -98,11 +94,6 @@ def test_a_missed_tick_is_told_for_a_minute(ward: Ward) -> None:
         assert ward.one().code is TroubleCode.TICKS_MISSED
     assert ward.one().since_s == LATELY_S - 1
     assert ward.look() == ()
-
-
-def test_diagnostics_counts_errors_before_the_first_report(ward: Ward) -> None:
-    ward.counters["missed"] = 1
-    assert ward.one().numbers == (1, 1)
 
 
 def test_ticks_are_late_from_a_fifth_of_a_period_on(ward: Ward) -> None:

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.health import DiskSpace, HealthReport
-from kurt2rt.service.health.free_space import DiskMonitor
+from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.service.health.machine import MachineMonitor, battery_of
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes
@@ -88,20 +87,6 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
     assert len(robot.heard) == 1
 
 
-def test_it_says_what_the_program_is_and_does(robot: Robot) -> None:
-    robot.tick(300)
-    report = robot.report()
-    assert (report.boot, report.robot, report.task) == ("626f6f74", "kurt2-indoor", "wall_following")
-    assert report.tick == robot.desk.tick
-    assert report.doing.endswith(" asks")
-    assert report.uptime_s == pytest.approx(3.0)
-    assert report.punctuality.ticks == 301
-    assert (report.safety.unwritten, report.safety.last_write_ms) == (2, 5.0)
-    assert report.bus is None
-    assert report.machine.memory_bytes > 10_000_000
-    assert report.machine.threads >= 1
-
-
 def test_lateness_of_now_is_the_worst_of_the_last_second(robot: Robot) -> None:
     for late_s in (0.004, 0.0):
         robot.desk.runtime.timer.begin(late_s)
@@ -122,27 +107,6 @@ def test_sensors_that_were_never_heard_have_no_age(robot: Robot) -> None:
     assert [each.about for each in report.troubles if each.urgent][:1] == ["sensors"]
 
 
-def test_parts_that_come_later_are_read_from_then_on(robot: Robot) -> None:
-    robot.tick()
-    robot.watch.include(drops={"pictures": lambda: 7}, errors={"channel": lambda: "the port is taken; free it"})
-    robot.dropped = 3
-    report = robot.report()
-    assert {each.of: each.count for each in report.drops} == {"lines": 3, "pictures": 7}
-    assert ("the port is taken", "free it") in [(each.what, each.to_do) for each in report.troubles]
-
-
-def test_there_is_room_where_the_folder_will_be_made(tmp_path: Path) -> None:
-    look = DiskMonitor({"knowledge": tmp_path / "not" / "there"}, now=lambda: now_s)
-    now_s = 0.0
-    assert look.spaces() == (DiskSpace("knowledge", None),)
-    look.poll("knowledge")
-    (space,) = look.spaces()
-    assert space.free_bytes is not None
-    assert space.free_bytes > 0
-    now_s = 5.0  # it has not answered since
-    assert look.spaces() == (DiskSpace("knowledge", None),)
-
-
 def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) -> None:
     assert battery_of(tmp_path) == (None, False)
     for name, kind, scope, percent, status in (
@@ -157,8 +121,3 @@ def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) 
                 (tmp_path / name / file).write_text(f"{text}\n")
     assert battery_of(tmp_path) == (0.61, True)
     assert MachineMonitor(tmp_path).poll().battery == 0.61
-
-
-def test_report_names_the_plugins_in_use(robot: Robot) -> None:
-    robot.tick()
-    assert robot.report().plugins == (FLIGHT,)

@@ -1,8 +1,6 @@
 """Status socket: another program of the machine reads the health report."""
 
-import errno
 import json
-import re
 import socket
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator
@@ -21,7 +19,6 @@ from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.health.status_socket import (
     StatusSocket,
     read_reports,
-    serve_waiting,
     short_name,
     status_socket_path,
 )
@@ -137,28 +134,6 @@ async def test_status_socket_of_a_killed_program_is_replaced(path: Path) -> None
         tasks.cancel_scope.cancel()
 
 
-async def test_serve_waiting_lasts_until_the_status_socket(path: Path) -> None:
-    async with anyio.create_task_group() as tasks:
-        tasks.start_soon(serve_waiting, path, lambda: "bus: no such interface; set it up")
-        await until(lambda: is_told(path))
-        for _ in range(2):
-            with pytest.raises(StatusError, match="bus: no such interface; set it up") as waits:
-                await anyio.to_thread.run_sync(lambda: list(read_reports(path, PATIENCE_S)))
-            assert waits.value.code is StatusCode.WAITS
-        assert mode_of(path) & 0o077 == 0
-        tasks.cancel_scope.cancel()
-    watch = Watch()
-    watch.tell(WELL)
-    async with serving(watch, path):
-        assert await following(read_reports(path, PATIENCE_S)) == WELL
-
-
-def test_read_reports_without_a_program_raises(path: Path) -> None:
-    with pytest.raises(StatusError, match=re.escape(str(path.with_suffix("")))) as refused:
-        next(read_reports(path, PATIENCE_S))
-    assert refused.value.code is StatusCode.NO_PROGRAM
-
-
 def test_one_that_says_nothing_hangs(path: Path) -> None:
     with bound(path), pytest.raises(StatusError) as hangs:
         next(read_reports(path, 0.05))
@@ -189,16 +164,3 @@ async def test_status_socket_that_cannot_be_made_sets_the_error(tmp_path: Path) 
     async with serving(Watch(), path) as status:
         await until(lambda: bool(status.trouble))
     assert status.trouble.startswith(f"{path}: ")
-
-
-async def test_a_socket_on_a_read_only_disk_is_left_without_a_word(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = list[Path]()
-
-    def refuse(file: Path, missing_ok: bool = False) -> None:
-        del missing_ok
-        asked.append(file)
-        raise OSError(errno.EROFS, "Read-only file system", str(file))
-
-    async with serving(Watch(), path):
-        monkeypatch.setattr(Path, "unlink", refuse)
-    assert asked == [path]

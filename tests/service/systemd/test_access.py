@@ -34,12 +34,6 @@ def test_nothing_is_in_the_way_of_the_shipped_settings() -> None:
     assert private_paths(RequiredAccess((Path("/usr"),), (Path("/mnt/a disk that comes later"),))) == ()
 
 
-def test_private_settings_of_the_user_are_to_be_copied(tmp_path: Path) -> None:
-    mine = settings_in(tmp_path)
-    mine.chmod(0o600)
-    assert private_paths(RequiredAccess((mine,))) == (AccessFinding(AccessCode.FILE_UNREADABLE, mine, mine),)
-
-
 @pytest.mark.parametrize("place", ["/home/ann", "/tmp", "/var/tmp", "/run/user/1000"])
 def test_private_paths_of_hidden_folders_are_named(place: str) -> None:
     settings, lessons = Path(place, "nowhere", "my.yaml"), Path(place, "nowhere", "lessons")
@@ -47,18 +41,6 @@ def test_private_paths_of_hidden_folders_are_named(place: str) -> None:
     assert (of_settings.path, of_lessons.path) == (settings, lessons)
     assert of_settings.code in (AccessCode.FILE_HIDDEN, AccessCode.FILE_UNREADABLE)  # closed to others on some machines
     assert of_lessons.code is AccessCode.FOLDER_HIDDEN
-
-
-def test_homes_are_seen_where_kurt2rt_itself_is_in_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(access, "required_paths", lambda: (Path("/home/no-user-of-this-machine/venv"),))
-    assert private_paths(RequiredAccess((), (Path("/home/no-user-of-this-machine/lessons"),))) == ()
-    assert private_paths(RequiredAccess((), (Path("/tmp/lessons"),))) != ()
-
-
-def test_a_link_into_a_home_is_looked_through(tmp_path: Path) -> None:
-    link = tmp_path / "my.yaml"
-    link.symlink_to("/home/no-user-of-this-machine/my.yaml")
-    assert [each.path for each in private_paths(RequiredAccess((link,)))] == [link]
 
 
 def test_a_folder_of_somebody_else_is_to_be_handed_over(tmp_path: Path) -> None:
@@ -100,15 +82,6 @@ def test_task_of_a_module_of_this_folder_is_refused(kurt2rt: CommandLine, plugin
     for command in ("show", "check", "install"):
         said = kurt2rt.refused("service", command, "--name", "nosuch-robot", "--settings", settings)
         assert f"would not find my_tasks: it is in {plugin_folder / 'my_tasks.py'}" in said
-
-
-def test_policy_of_a_module_of_this_folder_is_refused(kurt2rt: CommandLine, plugin_folder: Path) -> None:
-    shutil.copy(Path(plugin_parts.__file__), plugin_folder / "my_parts.py")
-    task = yaml.safe_load((CONFIG_DIR / "tasks" / "fleeing.yaml").read_text(encoding="utf-8"))
-    (plugin_folder / "task.yaml").write_text(yaml.safe_dump(task | {"policy": {"kind": "my_parts:Turning"}}))
-    settings = settings_in(plugin_folder, task=str(plugin_folder / "task.yaml"))
-    said = kurt2rt.refused("service", "show", "--settings", settings)
-    assert "policies my_parts:Turning: the service would not find my_parts" in said
 
 
 def test_module_that_is_installed_is_found_by_a_service(

@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.service.systemd.install import InstallPaths, install, require_free, uninstall
 from kurt2rt.service.systemd.installation import start_command
-from kurt2rt.service.systemd.unit import MARK, Unit, build_unit
+from kurt2rt.service.systemd.unit import Unit, build_unit
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 SSH = "[Unit]\nDescription=OpenBSD Secure Shell server\n"
@@ -56,11 +56,6 @@ def test_it_is_installed_and_taken_away_again(machine: Machine) -> None:
     assert refused.value.code is UnitCode.NO_UNIT
 
 
-def test_one_of_ours_is_installed_anew_over_the_old(machine: Machine) -> None:
-    assert machine.install() == machine.install()
-    assert all(path.read_text(encoding="utf-8").startswith(MARK) for path in machine.files)
-
-
 @pytest.mark.parametrize("folder", ["system", "sysusers.d"])
 def test_install_over_a_foreign_unit_is_refused(folder: str, machine: Machine, tmp_path: Path) -> None:
     others = tmp_path / folder / ("robotd.service" if folder == "system" else "robotd.conf")
@@ -74,21 +69,6 @@ def test_install_over_a_foreign_unit_is_refused(folder: str, machine: Machine, t
     assert machine.done == []
     assert machine.files == [others]
     assert others.read_text(encoding="utf-8") == SSH
-
-
-def test_a_unit_of_the_system_is_not_hidden_by_ours(machine: Machine, tmp_path: Path) -> None:
-    (tmp_path / "lib" / "robotd.service").write_text(SSH, encoding="utf-8")
-    with pytest.raises(UnitError) as refused:
-        machine.install("robotd")
-    assert (refused.value.code, refused.value.where) == (UnitCode.NAME_TAKEN, str(tmp_path / "lib" / "robotd.service"))
-    assert machine.files == []
-
-
-def test_a_masked_unit_is_somebodys(machine: Machine) -> None:
-    (machine.places.units / "robotd.service").symlink_to("/dev/null")
-    with pytest.raises(UnitError) as refused:
-        machine.install("robotd")
-    assert refused.value.code is UnitCode.NAME_TAKEN
 
 
 def test_a_user_of_the_machine_does_not_become_the_robots(machine: Machine) -> None:

@@ -59,9 +59,3 @@ def test_a_part_that_died_is_named_and_ends_the_pings(systemd: Manager, notifier
     assert said.startswith("STATUS=")
     assert "knowledge journal" in said
     assert "simulator" not in said
-
-
-def test_nobody_listens_and_nothing_is_said(systemd: Manager) -> None:
-    with Notifier(systemd.environment()) as notifier:
-        ticks(WatchdogNotifier(notifier, PERIOD_S, {}), 0.0, 5.0)
-    assert systemd.heard() == []

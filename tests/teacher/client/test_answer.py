@@ -18,10 +18,6 @@ def test_answer_of_each_code_gives_the_outcome_back(code: ResultCode | RefusalCo
     assert answer.extra == {"row": 7}
 
 
-def test_lesson_is_the_id_in_the_answer() -> None:
-    assert answer_of("2.04 Changed", {"t": 5, "ok": True, "lesson": "phone-0a"}).lesson == "phone-0a"
-
-
 @pytest.mark.parametrize("body", [{}, {"lesson": 7}, {"lesson": None}])
 def test_lesson_of_an_answer_without_an_id_is_none(body: dict[str, Any]) -> None:
     assert answer_of("2.04 Changed", {"t": 5, "ok": True, **body}).lesson is None

@@ -218,24 +218,3 @@ async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
                 # Its readings are old if this machine stalled, and the answer says so.
                 assert (stop.code, go.code) == (ResultCode.STOPPED, ResultCode.RESUMED)
             await state_where(robot, stopped=None)
-
-
-async def test_the_world_is_seen_and_changed(tmp_path: Path) -> None:
-    device = paired(tmp_path).device
-    with rig() as live:
-        async with (
-            listening_robot(live, tmp_path) as port,
-            TeacherClient(device.folder, port=port) as robot,
-        ):
-            state = await state_where(robot, cause="unknown")
-            assert state.place is not None
-            world = await robot.world()
-            assert world is not None
-            wall = world.walls[-1]
-            moved = await robot.move_wall(wall.name, 0.01, 0.0)
-            assert moved.accepted, moved.text
-            again = await robot.world()
-            assert again is not None
-            assert again.version > world.version
-            nowhere = await robot.place(-50.0, -50.0, 0.0)
-            assert not nowhere.accepted

@@ -60,14 +60,6 @@ async def test_states_become_scan_odometry_and_transform(desk: RobotInRos) -> No
 
 
 @in_ros
-async def test_question_is_published_and_repeated(desk: RobotInRos) -> None:
-    await anyio.sleep(2.0)
-    asked = [each.data for each in desk.messages("question", ros.String)]
-    assert len(asked) >= 2
-    assert set(asked[1:]) == {"I know nothing yet, teach me"}
-
-
-@in_ros
 async def test_twists_of_a_device_that_does_not_teach_are_refused(desk: RobotInRos) -> None:
     await desk.drive(0.2, 0.0, 1.2)
     assert desk.moved_after(0) == 0
@@ -262,18 +254,3 @@ async def test_request_without_a_robot_is_answered_with_no(desk: RobotInRos) -> 
     assert not success
     assert "the stop is not answered" in text
     assert (await desk.statuses())["teacher's channel"][0] == ERROR
-
-
-@in_ros
-async def test_diagnostics_tell_robot_link_and_drive(desk: RobotInRos) -> None:
-    statuses = await desk.statuses()
-    assert statuses["teacher's channel"] == (OK, "states come in")
-    assert statuses["cmd_vel"] == (OK, "no twist drives")
-    level, message = statuses["robot"]
-    assert level == WARN
-    assert "does not know this situation" in message
-
-
-@in_ros
-async def test_device_says_which_robot_it_met(desk: RobotInRos) -> None:
-    assert desk.lines == [f"{SETTINGS.name}, task wall_following, is in ROS 2"]

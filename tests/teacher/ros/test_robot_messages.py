@@ -1,7 +1,6 @@
 """The robot as ROS 2 messages, read by a second CDR library."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,15 +9,12 @@ from hal.odometry import PlanePose
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.hello import Hello, hello_of
 from kurt2rt.channel.server.channel import describe_robot
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.ros import messages as ros
-from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.ros.odometer import Odometer, WheelPose
 from kurt2rt.teacher.ros.robot_messages import (
     RAYS,
     ScanBuilder,
-    link_status,
     odometry,
     robot_status,
     transform,
@@ -103,21 +99,6 @@ def test_status_of_robot_has_a_level(hello: Hello, standing: Standing, trouble: 
     assert (values["task"], values["tick"], values["trouble"]) == ("wall_following", "1234", trouble)
 
 
-def test_status_of_stopped_robot_says_who_stopped_it(hello: Hello) -> None:
-    stop = ActiveStop(StopReason.SAID_STOP, "ann")
-    told = robot_status(state(stopped=stop, standing=Standing(StandReason.STOPPED, True, stop=stop)), hello)
-    assert told.level == ros.DiagnosticStatus.WARN
-    assert "ann" in told.message
-
-
-def test_status_of_silent_link_is_an_error() -> None:
-    link = LinkQuality(None, None, 0.0)
-    assert link_status(link, "", 0.05, "kurt2").level == ros.DiagnosticStatus.OK
-    lost = link_status(link, "connection refused", math.inf, "kurt2")
-    assert (lost.level, lost.message) == (ros.DiagnosticStatus.ERROR, "connection refused")
-    assert link_status(link, "", 0.6, "kurt2").message == "no state comes from the robot"
-
-
 def test_odometer_follows_an_arc_over_lost_states() -> None:
     odometer = Odometer()
     odometer.update(state(tick=0, way_m=(0.0, 0.0)), 0.4, 0.01)
@@ -126,13 +107,3 @@ def test_odometer_follows_an_arc_over_lost_states() -> None:
     assert place is not None
     assert place.pose.heading_rad == pytest.approx(math.pi / 2)
     assert (place.forward_m_s, place.turn_rad_s) == pytest.approx((quarter_m, math.pi / 2))
-
-
-def test_odometer_of_restarted_robot_goes_on_where_it_was() -> None:
-    odometer = Odometer()
-    odometer.update(state(tick=5, way_m=(3.0, 3.0)), 0.4, 0.01)
-    odometer.update(state(tick=10, way_m=(4.0, 4.0)), 0.4, 0.01)
-    again = odometer.update(replace(state(tick=1, way_m=(0.0, 0.0)), boot=b"next"), 0.4, 0.01)
-    assert again == WheelPose(PlanePose(1.0, 0.0, 0.0), 0.0, 0.0)
-    moved = odometer.update(replace(state(tick=2, way_m=(0.5, 0.5)), boot=b"next"), 0.4, 0.01)
-    assert moved.pose.x_m == pytest.approx(1.5)

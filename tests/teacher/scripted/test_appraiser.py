@@ -2,10 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
-import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult
@@ -13,7 +11,6 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
@@ -21,7 +18,6 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (
     FeedbackTiming,
     JudgeReward,
-    RandomPenalty,
     RewardSource,
     ScriptedAppraiser,
     UnknownPenalty,
@@ -91,13 +87,6 @@ def test_reward_comes_a_reaction_later_for_the_judged_tick() -> None:
     assert person.may_be_refused(reward.command_id)
 
 
-def test_rewards_of_one_value_keep_their_shortest_time() -> None:
-    bad = signals(given(appraiser(Phase.REINFORCEMENT), [record(tick, BAD) for tick in range(1, 61)]))
-    assert [tick for _, _, tick in bad] == [1, 21, 41]
-    good = signals(given(appraiser(Phase.REINFORCEMENT), [record(tick, GOOD) for tick in range(1, 61)]))
-    assert [tick for _, _, tick in good] == [1, 41]
-
-
 def test_judge_reward_with_patience_ignores_short_bad_periods() -> None:
     person = appraiser(Phase.REINFORCEMENT, JudgeReward(LeftIsTheVerdict(), patience=5))
     verdicts = [BAD] * 4 + [NEUTRAL] + [BAD] * 5 + [NEUTRAL] * 10
@@ -121,12 +110,6 @@ def test_press_that_a_person_has_not_left_is_no_punishment() -> None:
     assert len(given_ticks) == 20
 
 
-@pytest.mark.parametrize("cause", [DecisionCause.UNKNOWN, DecisionCause.STOPPED, DecisionCause.TEACHER])
-def test_reward_without_a_driving_rla_is_not_given(cause: DecisionCause) -> None:
-    commands = given(appraiser(Phase.REINFORCEMENT), [record(tick, BAD, cause) for tick in range(1, 60)])
-    assert signals(commands) == []
-
-
 def test_phase_3_answers_and_does_not_correct() -> None:
     person = appraiser(Phase.REINFORCEMENT)
     commands = given(person, [record(tick, NEUTRAL, DecisionCause.UNKNOWN) for tick in range(1, 101)])
@@ -143,14 +126,6 @@ def test_phase_4_appraises_all_values_of_each_driver() -> None:
     ]
     appraised = [(each.appraisal, each.decision_tick) for _, each in given(person, seen) if isinstance(each, Appraise)]
     assert appraised == [("neutral", 1), ("good", 31)]
-
-
-def test_gap_separates_signals_of_all_values() -> None:
-    person = appraiser(Phase.CRITIC, timing=replace(TIMING, gap=15))
-    commands = given(person, [record(tick, (BAD, NEUTRAL, GOOD)[tick % 3]) for tick in range(1, 60)])
-    meant = [each.decision_tick or 0 for _, each in commands if isinstance(each, Appraise)]
-    assert len(meant) > 2
-    assert all(later - earlier >= 15 for earlier, later in pairwise(meant))
 
 
 def test_demonstrate_runs_an_action_then_resumes() -> None:
@@ -176,40 +151,6 @@ def test_unknown_penalty_is_given_once_for_the_tick_before() -> None:
     person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
     seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(3, 60))]
     assert signals(given(person, seen)) == [(13, -1, 2)]
-
-
-def test_unknown_penalty_question_of_the_mid_level_gives_none() -> None:
-    person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
-    asks = record(3, BAD, DecisionCause.UNKNOWN)
-    which_way = asks._replace(decision=asks.decision._replace(asks_at=MID))
-    assert (
-        signals(given(person, [record(1, BAD), record(2, BAD), *(which_way._replace(tick=t) for t in range(3, 60))]))
-        == []
-    )
-
-
-def test_random_penalty_follows_its_seed_and_count() -> None:
-    def penalties(seed: int) -> list[tuple[int, int, int | None]]:
-        person = appraiser(Phase.REINFORCEMENT, RandomPenalty(50, 5000, 20, seed))
-        return signals(given(person, [record(tick, GOOD) for tick in range(1, 5111)]))
-
-    first, other = penalties(1), penalties(2)
-    assert penalties(1) == first != other
-    assert {value for _, value, _ in first} == {-1}
-    assert len(first) == len(other) == 50
-    meant = [about or 0 for _, _, about in first]
-    assert min(later - earlier for earlier, later in pairwise(meant)) >= 20
-    assert [sum(begins < tick <= begins + 2500 for tick in meant) > 10 for begins in (0, 2500)] == [True, True]
-
-
-def test_random_penalty_waits_until_an_rla_drives() -> None:
-    person = appraiser(Phase.REINFORCEMENT, RandomPenalty(3, 100, 20, 1))
-    stands = [record(tick, GOOD, DecisionCause.STOPPED) for tick in range(1, 101)]
-    assert signals(given(person, [*stands, *(record(tick, GOOD) for tick in range(101, 200))])) == [
-        (111, -1, 101),
-        (131, -1, 121),
-        (151, -1, 141),
-    ]
 
 
 def test_phases_1_and_2_answer_as_scripted_teacher() -> None:

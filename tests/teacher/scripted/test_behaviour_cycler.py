@@ -40,8 +40,3 @@ def test_update_stopped_robot_gets_no_command_and_loses_no_time() -> None:
     assert cycler.selected == "straight_on"
     told = [tick for tick in range(2 * EACH, 4 * EACH, 5) if cycler.update(at(tick, "straight_on"), stopped=False)]
     assert told[0] == 3 * EACH
-
-
-def test_update_one_behaviour_needs_no_command() -> None:
-    cycler = BehaviourCycler(("",), PERIOD_S)
-    assert not any(cycler.update(at(tick, ""), stopped=False) for tick in range(0, 3 * EACH, 5))

@@ -3,7 +3,7 @@
 from itertools import count
 
 from kurt2rt.core.teacher_settings import LogNormalDelay
-from kurt2rt.core.teaching.commands import Command, Correct, Resume, Stop
+from kurt2rt.core.teaching.commands import Command, Correct, Resume
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.human_limits import DelaySampler
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
@@ -45,10 +45,6 @@ class Rewinding:
         raise AssertionError("no command within 10 s")
 
 
-def test_update_begins_with_a_stop() -> None:
-    assert isinstance(Rewinding().see(drives(100)), Stop)
-
-
 def test_update_waits_until_the_robot_stands() -> None:
     person = Rewinding()
     person.see(drives(100))
@@ -82,16 +78,6 @@ def test_update_lets_the_robot_drive_on_at_once() -> None:
     assert isinstance(command, Resume)
     assert command.seen_tick == tick
     assert not person.look_back.over
-
-
-def test_update_resumes_again_if_the_robot_still_stands() -> None:
-    person = Rewinding()
-    person.see(drives(100))
-    taught, _ = person.wait_for_command(110)
-    first, _ = person.wait_for_command(taught + 1)
-    again, command = person.wait_for_command(first + 1)
-    assert again == first + 100
-    assert isinstance(command, Resume)
 
 
 def test_update_is_over_when_the_robot_drives_or_asks() -> None:

@@ -92,28 +92,6 @@ def test_update_question_is_answered_after_delay_and_both_links() -> None:
     assert list(answers) == [1 + LINK_TICKS + QUESTION_TICKS + LINK_TICKS]
 
 
-def test_update_answer_names_the_action_of_the_newest_picture() -> None:
-    turned = 60
-    answers = given(person(Phase.SUPERVISED), [asking(FAR)] * turned + [asking(NEAR)] * 60)
-    (answer,) = answers.values()
-    assert isinstance(answer, Teach)
-    assert (answer.teacher, answer.action) == (SCRIPTED, "b")
-    assert answer.decision_tick is not None
-    assert answer.decision_tick <= min(answers) - 2 * LINK_TICKS
-
-
-def test_update_question_of_one_picture_is_answered() -> None:
-    views = [asking()] * PICTURE_TICKS + [doing("a")] * 130
-    (answer,) = given(person(Phase.SUPERVISED), views).values()
-    assert isinstance(answer, Teach)
-    assert answer.decision_tick == 1
-
-
-def test_update_question_between_two_pictures_is_not_seen() -> None:
-    views = [doing("a"), asking(), asking(), *[doing("a")] * 300]
-    assert given(person(Phase.SUPERVISED), views) == {}
-
-
 def test_update_phase_1_does_not_correct() -> None:
     assert given(person(Phase.SUPERVISED), [doing("b")] * 500) == {}
 
@@ -135,14 +113,6 @@ def test_update_corrected_tick_is_as_set(named: str, decision_tick: int | None) 
     assert correction.decision_tick == decision_tick
 
 
-def test_update_late_press_names_the_newest_picture() -> None:
-    ((tick, correction),) = given(person(profile={"corrects_tick": "by_delay"}), [doing("b")] * 130).items()
-    assert isinstance(correction, Correct)
-    assert correction.late
-    assert correction.seen_tick is not None
-    assert 0 <= tick - correction.seen_tick - 2 * LINK_TICKS < PICTURE_TICKS
-
-
 def test_update_similar_action_is_noticed_later() -> None:
     (correction,) = given(person(), [doing("near_a")] * 190).values()
     assert isinstance(correction, Correct)
@@ -152,14 +122,6 @@ def test_update_similar_action_is_noticed_later() -> None:
 def test_update_short_disagreement_is_not_noticed() -> None:
     views = ([doing("b")] * 35 + [doing("a")] * 10) * 10
     assert given(person(), views) == {}
-
-
-def test_update_correction_is_for_the_situation_that_was_seen() -> None:
-    """The wall comes near after the mistake was noticed: the correction is still about the time before."""
-    views = [doing("c", FAR)] * 60 + [doing("c", NEAR)] * 60
-    (correction,) = given(person(), views).values()
-    assert isinstance(correction, Correct)
-    assert correction.action == "a"
 
 
 def test_update_effect_of_a_press_is_awaited() -> None:
@@ -218,13 +180,6 @@ def test_update_tired_person_answers_later() -> None:
     minute = [doing("a")] * 6000
     waited = [min(given(teacher, minute + [asking()] * 400)) - 6000 for teacher in (fresh, tired)]
     assert waited[1] - waited[0] == pytest.approx(QUESTION_TICKS, abs=2)
-
-
-def test_update_lapses_delay_some_answers() -> None:
-    away = LapseSettings(per_minute=20.0, duration=always(3.0))
-    looking, lapsing = person(Phase.SUPERVISED), person(Phase.SUPERVISED, lapses=away)
-    views = [asking()] * 6000
-    assert len(given(lapsing, views)) < 0.8 * len(given(looking, views))
 
 
 HOLDS = {"corrects_by": "hold", "hold_s": 1.0}
@@ -306,16 +261,6 @@ def test_update_rewind_stops_corrects_the_begin_and_resumes() -> None:
     assert isinstance(resume, Resume)
 
 
-def test_update_rewind_moment_has_an_error() -> None:
-    moments = set()
-    for seed in range(5):
-        teacher = person(profile=REWINDS, seed=seed, look_back=LookBackSettings(moment_spread_s=0.3))
-        views = [doing("a")] * 200 + [doing("b")] * 120 + [standing()] * 600
-        (correction,) = (each for each in given(teacher, views).values() if isinstance(each, Correct))
-        moments.add(correction.decision_tick)
-    assert len(moments) > 1
-
-
 def test_update_rewind_needs_two_presses_of_the_limit() -> None:
     teacher = person(profile=REWINDS, presses_per_minute=3)
     pressed = [tick for tick, each in given(teacher, [doing("b")] * 100 + rewind_forever()).items() if counts(each)]
@@ -361,14 +306,6 @@ def test_update_touch_takes_the_place_of_a_planned_press() -> None:
 def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
     profile = LOOKS_BACK if phase is Phase.SUPERVISED else {"corrects_by": "press"}
     assert corrected_ticks(person(phase, profile=profile), touched(wrong=25)) == []
-
-
-def test_update_same_mistake_is_looked_back_for_once() -> None:
-    again = [doing("a")] * 30 + [doing("a")._replace(touching=True)] * 60
-    views = touched(wrong=25)
-    assert corrected_ticks(
-        person(profile=LOOKS_BACK, look_back=SURE), [*views[:150], *again, *again, *views[150:]]
-    ) == [51]
 
 
 def rewind_once() -> list[TeacherView]:
@@ -435,12 +372,6 @@ def test_update_shows_then_confirms_then_lets_drive() -> None:
     assert isinstance(taught, TeachShown)
     assert isinstance(go, Resume)
     assert (stop.press_id, taught.press_id, taught.segments) == (1, 1, (0, 1))
-
-
-def test_update_shows_as_often_as_the_profile_says() -> None:
-    sent = show(3000, times=3)
-    assert [each.press_id for each in sent if isinstance(each, TeachShown)] == [1, 2, 3]
-    assert sum(isinstance(each, Resume) for each in sent) == 1
 
 
 def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:

@@ -81,10 +81,6 @@ def test_update_place_where_it_was_stuck_is_not_chosen_later() -> None:
         assert [each.x_m for each in found if each is not None] == [0.0]
 
 
-def test_update_robot_that_never_moved_returns_its_start() -> None:
-    assert [each.x_m for each in Watched().stays(0.4, 16.0)] == [0.4]
-
-
 def test_update_without_a_place_returns_none() -> None:
     repositioner = RobotRepositioner(AFTER_S, 1.0, PERIOD_S, random.Random(3))
     assert not any(repositioner.update(state(tick=tick, place=None), waits=False) for tick in range(0, 1000, 5))

@@ -11,7 +11,7 @@ from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TeacherSettings
-from kurt2rt.core.teaching.commands import Command, Correct, Pursue, SetPhase, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, SetPhase, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
@@ -66,16 +66,6 @@ def test_update_asking_answers_after_the_reaction_time() -> None:
     assert given(person, records) == {REACTION_TICKS: Teach("s-1", NAME, "b")}
 
 
-def test_update_second_question_takes_the_reaction_time_again() -> None:
-    person = teacher(Phase.SUPERVISED)
-    answers = given(person, [asking()] * (2 * REACTION_TICKS))
-    assert answers == {REACTION_TICKS: Teach("s-1", NAME, "a"), 2 * REACTION_TICKS: Teach("s-2", NAME, "a")}
-
-
-def test_update_reaction_time_0_answers_in_the_first_tick() -> None:
-    assert given(teacher(reaction_s=0.0), [asking()]) == {1: Teach("s-2", NAME, "a")}
-
-
 def test_update_answered_question_does_not_hurry_the_next_answer() -> None:
     person = teacher(Phase.SUPERVISED)
     given(person, [asking()] * REACTION_TICKS)
@@ -92,45 +82,14 @@ def test_update_phase_2_corrects_after_the_patience() -> None:
     assert answers == {PATIENCE_TICKS: Correct("s-2", NAME, "a")}
 
 
-def test_update_held_wrong_action_is_corrected() -> None:
-    assert list(given(teacher(), [doing("b", FAR, DecisionCause.HELD)] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
-
-
-def test_update_phase_2_answers_questions() -> None:
-    assert list(given(teacher(), [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
-
-
 def test_update_one_right_tick_resets_the_patience() -> None:
     records = [doing("b")] * (PATIENCE_TICKS - 1) + [doing("a")] + [doing("b")] * (PATIENCE_TICKS - 1)
     assert given(teacher(), records) == {}
 
 
-def test_update_question_resets_the_patience() -> None:
-    person = teacher()
-    given(person, [doing("b")] * (PATIENCE_TICKS - 1))
-    given(person, [asking()] * REACTION_TICKS)
-    assert list(given(person, [doing("b")] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
-
-
-def test_update_changing_right_action_resets_the_patience() -> None:
-    flicker = [doing("c", FAR if tick % 2 else NEAR) for tick in range(10 * PATIENCE_TICKS)]
-    assert given(teacher(), flicker) == {}
-
-
-def test_update_after_a_correction_patience_starts_again() -> None:
-    answers = given(teacher(), [doing("b")] * (3 * PATIENCE_TICKS - 1))
-    assert list(answers) == [PATIENCE_TICKS, 2 * PATIENCE_TICKS]
-
-
 def test_update_stopped_robot_is_not_corrected() -> None:
     for cause in (DecisionCause.STOPPED, DecisionCause.UNSAVED):
         assert given(teacher(), [record(NEAR, cause)] * 500) == {}
-
-
-def test_begin_phase_returns_its_command() -> None:
-    person = teacher(Phase.SUPERVISED)
-    assert person.begin_phase(Phase.CORRECTIONS) == SetPhase("s-1", NAME, Phase.CORRECTIONS)
-    assert person.phase is Phase.CORRECTIONS
 
 
 def test_command_ids_are_unique_and_equal_in_each_run() -> None:
@@ -161,26 +120,6 @@ def test_corrections_with_errors_err_at_the_rate() -> None:
     commands = given(teacher(patience_s=0.0, error_rate=0.25), [doing("d")] * 4000)
     right = sum(isinstance(command, Correct) and command.action == "a" for command in commands.values())
     assert abs(right / 4000 - 0.75) < 0.03
-
-
-def test_answers_error_rate_0_and_1_are_right_and_wrong() -> None:
-    assert set(answers_to(teacher(reaction_s=0.0), 300)) == {"a"}
-    assert set(answers_to(teacher(reaction_s=0.0, error_rate=1.0), 300)) == {"b", "c", "d"}
-
-
-def test_answers_errors_follow_the_seed() -> None:
-    first, again, other = (answers_to(teacher(reaction_s=0.0, error_rate=0.5, seed=seed), 100) for seed in (1, 1, 2))
-    assert first == again
-    assert first != other
-
-
-def test_update_keeps_correcting_what_stays_wrong() -> None:
-    wrong = [doing(action, FAR) for action in "bcdbcd" for _ in range(PATIENCE_TICKS)]
-    assert {type(command) for command in given(teacher(), wrong).values()} == {Correct}
-
-
-def test_select_behaviour_returns_its_command() -> None:
-    assert teacher().select_behaviour("turn_left") == Pursue("s-2", NAME, "turn_left")
 
 
 def wanting(behaviour: str, seen: TickRecord) -> TickRecord:

@@ -11,7 +11,6 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
@@ -27,7 +26,6 @@ from kurt2rt.channel.protocol.requests import (
     LessonsRequest,
     NameRequest,
     PhaseRequest,
-    PursueRequest,
     ResumeRequest,
     RewardRequest,
     SeekLikeRequest,
@@ -41,19 +39,13 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import rla_title
-from kurt2rt.core.teaching.question import FeatureDifference, Question
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import (
-    build_question,
     format_critic_change,
     format_misunderstood,
     format_opinion,
-    format_state,
-    is_notable,
 )
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
@@ -362,49 +354,6 @@ async def test_restarted_robot_is_taken_unless_it_has_a_teacher(pairing: Pairing
             await stack.aclose()
 
 
-async def test_pursue_selects_one_of_several_behaviours(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("taught behaviours: straight_on, turn_left")
-        await console.reads("/take is done")
-        console.type("pursue turn_left")
-        await console.reads("/pursue is done")
-        assert [each.behaviour for each in robot.all_of(PursueRequest)] == ["turn_left"]
-        console.type("pursue")
-        await console.reads("not done, pursue: type pursue NAME")
-
-
-async def test_question_names_places_and_centimetres(pairing: Pairing, robot: StandInRobot) -> None:
-    mind = RobotStub()
-
-    async def tells_more(request: Request) -> Reply:
-        if not isinstance(request, HelloRequest):
-            return await mind(request)
-        sensors = [["s9", "front left", 0.2, 0.1, 0.0]]
-        told = {
-            "what": "Teach it to follow the wall",
-            "law": list(infrared_law(load_robot().infrared)),
-            "sensors": sensors,
-        }
-        return Reply(ReplyStatus.DONE, HELLO | told)
-
-    robot.mind = tells_more
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("Teach it to follow the wall")
-        await looked_at(console, robot, cause="unknown", question=(FeatureDifference("s9", 441.0, 108.0),))
-        await console.reads("; front left: 13 cm, was 46 cm")
-
-
-def test_build_question_has_the_selected_behaviour() -> None:
-    question = build_question(state(nearest=None, behaviour="turn_left"))
-    assert isinstance(question, Question)
-    assert (question.nearest_rla, question.behaviour) == (None, "turn_left")
-
-
-def test_format_state_names_the_behaviour_of_the_rla() -> None:
-    assert rla_title(3, "") in format_state(state(action="forward", rla=3))
-    assert rla_title(3, "turn_left") in format_state(state(action="forward", rla=3, behaviour="turn_left"))
-
-
 @pytest.mark.parametrize(
     ("typed", "says"),
     [
@@ -447,16 +396,6 @@ async def test_critic_prints_trust_and_opinion(pairing: Pairing, robot: StandInR
         await console.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
         await looked_at(console, robot, role="acts")
         await console.reads("critic: agrees with you 0.87 (trusted; acts)")
-
-
-async def test_action_at_a_withdrawn_rla_is_an_answer(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        tick = await looked_at(console, robot, nearest=17, nearest_action="ask", distance=12.0)
-        console.type("forward")
-        (answer,) = await robot.hears(AnswerRequest)
-        assert (answer.action, answer.decision_tick) == ("forward", tick)
-        assert robot.all_of(CorrectRequest) == []
 
 
 def test_format_opinion_and_change_are_one_line_each() -> None:
@@ -524,12 +463,6 @@ async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot
         assert robot.all_of(SeekRequest)[-1].name == "x_m=high"
         console.type("help")
         await console.reads("seek FEATURE=VALUE")
-
-
-def test_is_notable_small_surprise_of_the_basic_level_is_not() -> None:
-    assert is_notable(SURPRISED)
-    assert not is_notable(replace(SURPRISED, level="basic"))
-    assert is_notable(replace(SURPRISED, level="basic", times=5.0))
 
 
 async def test_standing_robot_prints_its_reason_instead_of_asking(pairing: Pairing, robot: StandInRobot) -> None:
