@@ -38,24 +38,21 @@ def turn_towards_wall_m_s(side: str, front_m: float, back_m: float) -> float:
 
 
 @pytest.mark.parametrize("side", SIDES)
-class TestEitherSide:
-    def test_drives_straight_on_at_the_wanted_distance(self, side: str) -> None:
-        assert abs(turn_towards_wall_m_s(side, 0.22, 0.22)) < 0.01
-
-    def test_steers_to_a_wall_that_is_too_far(self, side: str) -> None:
-        assert turn_towards_wall_m_s(side, 0.30, 0.30) > 0.1
-
-    def test_steers_off_a_wall_that_is_too_near(self, side: str) -> None:
-        assert turn_towards_wall_m_s(side, 0.14, 0.14) < -0.1
-
-    def test_steers_back_to_a_wall_that_it_is_turned_away_from(self, side: str) -> None:
-        assert turn_towards_wall_m_s(side, 0.25, 0.19) > 0.1
-
-    def test_steers_off_a_wall_that_it_is_turned_to(self, side: str) -> None:
-        assert turn_towards_wall_m_s(side, 0.19, 0.25) < -0.1
-
-    def test_a_lost_wall_is_looked_for_on_its_side(self, side: str) -> None:
-        assert turn_towards_wall_m_s(side, 0.6, 0.6) == pytest.approx(0.6)
+@pytest.mark.parametrize(
+    ("front_m", "back_m", "least_m_s", "most_m_s"),
+    [
+        (0.22, 0.22, -0.01, 0.01),  # at the wanted distance
+        (0.30, 0.30, 0.1, 0.6),  # too far
+        (0.14, 0.14, -0.6, -0.1),  # too near
+        (0.25, 0.19, 0.1, 0.6),  # turned away from it
+        (0.19, 0.25, -0.6, -0.1),  # turned to it
+        (0.60, 0.60, 0.599, 0.601),  # the wall is lost: looked for on its side
+    ],
+)
+def test_it_steers_to_the_wanted_distance(
+    side: str, front_m: float, back_m: float, least_m_s: float, most_m_s: float
+) -> None:
+    assert least_m_s < turn_towards_wall_m_s(side, front_m, back_m) < most_m_s
 
 
 def test_left_and_right_are_mirror_images() -> None:

@@ -45,7 +45,7 @@ def mirrored(name: str) -> str:
 
 @pytest.mark.parametrize("name", TASKS)
 @given(view=VIEWS, before=VIEWS)
-@examples(60)
+@examples(20)
 def test_policies_name_actions_and_have_no_memory(name: str, view: tuple[int, ...], before: tuple[int, ...]) -> None:
     task, policy = TASKS[name], POLICIES[name]
     for behaviour in task.behaviours:

@@ -4,24 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from behaviors.keep_distance import KeepDistance
-from behaviors.motor_primitive import MotorPrimitive
 from behaviors.repertoire import load_repertoire
-from behaviors.turn_by_angle import TurnByAngle
 from config import CONFIG_DIR
 from hal.robot import WheelSpeeds
 from hal.settings import SettingsError
 from tests.behaviors.helpers import ROBOT, counts, sensed
 
 BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
-
-
-def test_load_repertoire_builds_kinds_in_file_order() -> None:
-    repertoire = load_repertoire("basic", ROBOT)
-    assert list(repertoire)[:3] == ["forward", "bear_left", "bear_right"]
-    assert type(repertoire["spin_left"]) is MotorPrimitive
-    assert type(repertoire["along_right_wall"]) is KeepDistance
-    assert type(repertoire["quarter_turn_left"]) is TurnByAngle
 
 
 def test_motor_primitive_ignores_the_readings() -> None:

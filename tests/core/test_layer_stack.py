@@ -35,14 +35,6 @@ def test_stack_mid_level_unknown_stands_and_asks_at_mid() -> None:
     assert (small.tick().action, small.actions["a"].starts) == ("a", 1)
 
 
-def test_stack_basic_level_unknown_asks_at_basic() -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    decision = small.tick(place=99.0)
-    assert (decision.cause, decision.asks_at) == (DecisionCause.UNKNOWN, BASIC)
-    assert decision.match is not None
-    assert decision.match.rla.behaviour == decision.mid.behaviour == "turn_left"  # type: ignore[union-attr]
-
-
 @pytest.mark.parametrize("cause", [DecisionCause.STOPPED, DecisionCause.BLIND, DecisionCause.TEACHER])
 def test_stack_blocking_cause_stands_and_still_detects_junctions(cause: DecisionCause) -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))

@@ -13,7 +13,6 @@ RECORD: TickRecord = DESK.run()
 DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
 ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
 STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_resume=True))
-HELD = DRIVES._replace(standing=Standing(StandReason.COMPUTER_TOO_SLOW, needs_resume=True))
 TOUCHES = DRIVES._replace(standing=Standing(StandReason.FRONT_BUMPER, asks=True))
 
 
@@ -39,10 +38,6 @@ def test_progress_share_is_that_of_ticks_driven_by_an_rla() -> None:
     run = Run()
     run.lasts(5, ASKS)
     assert run.lasts(15, DRIVES) == Progress(20, 75, 1)
-
-
-def test_progress_of_a_latched_guard_counts_as_not_driven() -> None:
-    assert Run().lasts(3, HELD) == Progress(3, 0, 0)
 
 
 def test_progress_touching_robot_counts_as_question() -> None:

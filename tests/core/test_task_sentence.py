@@ -6,12 +6,7 @@ import pytest
 
 from hal.settings import SettingsError
 from hal.settings_files import find_config
-from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
-from kurt2rt.channel.protocol.hello import hello_of
-from kurt2rt.channel.server.channel import describe_robot
-from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.task_settings import load_task
-from tests.channel.channel_fixture import BOOT, ROBOT, TASK, ChannelFixture
 
 SHIPPED = sorted(path.stem for path in find_config("tasks", "circle").parent.glob("*.yaml"))
 
@@ -37,12 +32,3 @@ def test_task_without_a_sentence_is_told_by_its_name(tmp_path: Path) -> None:
 def test_sentence_of_two_lines_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match="what"):
         load_task(str(task_file(tmp_path, 'what: "one\\ntwo"')))
-
-
-def test_hello_tells_the_sentence_and_the_law_over_the_wire() -> None:
-    told = encode_answer({"tick": 0, **describe_robot(ChannelFixture().runtime, BOOT, simulated=True)})
-    hello = hello_of(decode_answer(told))
-    assert hello.what == TASK.what
-    assert hello.law == infrared_law(ROBOT.infrared)
-    assert hello.sensor_words.place("s9") == "front left"
-    assert hello.sensor_words.reading("s9", 441.0) == "13 cm"

@@ -17,7 +17,6 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
@@ -30,7 +29,7 @@ from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
-from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, stop, teach
+from tests.teacher.helpers import correct, delete, pursue, resume, stop, teach
 
 FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
 RADIUS = 50.0
@@ -209,12 +208,6 @@ def test_an_unknown_situation_stops_the_wheels_in_the_same_tick(driving: Corrido
     assert driving.robot.driven[-2:] == [FORWARD, STANDSTILL]
 
 
-def test_a_correction_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
-    record = driving.run(100, set_phase(Phase.CORRECTIONS), correct("back"))
-    assert (record.decision.action, record.guard_result.wheel_speeds) == ("back", BACK)
-    assert driving.notebook.events[-1].origin.phase is Phase.CORRECTIONS
-
-
 def test_tick_commands_are_handled_in_order_of_arrival(corridor: Corridor) -> None:
     record = corridor.run(100, delete(1, "too early"), teach("forward", "t"), delete(1, "d"), teach("back", "t-2"))
     assert [result.accepted for result in record.results] == [False, True, True, True]
@@ -252,14 +245,6 @@ def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
         assert record.situation.history_frozen
         assert not record.decision.asking
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
-
-
-def test_tick_lesson_while_stopped_waits_for_resume(corridor: Corridor) -> None:
-    corridor.run(100, stop())
-    record = corridor.run(100, teach("back"))
-    assert record.results[0].accepted
-    assert record.decision.cause is DecisionCause.STOPPED
-    assert corridor.run(100, resume()).decision.action == "back"
 
 
 def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor) -> None:
@@ -339,16 +324,12 @@ def test_tick_counts_uses_and_standstill_ends_transitions(driving: Corridor) -> 
     assert driving.statistics.transitions == {(1, 2): 1, (2, 1): 1}
 
 
-def test_every_tick_is_in_the_ledger(driving: Corridor) -> None:
-    assert driving.ledger.ticks == driving.ticks
-
-
 def journey(seed: int) -> tuple[list[TickRecord], str, Sequence[TeachingEvent]]:
-    """1000 ticks through changing counts with lessons, corrections, stops and deletions thrown in by chance."""
+    """400 ticks through changing counts with lessons, corrections, stops and deletions thrown in by chance."""
     chance = np.random.default_rng(seed)
     corridor = Corridor()
     records = []
-    for number in range(1000):
+    for number in range(400):
         commands: list[Command] = []
         if number % 7 == 0:
             name, action = f"{seed}-{number}", ("forward", "back")[int(chance.integers(2))]
@@ -380,13 +361,6 @@ def test_tick_equal_inputs_give_equal_records_and_knowledge() -> None:
         DecisionCause.UNKNOWN,
         DecisionCause.STOPPED,
     }  # the journey has seen it all
-
-
-def test_tick_stored_events_fold_to_the_robots_knowledge() -> None:
-    _, knowledge_hash, events = journey(3)
-    system = RlaSystem(8, RADIUS)
-    system.apply_all(events)
-    assert system.knowledge_hash() == knowledge_hash
 
 
 def test_tick_delayed_tick_gives_guard_the_decisions_age(driving: Corridor) -> None:

@@ -16,7 +16,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from tests.core.test_tick import BACK, FORWARD, Corridor, averages
+from tests.core.test_tick import BACK, Corridor, averages
 from tests.core.test_tick_by_hand import press, watch
 from tests.runs.replay.stories import NAME, Scene, record_story
 from tests.teacher.helpers import correct, set_phase, teach
@@ -64,13 +64,6 @@ def test_a_brush_is_no_question(corridor: Corridor) -> None:
     assert corridor.run().decision.cause is DecisionCause.RLA
 
 
-def test_it_drives_on_when_what_it_touched_is_gone(corridor: Corridor) -> None:
-    held(corridor)
-    corridor.robot.touches_in_front = False
-    record = corridor.run()
-    assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.RLA, FORWARD)
-
-
 @pytest.mark.parametrize("say", [teach, correct])
 def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     corridor: Corridor, say: Callable[[str, str], Command]
@@ -84,28 +77,11 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     assert len(corridor.system) == 1
 
 
-def test_bumper_answer_far_from_condition_inserts_winning_rla(corridor: Corridor) -> None:
-    held(corridor)
-    corridor.run(130)  # within R 50, farther than half of it
-    assert corridor.run().decision.cause is DecisionCause.TOUCHES
-    record = corridor.run(None, teach("back", "answer"))
-    assert (record.decision.rla_id, record.guard_result.wheel_speeds) == (2, BACK)
-    assert len(corridor.system) == 2
-
-
 def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) -> None:
     held(corridor)
     record = corridor.run(None, teach("forward", "answer"))
     assert record.results[0].outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
     assert record.decision.cause is DecisionCause.TOUCHES
-
-
-def test_bumper_answer_about_past_question_corrects(corridor: Corridor) -> None:
-    asked = held(corridor).tick
-    corridor.robot.touches_in_front = False
-    corridor.run()
-    record = corridor.run(None, Teach("answer", "Ann", "back", decision_tick=asked))
-    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
 
 
 def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor) -> None:
@@ -155,15 +131,8 @@ def test_a_hand_that_pushes_is_told_and_asked_nothing(corridor: Corridor) -> Non
     assert (record.decision.cause, record.standing) == (DecisionCause.TEACHER, Standing(StandReason.FRONT_BUMPER))
 
 
-def test_a_latch_goes_before_the_question(corridor: Corridor) -> None:
-    held(corridor)
-    corridor.robot.latched = True
-    record = corridor.run()
-    assert (record.decision.cause, record.standing.needs_resume) == (DecisionCause.RLA, True)
-
-
 def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
-    """Taught to drive forward whatever it sees; two seconds after it asks what to do at the wall, to drive back."""
+    """Taught to drive forward whatever it sees; half a second after it asks what to do at the wall, to drive back."""
     inbox, tick = scene.runtime.inbox, record.tick
     if tick == 1:
         scene.simulation.put(Pose(2.5, 2.0, 0.0))
@@ -172,12 +141,12 @@ def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
     if record.decision.cause is DecisionCause.UNKNOWN and tick % 20 == 0:
         inbox.put(Teach(f"t{tick}", NAME, "forward"))
     scene.presses += record.decision.cause is DecisionCause.TOUCHES
-    if scene.presses == 200 and record.decision.cause is DecisionCause.TOUCHES:
+    if scene.presses == 50 and record.decision.cause is DecisionCause.TOUCHES:
         inbox.put(Teach("back", NAME, "back"))
 
 
 def test_a_run_into_a_wall_is_decided_again_as_it_was(tmp_path: Path) -> None:
-    run = read_run(record_story("walls", tmp_path, seconds=8, other=drives_into_a_wall))
+    run = read_run(record_story("walls", tmp_path, seconds=5, other=drives_into_a_wall))
     asked, after = 0, WheelSpeeds(0.0, 0.0)
     for entry, record in Replay(run):
         assert list(compare(entry, record)) == []
@@ -185,5 +154,5 @@ def test_a_run_into_a_wall_is_decided_again_as_it_was(tmp_path: Path) -> None:
             asked += 1
         elif asked:
             after = min(after, entry.grant.wheel_speeds)
-    assert asked >= 200
+    assert asked >= 50
     assert after == BACK

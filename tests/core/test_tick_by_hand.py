@@ -12,8 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.events import RlaRewarded
+from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import (
     BeginSession,
@@ -38,7 +37,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import FORWARD, Corridor
 from tests.examples import examples
-from tests.teacher.helpers import correct, resume, set_phase, stop, teach
+from tests.teacher.helpers import resume, set_phase, stop, teach
 
 LEASE, REACH = 24, 35
 BY_HAND = WheelSpeeds(0.21, 0.19)
@@ -92,25 +91,6 @@ def test_press_drives_for_its_lease_then_robot_stands(driving: Corridor) -> None
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
-def test_late_press_drives_until_35_ticks_after_its_state(driving: Corridor) -> None:
-    driving.run(100, press(driving, age=20))
-    assert causes(driving, 20) == [DecisionCause.TEACHER] * (REACH - 20 - 1) + [DecisionCause.STOPPED] * 6
-
-
-def test_press_on_state_35_ticks_old_does_not_drive(driving: Corridor) -> None:
-    assert stands(driving.run(100, press(driving, age=REACH)))
-    assert stands(driving.run(100, press(driving, 1)))  # and is over
-    assert driving.run(100, press(driving, 2)).guard_result.wheel_speeds == BY_HAND
-
-
-def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -> None:
-    driving.run(100, press(driving, hold=5))
-    causes(driving, LEASE)
-    assert driving.run(100, press(driving, hold=5)).decision.cause is DecisionCause.STOPPED
-    assert driving.run(100, press(driving, hold=4)).decision.cause is DecisionCause.STOPPED
-    assert driving.run(100, press(driving, hold=6)).decision.cause is DecisionCause.TEACHER
-
-
 def test_late_older_press_neither_drives_nor_revives_the_newer(driving: Corridor) -> None:
     driving.run(100, press(driving, hold=1))
     driving.run(100, press(driving, hold=4))
@@ -159,12 +139,6 @@ def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkey
     assert driving.statistics.uses == uses
 
 
-def test_a_hand_moves_a_robot_that_knows_nothing() -> None:
-    corridor = Corridor()
-    assert corridor.run(100).decision.asking
-    assert corridor.run(100, press(corridor)).guard_result.wheel_speeds == BY_HAND
-
-
 def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
     record = driving.run(100, RunBehaviour("b", "Ann", "back", 5))
     assert (record.decision.cause, record.decision.action) == (DecisionCause.TEACHER, "back")
@@ -190,29 +164,11 @@ def test_attended_robot_that_lost_its_teacher_needs_resume(attended: Corridor) -
     assert attended.run(100, watch(attended), resume()).decision.cause is DecisionCause.RLA
 
 
-@pytest.mark.parametrize(("age", "there"), [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0)])
-def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor, age: int, there: int) -> None:
-    attended.ticks += 100
-    cause = [attended.run(100, watch(attended, age=age)).decision.cause, *causes(attended, LEASE)]
-    assert cause[:there] == [DecisionCause.RLA] * there
-    assert set(cause[there:]) == {DecisionCause.STOPPED if there else DecisionCause.UNATTENDED}
-
-
-def test_presence_renewed_every_tick_never_expires(attended: Corridor) -> None:
-    for _ in range(20):
-        assert attended.run(100, watch(attended, age=11)).decision.cause is DecisionCause.RLA
-        assert causes(attended, REACH - 11 - 1) == [DecisionCause.RLA] * (REACH - 11 - 1)
-
-
 def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:
     attended.run(400, watch(attended))
     assert causes(attended, 60, 400) == [DecisionCause.UNKNOWN] * 60
     assert causes(attended, 2, 100) == [DecisionCause.UNATTENDED] * 2
     assert attended.run(100, watch(attended)).decision.cause is DecisionCause.RLA
-
-
-def test_another_ones_watching_does_not_count(attended: Corridor) -> None:
-    assert attended.run(100, watch(attended, "Ben")).decision.cause is DecisionCause.UNATTENDED
 
 
 def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corridor) -> None:
@@ -235,21 +191,6 @@ def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> 
     assert attended.run(100).decision.cause is DecisionCause.UNATTENDED
 
 
-def test_unattended_robot_drives_without_a_teacher(driving: Corridor) -> None:
-    assert causes(driving, 200) == [DecisionCause.RLA] * 200
-
-
-def test_press_renews_presence_and_its_end_stops_the_robot(attended: Corridor) -> None:
-    attended.run(100, press(attended))
-    assert causes(attended, LEASE) == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
-
-
-def test_a_behaviour_ends_with_the_presence_of_its_teacher(attended: Corridor) -> None:
-    attended.run(100, watch(attended), RunBehaviour("b", "Ann", "back", 500))
-    assert causes(attended, LEASE) == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
-    assert attended.run(100, watch(attended)).decision.cause is DecisionCause.STOPPED
-
-
 def test_blind_robot_takes_lessons_of_seeing_ticks_only(driving: Corridor) -> None:
     seen = driving.run(400).tick
     driving.robot.infrared_age_s = math.inf
@@ -266,41 +207,6 @@ def test_blind_robot_takes_lessons_of_seeing_ticks_only(driving: Corridor) -> No
     driving.robot.infrared_age_s = 0.0
     assert not driving.run(400, Correct("late", "Ann", "forward", dark)).results[0].accepted
     assert driving.run(400).decision.action == "back"
-
-
-def test_blind_robot_reports_copy_of_a_lesson_as_repeated(driving: Corridor) -> None:
-    driving.robot.infrared_age_s = math.inf
-    (result,) = driving.run(100, teach("forward", "first")).results
-    assert result.outcome == Outcome(ResultCode.REPEATED)
-
-
-def test_correction_of_past_decision_acts_in_its_own_tick(driving: Corridor) -> None:
-    wrong = driving.run(100).tick
-    driving.run(115, Teach("second", "Ann", "back"))
-    record = driving.run(115, Correct("c", "Ann", "back", wrong))
-    assert record.decision.rla_id == 2
-    assert driving.run(100, correct("back", "again")).results[0].outcome == Outcome.of(
-        ResultCode.RLA_AGREES, rla=1, action="back"
-    )
-    assert driving.run(100).decision.action == "back"
-
-
-def test_reward_of_past_decision_goes_to_its_rla(driving: Corridor) -> None:
-    good = driving.run(100).tick
-    driving.run(115, Teach("second", "Ann", "back"))
-    for _ in range(20):
-        driving.run(115)
-    driving.run(115, Reward("r", "Ann", 1, good))
-    event = driving.notebook.events[-1]
-    assert isinstance(event, RlaRewarded)
-    assert (event.rla_id, event.decided_at_tick, event.origin.tick) == (1, good, driving.ticks)
-
-
-def test_reward_of_manual_drive_is_refused(driving: Corridor) -> None:
-    by_hand = driving.run(100, press(driving)).tick
-    (result,) = driving.run(100, Reward("r", "Ann", -1, by_hand)).results
-    assert not result.accepted
-    assert result.code is RefusalCode.NO_RLA_DROVE
 
 
 def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:

@@ -63,15 +63,3 @@ def test_hindrance_is_what_a_resume_cannot_end(
     standing: Standing, reasons: tuple[GuardReason, ...], told: Standing | None
 ) -> None:
     assert hindrance_after_resume(standing, GuardResult(STANDSTILL, reasons, latched=False)) == told
-
-
-@pytest.mark.parametrize(
-    ("fields", "text"),
-    [
-        ({}, "the robot may drive"),
-        ({"stands": "bus lost"}, "the robot still stands: its bus is lost; check its power and cable"),
-        ({"stands": "halted", "says": "the run is over"}, "the robot still stands: the run is over"),
-    ],
-)
-def test_text_of_a_resume_says_what_holds_the_robot(fields: dict[str, str], text: str) -> None:
-    assert text_of(Outcome(ResultCode.RESUMED, fields)) == text

@@ -94,17 +94,6 @@ def block() -> Block:
     return town
 
 
-def test_way_round_the_block_returns_to_a_known_place(block: Block) -> None:
-    assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
-    assert not block.run().decision.asking
-    expected = block.runtime.expectations.get(7)
-    assert expected is not None
-    system = block.runtime.level.system
-    match = system.match(expected.mean, level=MID)
-    assert match is not None
-    assert (match.rla.rla_id, match.known) == (4, True)
-
-
 def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     record = block.seek()
     assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status="planning")
@@ -184,13 +173,6 @@ def test_seek_while_standing_stands_until_the_plan_is_ready(block: Block) -> Non
         record = block.run()
     assert block.plan().course is GoalStatus.UNDER_WAY
     assert block.run().decision.driving
-
-
-def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
-    record = block.seek(DOOR)
-    plan = record.decision.plan
-    assert plan is not None
-    assert (plan.course, plan.rla_id, record.decision.driving) == (GoalStatus.PLANNING, None, True)
 
 
 def test_late_plan_applies_after_the_next_junction(block: Block) -> None:
@@ -318,13 +300,6 @@ def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:
     assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status="under way")
 
 
-def test_a_goal_may_be_what_stood_beside_the_robot(block: Block) -> None:
-    goal = PartialGoal((("x_m", 0.0), ("wall_left", 0.0)), tolerance=0.8)
-    record = block.seek(goal)
-    assert told(record).accepted
-    assert told(record).fields["goal"] == goal.text
-
-
 def test_names_are_lessons(block: Block) -> None:
     named = [event for event in block.notebook.events if isinstance(event, SituationNamed)]
     assert [(event.name, event.level, len(event.situation)) for event in named] == [("door", MID, 6)]
@@ -338,24 +313,10 @@ def test_name_situation_invalid_name_is_refused(block: Block, name: str) -> None
     assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
 
 
-def test_nobody_can_be_at_a_place_without_a_name(block: Block) -> None:
-    assert told(block.say(BeAt, "attic")) == Outcome.of(RefusalCode.NO_PLACE, name="attic", known=("door",))
-
-
 def test_without_places_nobody_can_say_where_it_is() -> None:
     town = Town()
     town.street()
     assert told(town.run(BeAt("1", "Ann", "door"))) == Outcome(RefusalCode.NO_PLACES)
-
-
-def test_repositioned_robot_is_lost_until_location_is_set(block: Block) -> None:
-    block.runtime.reposition()
-    assert block.run().decision.asks_at == MID
-    for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
-        assert told(nowhere) == Outcome(RefusalCode.PLACE_UNKNOWN)
-    block.say(BeAt, "door")
-    assert not block.run().decision.asking
-    assert block.run().behaviour == "turn_left"
 
 
 def test_late_goal_does_not_replace_a_newer_one(block: Block) -> None:
@@ -414,10 +375,3 @@ def test_correction_to_a_known_way_selects_it_without_a_lesson(
     assert (record.behaviour, record.mid.rla_id) == ("straight_on", 8)
     refused = block.say(ReplaceAction, 4, "straight_on")
     assert told(refused) == Outcome.of(RefusalCode.SAYS_SO, rla=8, level=MID, action="straight_on", delete=4)
-
-
-def test_correction_to_another_way_replaces_the_driven_one(block: Block) -> None:
-    block.teach("straight_on", next_to=True)
-    record = block.say(Correct, "turn_right", None, MID)
-    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_right", was="turn_left")
-    assert record.behaviour == "turn_right"

@@ -7,9 +7,8 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.teaching.commands import MOST_SEGMENTS, Drive, Stop, TeachShown, Undo
 from kurt2rt.core.teaching.demonstration import CAPACITY, Segment, nearest_action
-from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS, STEADY_TICKS
+from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
 from tests.core.test_tick import Corridor
-from tests.teacher.helpers import teach
 
 FORWARD, BACK = (0.2, 0.2), (-0.1, -0.1)
 
@@ -87,16 +86,6 @@ def test_demonstration_is_about_what_the_hand_reacted_to() -> None:
     assert len(taught(corridor)) == 2, "no lesson names forward at 200 counts, where the hand was still late"
 
 
-def test_change_of_the_action_is_not_taught(shown: Corridor) -> None:
-    shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1)))
-    for _ in range(12):
-        shown.run(200)
-    ticks = [int(each.rpartition("/")[2]) for each, _ in taught(shown)]
-    change = 62
-    assert ticks
-    assert not any(change - STEADY_TICKS <= each < change + STEADY_TICKS for each in ticks)
-
-
 def test_only_the_confirmed_segments_are_taught(shown: Corridor) -> None:
     shown.run(200, TeachShown("show-1", "Ann", 7, (1,)))
     for _ in range(12):
@@ -143,12 +132,6 @@ def test_confirmation_counts_once(shown: Corridor) -> None:
     assert again.results[0].code is RefusalCode.NO_DEMONSTRATION
 
 
-def test_next_press_replaces_the_demonstration(shown: Corridor) -> None:
-    drive(shown, 30, BACK, 100, press=8)
-    release(shown, 8)
-    assert segments(shown) == (Segment("back", 123, 30),)
-
-
 def test_short_wobble_counts_as_the_action_before_it() -> None:
     corridor = Corridor()
     for ticks, speeds in ((10, BACK), (100, FORWARD), (20, BACK), (100, FORWARD)):
@@ -166,17 +149,6 @@ def test_long_drive_keeps_the_last_minute_and_its_last_segments() -> None:
     assert len(published) == MOST_SEGMENTS
     assert published[-1].from_tick + published[-1].ticks == 60 * 150 + 2
     assert published[0].from_tick >= 60 * 150 - CAPACITY * EVERY_TICKS
-
-
-def test_known_action_of_a_demonstration_is_not_taught_again() -> None:
-    corridor = Corridor()
-    corridor.run(100, teach("forward", "first"))
-    drive(corridor, 60, FORWARD, 100)
-    release(corridor)
-    corridor.run(100, TeachShown("show-1", "Ann", 7, (0,)))
-    for _ in range(12):
-        corridor.run(100)
-    assert taught(corridor) == []
 
 
 @pytest.mark.parametrize(

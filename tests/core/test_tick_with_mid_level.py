@@ -6,11 +6,10 @@ from collections.abc import Sequence
 import pytest
 
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import (
@@ -22,8 +21,6 @@ from kurt2rt.core.teaching.commands import (
     Pursue,
     ReplaceAction,
     Resume,
-    Reward,
-    SetPhase,
     Stop,
     Take,
     Teach,
@@ -176,11 +173,6 @@ def test_first_of_three_questions_is_the_mid_levels() -> None:
     assert record.decision.driving
 
 
-def test_a_robot_whose_teacher_is_away_asks_the_way_all_the_same() -> None:
-    decision = Town(attended=True).run().decision
-    assert (decision.cause, decision.asks_at, decision.driving) == (DecisionCause.UNKNOWN, MID, False)
-
-
 def test_mid_lesson_counts_for_similar_histories(town: Town) -> None:
     record = town.junction(1)
     assert (town.history, record.decision.asking) == (("left",), False)
@@ -207,14 +199,6 @@ def test_mid_correction_replaces_on_equal_history_else_inserts(
     assert town.ways == {4: "turn_left", 5: "straight_on"}
     assert isinstance(town.notebook.events[-1], ActionReplaced)
     assert (town.runtime.handler.corrections_at(MID), town.runtime.handler.corrections) == (3, 0)
-
-
-def test_a_lesson_on_the_very_history_of_an_rla_changes_that_one(town: Town) -> None:
-    assert told(town.run(the_way("straight_on", "twice"))) == Outcome.of(
-        ResultCode.RLA_AGREES, rla=4, level=MID, action="straight_on"
-    )
-    assert told(town.run(the_way("turn_right", "again"))).accepted
-    assert town.ways == {4: "turn_right"}
 
 
 def test_mid_lesson_about_an_old_junction_is_taken(town: Town) -> None:
@@ -286,14 +270,6 @@ def test_alternative_adds_a_way_at_a_known_place(town: Town) -> None:
     assert first.condition == second.condition
     again = town.run(the_way("turn_left", "again", next_to=True))
     assert told(again) == Outcome.of(ResultCode.RLA_AGREES, rla=5, level=MID, action="turn_left")
-
-
-def test_beside_nothing_the_first_way_is_taught() -> None:
-    town = Town()
-    assert told(town.run(the_way("turn_left", next_to=True))) == Outcome.of(
-        ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left"
-    )
-    assert town.run().behaviour == "turn_left"
 
 
 def test_mid_rla_is_replaced_deleted_and_undone(town: Town) -> None:
@@ -374,16 +350,6 @@ def test_manual_drive_passes_junctions_without_counting_uses(town: Town) -> None
     assert town.runtime.statistics.uses == uses
 
 
-def test_praise_and_blame_are_for_those_who_moved_the_wheels(town: Town) -> None:
-    town.run(SetPhase("phase", "Ann", Phase.REINFORCEMENT))
-    for _ in range(300):
-        record = town.run()
-    town.run(Reward("blame", "Ann", -1, record.tick))
-    (reward,) = (event for event in town.notebook.events if isinstance(event, RlaRewarded))
-    assert reward.rla_id == 1
-    assert {credit.rla_id for credit in reward.credits} == {1}
-
-
 def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     town.junction()
     town.junction()
@@ -395,15 +361,6 @@ def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     assert (saved.uses[4], saved.uses[5]) == (2, 1)
     assert {edge: saved.transitions[edge] for edge in saved.transitions if min(edge) > 3} == {(4, 4): 1, (4, 5): 1}
     assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
-
-
-def test_mid_answer_counts_as_follow_up_of_the_leading_rla(town: Town) -> None:
-    for quarters in (1, 1, -1, 1, 1, -1, 1):
-        town.junction(quarters)
-    assert town.run().decision.asks_at == MID
-    town.run(the_way("turn_right"))
-    town.junction(-1)
-    assert town.runtime.snapshot().transitions[4, 5] == 1
 
 
 def test_replaced_mid_action_resets_its_follow_ups(town: Town) -> None:
@@ -439,17 +396,6 @@ def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
     assert town.history == ("straight",)
     assert town.runtime.snapshot().uses[4] == 2
     assert (4, 4) not in town.runtime.snapshot().transitions
-
-
-def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
-    town.junction(1)
-    town.run(another_way("turn_right"))
-    again = Town([*town.taught_before, *town.notebook.events])
-    again.way_to_the_first_junction()
-    assert again.run().behaviour == "straight_on"
-    assert again.junction(1).behaviour == "turn_right"
-    assert told(again.run(the_way("turn_left", "way", next_to=True))).accepted
-    assert max(again.ways) == 6  # ids run through
 
 
 @pytest.mark.parametrize(
@@ -492,10 +438,3 @@ def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
     assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
     assert (record.decision.rla_id, record.mid) == (2, None)
     assert [rla.action for rla in runtime.level.system.rlas_at(MID)] == ["straight_on"]
-
-
-def test_record_of_a_standing_robot_has_the_mid_command(town: Town) -> None:
-    town.run(Stop("s", "Ann"))
-    decision: Decision = town.run().decision
-    assert decision.mid is not None
-    assert (decision.mid.behaviour, decision.mid.rla_id, decision.driving) == ("straight_on", 4, False)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import anyio
 import anyio.to_thread
+import pytest
 
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.knowledge.journal.fold import check_knowledge
@@ -97,6 +98,7 @@ async def end(robot: Running) -> None:
     assert "Traceback" not in said.err
 
 
+@pytest.mark.deep
 async def test_lessons_and_recordings_outlive_a_wall_clock_that_is_set(tmp_path: Path) -> None:
     wall_clock = WallClock(tmp_path)
     words = ("run", "--bus", BUS, "--port", "0", "--knowledge", "mine.knowledge", "--record", "runs")

@@ -115,7 +115,7 @@ def test_log_is_synced_while_a_reader_blocks_the_checkpoint(tmp_path: Path, monk
 
 
 @pytest.mark.parametrize(
-    ("shard", "every"), [(0, 3), *(pytest.param(shard, 1, marks=pytest.mark.deep) for shard in (0, 1, 2))]
+    ("shard", "every"), [(0, 9), *(pytest.param(shard, 1, marks=pytest.mark.deep) for shard in (0, 1, 2))]
 )
 def test_data_of_a_failed_sync_is_rewritten_before_the_answer(tmp_path: Path, shard: int, every: int) -> None:
     """The kernel counts data as written after a failed sync: a second sync does not help."""

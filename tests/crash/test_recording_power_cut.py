@@ -54,7 +54,7 @@ def cut_everywhere(folder: Path, disk: TracedDisk, seconds: int, every: int) -> 
 
 @pytest.mark.parametrize("failing_syncs", [(), (2, 4)], ids=["sound", "two syncs fail"])
 def test_recording_is_readable_up_to_its_last_sync(tmp_path: Path, failing_syncs: tuple[int, ...]) -> None:
-    assert cut_everywhere(tmp_path, TracedDisk(failing_syncs), seconds=4, every=23) > 5
+    assert cut_everywhere(tmp_path, TracedDisk(failing_syncs), seconds=4, every=46) > 2
 
 
 @pytest.mark.deep

@@ -32,10 +32,8 @@ async def test_fault_cases_lead_to_their_rows_for_other_seeds(case: Case, tmp_pa
         assert judge(case.must, await drilled(case, tmp_path / str(seed), seed=seed)) == [], seed
 
 
-@pytest.mark.parametrize(
-    "case",
-    [pytest.param(case_of("sensor_board_1", "garbage"), marks=pytest.mark.deep), case_of("disk", "intermittent")],
-)
+@pytest.mark.deep
+@pytest.mark.parametrize("case", [case_of("sensor_board_1", "garbage"), case_of("disk", "intermittent")])
 async def test_the_same_seed_comes_to_the_same(case: Case, tmp_path: Path) -> None:
     folders = (tmp_path / "one", tmp_path / "other")
     for folder in folders:

@@ -135,8 +135,8 @@ class BusConformance:
             assert [identity(frame) for frame in self.heard(robot_end)] == [identity(frame) for frame in cycle(counts)]
             assert [identity(frame) for frame in self.heard(far_end)] == [identity(encode_brake())]
 
-    @pytest.mark.parametrize("length", range(9))
-    def test_a_payload_of_every_length_arrives_whole(self, ends: Ends, length: int) -> None:
+    @pytest.mark.parametrize("length", [0, 3, 8])
+    def test_a_payload_of_any_length_arrives_whole(self, ends: Ends, length: int) -> None:
         robot_end, far_end = ends
         sent = Frame(0x7FF, bytes(range(0xF0, 0xF0 + length)))
         send(far_end, [sent])

@@ -162,10 +162,6 @@ def quiet_robot(**infrared: float) -> Kurt2Settings:
     return ROBOT.model_copy(update={"infrared": ROBOT.infrared.model_copy(update=update)})
 
 
-def half_turn(pose: Pose) -> Pose:
-    return Pose(pose.x_m, pose.y_m, pose.heading_rad + math.pi)
-
-
 def left_clearances_m(world: WorldSettings, start: int) -> list[float]:
     """Return the distance to the wall on the left of each left sensor at a start pose."""
     pose = world.start_poses[start].pose

@@ -22,7 +22,7 @@ from simbridge.robot.world import World
 from simbridge.robot_simulation import RobotSimulation
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.patience import PATIENCE_S
-from tests.simbridge.direct_link import DirectEnd, DirectLink
+from tests.simbridge.direct_link import DirectLink
 from tests.simbridge.rig import ROBOT
 
 FACTORY = LinkSimulationFactory(ROBOT, open_link=DirectLink)
@@ -93,15 +93,6 @@ def test_link_simulation_has_sensors_of_the_plug_in() -> None:
         simulation.put(Pose(1.5, 0.5, 0.0))
         simulation.step()
         assert set(simulation.robot.sense(0.01).infrared_counts) == {150}
-
-
-def test_link_simulation_closes_both_ends() -> None:
-    simulation = FACTORY.open("a", 1, "exam")
-    link = simulation._link
-    assert isinstance(link, DirectLink)
-    simulation.close()
-    assert link.runtime_end.closed
-    assert isinstance(link.runtime_end, DirectEnd)
 
 
 def test_link_factory_pickles_and_has_no_batch() -> None:

@@ -94,17 +94,6 @@ def test_submit_runs_jobs_in_order_before_the_next_step(rig: Rig) -> None:
     assert done == [("first", "simulated-robot", 0.0), ("second", "simulated-robot", 0.0)]
 
 
-def test_submit_to_a_running_thread_runs_a_job_once(monkeypatch: pytest.MonkeyPatch, rig: Rig) -> None:
-    times: list[float] = []
-    done = threading.Event()
-    with RealtimeSimulation(rig.robot) as simulation:
-        simulation.submit(lambda: times.append(rig.robot.time_s))
-        simulation.submit(done.set)
-        assert done.wait(PATIENCE_S)
-        assert StepCounter(rig, monkeypatch, 3).enough.wait(PATIENCE_S)
-    assert len(times) == 1
-
-
 def test_submit_failing_job_ends_the_thread(rig: Rig) -> None:
     simulation = RealtimeSimulation(rig.robot)
     simulation.submit(fail)

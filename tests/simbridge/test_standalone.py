@@ -70,7 +70,7 @@ def test_standalone_seed_decides_robot_and_start(name: str) -> None:
             return seen
 
     assert start_of(1) == start_of(1)
-    assert len({start_of(seed) for seed in range(1, 5)}) > 1
+    assert len({start_of(seed) for seed in range(1, 3)}) > 1
 
 
 def test_standalone_second_robot_is_refused(name: str) -> None:

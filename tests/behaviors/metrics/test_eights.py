@@ -59,13 +59,6 @@ def test_the_distance_error_is_that_from_the_nearer_post() -> None:
     assert course.findings == {"distance error, m": pytest.approx(0.0, abs=0.005)}
 
 
-def test_build_named_posts_are_told_apart_by_place() -> None:
-    course = course_in("two_objects", SETTINGS)
-    assert isinstance(course, Eights)
-    west, east = course._posts
-    assert (west.name, east.name) == ("west", "east")
-
-
 def test_a_world_without_two_posts_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"one object .*1"):
         course_in("one_object", SETTINGS)

@@ -75,7 +75,7 @@ def test_laps_count_forwards_and_subtract_backwards(towards_rad: float, sign: in
         simulation.close()
 
 
-@pytest.mark.parametrize(("side", "sign"), [("left", -1), ("right", 1)])
+@pytest.mark.parametrize(("side", "sign"), [("right", 1)])
 def test_laps_with_the_wall_on_the_right_count_by_side(side: WallSide, sign: int) -> None:
     """The robot drives along the wall with the wall on its right."""
     simulation = STAGE.open("one_object", 1, "test")
@@ -105,15 +105,9 @@ def test_least_progress_is_a_tenth_of_a_metre_a_second() -> None:
         simulation.close()
 
 
-@pytest.mark.parametrize(
-    ("world", "drive_s"),
-    [
-        ("maps/flat", 8.0),  # through a door of 0.6 m
-        ("rooms-9007", 50.0),  # into a dead end of 0.85 m and out of it again
-    ],
-)
-def test_laps_of_the_policy_in_narrow_places_are_its_way(world: str, drive_s: float) -> None:
-    drive = teachers_drive(short_task(exam_s=drive_s, worlds=(world,)))
+def test_laps_of_the_policy_in_narrow_places_are_its_way() -> None:
+    world = "maps/flat"  # through a door of 0.6 m
+    drive = teachers_drive(short_task(exam_s=8.0, worlds=(world,)))
     simulation = STAGE.open(world, 1, "test")
     try:
         assert drive.progress * simulation.lap_m == pytest.approx(drive.distance_travelled_m, rel=0.15)

@@ -1,4 +1,3 @@
-import math
 from functools import cache
 
 import pytest
@@ -85,14 +84,6 @@ def test_route_without_errors_counts_every_decision_right() -> None:
     assert not course.needs_reset
 
 
-def test_within_a_junction_the_decision_is_still_the_one_there() -> None:
-    course = set_down()
-    first = course.route.legs[0]
-    before = course.behaviour
-    follow(course, [middle(first), corner(first)])
-    assert (course.ahead.inside, course.behaviour) == (True, before)
-
-
 def test_route_wrong_way_counts_and_resets_to_the_right_street() -> None:
     course = set_down()
     with_a_choice(course)
@@ -119,14 +110,6 @@ def test_route_turning_back_counts_as_wrong_and_repeats() -> None:
     course.reset(course.reset_pose)
     drive(course, 1)
     assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
-
-
-def test_turning_back_in_a_junction_is_wrong() -> None:
-    course = set_down()
-    leg = course.route.legs[0]
-    follow(course, [middle(leg), corner(leg), middle(leg)])
-    assert course.needs_reset
-    assert abs(course.passages[-1].taken or 0) == 2
 
 
 def test_route_reset_repeats_a_street_and_skips_a_junction() -> None:
@@ -167,11 +150,3 @@ def test_route_refuses_other_worlds_behaviours_and_numbers() -> None:
         course_in("manhattan", settings, ("",))
     with pytest.raises(SettingsError, match="7 decisions"):
         course_in("manhattan", RouteSettings(kind="route", decisions=7), ALL)
-
-
-def test_headings_of_the_ways_are_those_of_the_streets() -> None:
-    for leg in a_route().legs:
-        assert (round(math.cos(leg.middle.heading_rad)), round(math.sin(leg.middle.heading_rad))) == (
-            {0: 1, 1: 0, 2: -1, 3: 0}[leg.way],
-            {0: 0, 1: 1, 2: 0, 3: -1}[leg.way],
-        )

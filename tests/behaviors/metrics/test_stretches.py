@@ -41,7 +41,7 @@ def measured(metric: StretchMetric, poses: list[Pose], ticks: int) -> tuple[floa
 @pytest.mark.parametrize("centre", [WEST, (2.45, 1.8)])
 @pytest.mark.parametrize("build", [way, rounds, eights])
 def test_metric_of_stretches_has_the_bits_of_single_ticks(build: Callable[[], StretchMetric], centre: Point) -> None:
-    for seed in range(5):
+    for seed in range(2):
         poses = noisy_poses(centre, seed)
         expected = measured(build(), poses, 0)
         assert expected[0] != 0.0 or build is eights
@@ -52,10 +52,3 @@ def test_eights_in_stretches_count_whole_ones() -> None:
     points = [*arc(WEST, 0.65, 0.0, 360.0), *arc(EAST, 0.65, 180.0, -180.0)] * 2 + [(2.4, 1.9)]
     poses = list(along(points))
     assert measured(eights(), poses, 500)[0] == measured(eights(), poses, 0)[0] == 2.0
-
-
-@pytest.mark.parametrize("build", [way, rounds, eights])
-def test_stretch_without_ticks_changes_nothing(build: Callable[[], StretchMetric]) -> None:
-    metric = build()
-    metric.update_all([])
-    assert metric.progress == 0.0

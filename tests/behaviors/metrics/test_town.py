@@ -30,11 +30,6 @@ def street(town: Town, x_m: float, y_m: float, way: Side) -> Street:
     return found
 
 
-def test_manhattan_has_24_streets_two_ways_and_104_ways_on(town: Town) -> None:
-    assert len(town.streets) == 48
-    assert sum(len(town.on_from(each)) for each in town.streets) == 104
-
-
 def test_on_from_depends_on_the_end_of_the_street(town: Town) -> None:
     inner = town.on_from(street(town, 1.3, 2.2, Side.EAST))
     assert set(inner) == set(BEHAVIOURS)

@@ -60,7 +60,7 @@ class Drive:
 def complete(tmp_path_factory: pytest.TempPathFactory) -> TaskSettings:
     """Return a task with the whole repertoire; less than a minute of teaching in streets stands next to it."""
     folder = tmp_path_factory.mktemp("complete")
-    streets = load_task("streets", changes={"teaching.supervised_s": "30.0", "teaching.corrections_s": "0.0"})
+    streets = load_task("streets", changes={"teaching.supervised_s": "10.0", "teaching.corrections_s": "0.0"})
     taught = teach(folder / "streets.knowledge", streets)
     content = yaml.safe_load((CONFIG_DIR / "tasks" / "streets.yaml").read_text(encoding="utf-8"))
     content.update(name="patrol", system="streets", mid="turns")

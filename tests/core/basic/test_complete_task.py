@@ -36,7 +36,7 @@ def patrol(folder: Path, *mid_level: TeachingEvent, mid: str | None = "turns") -
     return f"kind: task, name: patrol, task: {path}, knowledge: patrol.knowledge"
 
 
-@pytest.mark.parametrize(("behaviour", "drives"), [("turn_left", LEFT), ("turn_right", RIGHT)])
+@pytest.mark.parametrize(("behaviour", "drives"), [("turn_right", RIGHT)])
 def test_its_mid_level_says_which_behaviour_drives(behaviour: str, drives: WheelSpeeds, tmp_path: Path) -> None:
     action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, behaviour, level=MID)))["patrol"]
     action.start()
@@ -50,14 +50,6 @@ def test_it_is_lost_where_the_mid_level_knows_no_answer(tmp_path: Path) -> None:
     action.start()
     assert action.step(sensed(WALLS)) == STANDSTILL
     assert action.lost
-
-
-def test_task_is_lost_if_its_active_behaviour_asks(tmp_path: Path) -> None:
-    action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID)))["patrol"]
-    action.start()
-    assert action.step(sensed(FREE)) == STANDSTILL
-    assert action.lost
-    assert action.step(sensed(WALLS)) == LEFT
 
 
 def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> None:

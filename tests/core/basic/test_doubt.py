@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, WheelSpeeds
@@ -46,14 +45,6 @@ class Doubter:
 
     def at(self, ahead: float, side: float = 100.0) -> Decision:
         return self.level.decide(Situation(np.array([side, ahead]), history_frozen=False), sensed(), None)
-
-
-def test_level_without_a_meter_tells_no_doubt() -> None:
-    system = RlaSystem(2, 1000.0)
-    system.apply_all(LESSONS)
-    level = BasicLevel(system, REPERTOIRE, 0, ActiveBehaviour(("",)))
-    decision = level.decide(Situation(np.array([100.0, 230.0]), history_frozen=False), sensed(), None)
-    assert (decision.cause, decision.doubt) == (DecisionCause.RLA, None)
 
 
 def test_situation_of_a_lesson_is_not_doubted() -> None:
@@ -137,10 +128,6 @@ def test_robot_without_a_teacher_stands_only_if_it_is_set(alone: bool) -> None:
     assert doubter.at(230.0).asking is alone
 
 
-def test_first_lessons_make_no_obstacle_new() -> None:
-    assert Doubter(LESSONS[0], LESSONS[3]).at(200.0).doubt == pytest.approx(0.075)
-
-
 def test_obstacle_names_the_sensor_and_the_taught_reading() -> None:
     doubter = Doubter(*LESSONS)
     match = doubter.at(230.0).match
@@ -168,8 +155,3 @@ def test_actions_ahead_have_a_speed_of_their_own() -> None:
 
 def load_repertoire_of(task: str) -> frozenset[str]:
     return actions_ahead(load_task_repertoire(load_task(task), load_robot()))
-
-
-def test_settings_with_a_rare_distance_as_usual_are_refused() -> None:
-    with pytest.raises(ValidationError, match=r"rare_distance .*usual_distance"):
-        DoubtSettings(usual_distance=0.5, rare_distance=0.5, rare_counts=50.0, threshold=2.0)

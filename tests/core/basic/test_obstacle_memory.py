@@ -177,12 +177,6 @@ def test_lesson_about_this_very_situation_is_followed() -> None:
     assert (decision.cause, decision.action, decision.doubt) == (DecisionCause.RLA, "forward", 0.0)
 
 
-def test_robot_that_only_tells_drives_on() -> None:
-    decision = Doubter(*LESSONS).after_a_look()
-    assert (decision.cause, decision.action) == (DecisionCause.RLA, "forward")
-    assert decision.doubt == pytest.approx(2.0)
-
-
 def test_robot_that_asks_stands_instead() -> None:
     decision = Doubter(*LESSONS, asks=True).after_a_look()
     assert decision.cause is DecisionCause.DOUBT

@@ -7,11 +7,7 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.settings import SettingsError
-from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
 from tests.behaviors.helpers import ROBOT, SENSORS, counts, sensed
 from tests.core.basic.helpers import condition_at, keep, repertoire, with_repertoire
@@ -38,13 +34,6 @@ def test_it_does_what_its_own_rlas_say(folder: Path) -> None:
     assert follow.step(sensed(CORNER)) == SPIN_RIGHT
     assert not follow.finished
     assert not follow.lost
-
-
-def test_an_action_inside_it_keeps_its_minimum_time(folder: Path) -> None:
-    follow = repertoire(folder, FOLLOW)["follow_wall"]
-    follow.start()
-    follow.step(sensed(WALL))
-    assert [follow.step(sensed(CORNER)) for _ in range(10)] == [FORWARD] * 9 + [SPIN_RIGHT]
 
 
 def test_taught_action_is_lost_while_its_situation_is_unknown(folder: Path) -> None:
@@ -84,21 +73,6 @@ def test_only_the_behaviour_that_is_named_acts(tmp_path: Path) -> None:
     assert actions["r"].step(sensed(WALL)) == SPIN_RIGHT
     assert actions["s"].step(sensed(WALL)) == STANDSTILL  # nothing was taught of it
     assert actions["s"].lost
-
-
-def test_level_above_asks_for_a_lost_action_and_answer_drives(folder: Path) -> None:
-    perception = Perception(load_situation("basic", SENSORS), SENSORS)
-    system = RlaSystem(perception.definition.dimensions, 900.0)
-    system.apply(created(1, condition_at(WALL), "follow_wall", radius=100_000.0))
-    actions = repertoire(folder, FOLLOW, "kind: motor, name: back, left_m_s: -0.1, right_m_s: -0.1")
-    level = BasicLevel(system, actions, 10, ActiveBehaviour())
-    at_wall = perception.perceive(sensed(WALL), history_frozen=True)
-    assert level.decide(at_wall, sensed(WALL), None).wheel_speeds == FORWARD
-    free = perception.perceive(sensed(FREE), history_frozen=True)
-    asks = level.decide(free, sensed(FREE), None)
-    assert (asks.wheel_speeds, asks.asking, asks.driving) == (STANDSTILL, True, False)
-    level.apply(created(2, tuple(free.vector.tolist()), "back"))
-    assert level.decide(free, sensed(FREE), None).wheel_speeds == WheelSpeeds(-0.1, -0.1)
 
 
 def test_a_taught_action_may_be_made_of_taught_ones(folder: Path) -> None:

@@ -15,10 +15,6 @@ def test_the_first_is_wanted_until_another_one_is() -> None:
     assert wanted.behaviour == "turn_right"
 
 
-def test_a_task_that_teaches_one_thing_gives_it_no_name() -> None:
-    assert (ActiveBehaviour().behaviours, ActiveBehaviour().behaviour) == (("",), "")
-
-
 @pytest.mark.parametrize("behaviours", [TURNS, ("",)])
 def test_active_behaviour_unknown_name_is_refused(behaviours: tuple[str, ...]) -> None:
     wanted = ActiveBehaviour(behaviours)

@@ -54,11 +54,3 @@ def test_the_answer_to_a_lost_action_acts_at_once() -> None:
     small.level.apply(created(2, (1.0,), "b"))
     decision = small.at(1.0)
     assert (decision.action, decision.rla_id) == ("b", 2)
-
-
-def test_a_lost_action_is_not_held() -> None:
-    small = SmallLevel(A_AT_0, B_AT_8)
-    small.at(0.0)
-    small.actions["a"].lost = True
-    small.at(0.0)
-    assert small.at(8.0).action == "b"

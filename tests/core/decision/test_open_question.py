@@ -53,9 +53,9 @@ def border() -> Border:
     return Border()
 
 
-def test_minute_at_the_border_of_r_is_one_question(border: Border) -> None:
+def test_noise_at_the_border_of_r_is_one_question(border: Border) -> None:
     noise, shown, causes = random.Random(1), set(), set()
-    for _ in range(5900):
+    for _ in range(2000):
         record = border.run(BORDER + round(noise.gauss(0.0, 2.0)))
         shown.add(record.standing)
         causes.add(record.decision.cause)
@@ -91,7 +91,7 @@ def test_question_of_a_robot_that_stands_stays_open(border: Border) -> None:
 
 
 def test_stop_and_go_leave_the_question_open(border: Border) -> None:
-    stopped = border.run(BORDER, 6000, Stop("s", "Ann"))
+    stopped = border.run(BORDER, 600, Stop("s", "Ann"))
     assert stopped.standing.reason is StandReason.STOPPED
     assert border.run(BORDER + 20, 2, Resume("r", "Ann")).standing == ASKS
     assert len(border.asked) == 1

@@ -1,6 +1,5 @@
 """Reasons of a standing robot: page, terminal, status line and status give one text and one remedy."""
 
-import cbor2
 import pytest
 
 from hal.guard_reason import GuardReason
@@ -26,7 +25,7 @@ from kurt2rt.core.decision.standing_text import (
     short_text,
     standing_headline,
 )
-from kurt2rt.core.teaching.commands import Stop, Teach, Watch
+from kurt2rt.core.teaching.commands import Teach, Watch
 from kurt2rt.core.teaching.question import FeatureDifference, Question
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
@@ -133,14 +132,6 @@ def test_a_stop_of_the_program_is_told_in_its_own_words() -> None:
     assert GuardReason.SERVICE_ENDS in page_of(desk.picture)
 
 
-def test_a_teachers_stop_waits_for_go() -> None:
-    desk = LatchingDesk()
-    desk.runtime.inbox.put(Stop("s", "Ann"))
-    desk.run()
-    assert desk.picture.standing.stop == ActiveStop(StopReason.SAID_STOP, "Ann")
-    assert desk.picture.standing.needs_resume
-
-
 def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     desk = LatchingDesk()
     desk.runtime.handler.authority.attended = True
@@ -183,14 +174,6 @@ def test_one_late_tick_is_no_standing_and_many_are() -> None:
 def test_a_question_waits_while_the_guard_has_latched() -> None:
     told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (GuardReason.BUS_LOST,), latched=True), 0.0, None, None)
     assert told == Standing(StandReason.BUS_LOST, True, True)
-
-
-def test_decode_state_stands_stopped_keeps_the_code() -> None:
-    stop = ActiveStop(StopReason.LINK_LOST, "Ann")
-    stands = Standing(StandReason.STOPPED, True, stop=stop)
-    told = encode_state(state(stopped=stop, standing=stands))
-    assert cbor2.loads(told)["sd"] == ["stopped", True, False, None, ""]
-    assert decode_state(told).standing == stands
 
 
 def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:

@@ -33,12 +33,6 @@ def test_learn_mean_duration() -> None:
     assert small.expected(1).ticks == pytest.approx(30.0)
 
 
-def test_expectation_before_first_end_is_none() -> None:
-    small = Small()
-    small.ends(1, 2, 5.0, 5.0)
-    assert small.expectations.get(2) is None
-
-
 def test_surprise_only_for_distant_ends() -> None:
     small = Small()
     for number in range(20):
@@ -99,15 +93,6 @@ def test_surprise_symbols_different_ones() -> None:
     assert (other.surprising, other.distance, other.level) == (True, 1.0, MID)
 
 
-def test_learn_symbols_rare_ones_keep_the_majority() -> None:
-    small = Small("hamming")
-    for _ in range(20):
-        small.ends(1, 2, 3.0, 0.0, 0.0)
-        small.ends(1, 2, 1.0, 0.0, 0.0)
-        small.ends(1, 2, 1.0, 0.0, 0.0)
-    assert small.expected(1).mean.tolist() == [1.0, 0.0, 0.0]
-
-
 def test_on_event_new_action_drops_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
@@ -132,13 +117,6 @@ def test_on_event_restored_rla_has_no_expectation() -> None:
     assert small.expectations.get(1) is None
     small.ends(1, 2, 6.0, 5.0)
     assert small.expected(1).mean.tolist() == [6.0, 5.0]
-
-
-def test_on_event_undo_drops_expectation() -> None:
-    small = Small()
-    small.ends(3, 2, 5.0, 5.0)
-    assert small.happens(undone("lesson-3")) == 3
-    assert small.expectations.snapshot() == {}
 
 
 def test_on_event_reward_keeps_expectation() -> None:

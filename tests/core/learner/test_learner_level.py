@@ -7,9 +7,6 @@ from kurt2rt.core.learner.learner import Why
 from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.rla_learner import RlaLearner
-from kurt2rt.core.rla.events import LessonUndone
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
 from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
 from tests.core.learner.helpers import SETTING, label
 
@@ -69,15 +66,6 @@ def test_lesson_acts_at_once_also_against_a_held_action() -> None:
     robot.at(0.0)
     robot.teach(3.0, "b", "t-2")
     assert robot.at(3.0).action == "b"
-
-
-def test_undone_lesson_no_longer_drives() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.teach(3.0, "b", "t-2")
-    assert robot.at(3.0).action == "b"
-    robot.level.on_event(LessonUndone("t-2", Origin("u-1", "Ann", Phase.SUPERVISED, 9)))
-    assert robot.at(3.0).action == "a"
 
 
 def test_blocking_cause_stands_and_restarts_the_action() -> None:

@@ -29,7 +29,9 @@ class TestPromises(LearnerTests):
 
     @pytest.fixture(
         autouse=True,
-        params=[pytest.param(name, marks=[pytest.mark.deep] if name == "svm" else []) for name in learner_names()],
+        params=[
+            pytest.param(name, marks=[pytest.mark.deep] if name in ("svm", "tree") else []) for name in learner_names()
+        ],
     )
     def named(self, request: pytest.FixtureRequest) -> None:
         self.name = str(request.param)

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.mid.situation import MidSituation
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
@@ -76,8 +74,3 @@ def test_history_restart_is_empty() -> None:
     assert led.situation.vector.tolist() == [0.0] * 12
     assert led.go(0.5).words == []
     assert led.over(-90.0).words == ["right"]
-
-
-def test_describe_names_each_symbol() -> None:
-    situation = load_mid_level("turns").situation
-    assert situation.describe(np.array([1.0, 0.0, 2.0, 9.0])) == ("straight", "", "left", "9")

@@ -127,12 +127,6 @@ def noisy(robot: Kurt2Settings, **changes: float) -> Kurt2Settings:
     return robot.model_copy(update={"infrared": infrared})
 
 
-def test_detector_random_drives_in_simulation() -> None:
-    passed, told = random_drive(3, 40.0, ROBOT)
-    assert len(passed) >= 6
-    assert told == passed
-
-
 @pytest.mark.deep
 @pytest.mark.parametrize("seed", range(4))
 def test_detector_noisy_sensors_for_minutes(seed: int) -> None:

@@ -49,13 +49,6 @@ def test_detector_turn_on_the_spot() -> None:
     assert walk.go(0.4, STREET_M, OPEN_M).street().told == ["left"]
 
 
-def test_detector_several_junctions_in_a_row() -> None:
-    walk = Walk().street()
-    for turn_deg in (90.0, 0.0, -90.0, -90.0, 0.0):
-        walk.go(0.7, OPEN_M, OPEN_M, turn_deg=turn_deg).street(1.0)
-    assert walk.told == ["left", "straight", "right", "right", "straight"]
-
-
 def test_detector_wobble_is_no_turn() -> None:
     askew = Walk().street().go(0.3, turn_deg=18.0).go(0.2, askew_deg=18.0)
     askew.go(0.7, OPEN_M, OPEN_M, turn_deg=54.0)

@@ -6,14 +6,7 @@ from kurt2rt.core.decision.errors import UnknownBehaviourError
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
-from tests.core.rla.helpers import created, deleted, replaced, undone, withdrawn
-
-
-def test_mid_level_before_first_lesson_asks() -> None:
-    small = SmallStack()
-    first = small.commanded()
-    assert first == ("straight_on", None, None, True, False, None)
-    assert small.wanted.behaviour == "straight_on"
+from tests.core.rla.helpers import created, deleted, replaced, undone
 
 
 def test_mid_level_nearest_rla_commands() -> None:
@@ -104,26 +97,12 @@ def test_mid_level_corrects_a_foreign_change() -> None:
     assert small.commanded().behaviour == small.wanted.behaviour == "turn_left"
 
 
-def test_mid_level_override_unknown_behaviour_is_refused() -> None:
-    small = SmallStack()
-    with pytest.raises(ValueError, match="NO_BEHAVIOUR"):
-        small.mid.override("fly")
-    assert small.commanded().asks
-
-
 def test_mid_level_restart_forgets_the_situation() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
     small.commanded(1.0)
     assert small.commanded(1.0).behaviour == "turn_right"
     small.stack.restart()
     assert small.commanded().behaviour == "turn_left"
-
-
-def test_mid_level_withdrawn_rla_asks() -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    assert not small.commanded().asks
-    small.system.apply(withdrawn(4, "turn_left"))
-    assert small.commanded().asks
 
 
 def test_mid_level_unknown_behaviour_in_rla_is_refused() -> None:

@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from hal.settings import SettingsError
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 
 CONTENT: dict[str, Any] = load_mid_level("turns").model_dump(mode="json", serialize_as_any=True)
@@ -22,11 +21,6 @@ def test_builtin_mid_level_matches_the_paper() -> None:
     assert mid.situation.kind == "history"
     assert mid.features[0] == "symbol 1"
     assert load_mid_level(mid) is mid
-
-
-def test_load_mid_level_unknown_name_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"nowhere: .*mid_levels"):
-        load_mid_level("nowhere")
 
 
 def test_feature_hash_depends_on_features_only() -> None:

@@ -63,17 +63,6 @@ def test_definition_hash_is_constant() -> None:
     assert load_situation("basic", ROBOT_SENSORS).hash(ROBOT_SENSORS, "kurt2") == "133f3f3bb801d15d"
 
 
-def test_definition_names_follow_the_vector() -> None:
-    assert definition().names[:9] == (
-        *("b", "a"),
-        *("maximum front", "minimum front", "maximum rear"),
-        *("orientation left a>b", "orientation left b>a"),
-        *("wheel speed right", "wheel speed left"),
-    )
-    assert definition().names[9] == "b (10 s average)"
-    assert definition().dimensions == 18
-
-
 def test_load_situation_unknown_sensor_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"basic\.yaml: features: .* s17, s18;"):
         load_situation("basic", ROBOT_SENSORS[:16])

@@ -23,15 +23,11 @@ def extracted(features: Features, counts: tuple[int, ...], driven: WheelSpeeds =
     ("features", "counts", "by_hand"),
     [
         (READINGS, (10, 20, 30, 40), [20, 10]),
-        (READINGS[:1], (10, 20, 30, 40), [20]),
         (EXTREMES, (10, 20, 30, 40), [30, 20, 40]),
         (EXTREMES, (50, 20, 30, 5), [50, 5, 5]),
         (ORIENTATIONS, (10, 25, 0, 0), [0, 15]),
         (ORIENTATIONS, (25, 10, 0, 0), [15, 0]),
         (ORIENTATIONS, (25, 25, 0, 0), [0, 0]),
-        ((*EXTREMES, *READINGS), (10, 20, 30, 40), [30, 20, 40, 20, 10]),
-        ((READINGS[0], EXTREMES[0], READINGS[1]), (10, 20, 30, 40), [20, 30, 10]),
-        ((*READINGS, EXTREMES[0], *READINGS), (10, 20, 30, 40), [20, 10, 30, 20, 10]),
         (READINGS, (0, 1023, 0, 0), [1023, 0]),
     ],
 )

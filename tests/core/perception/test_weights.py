@@ -91,11 +91,6 @@ def test_feature_weights_decide_which_rla_drives() -> None:
     assert first_tick(*taught, weights=(light,)).decision.action == "back"
 
 
-def test_feature_weights_unknown_feature_stops_the_start() -> None:
-    with pytest.raises(SettingsError, match="'s99'"):
-        first_tick(weights=(FeatureWeight(weight=2.0, features=("s99",)),))
-
-
 MIRRORED = {"s1": "s5", "s2": "s6", "s3": "s7", "s4": "s8", "s9": "s10", "s12": "s13", "s15": "s16", "s17": "s18"}
 """Sensors that the robot has on both sides, left to right."""
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from kurt2rt.core.planning.plan import Plan, plan_to
-from kurt2rt.core.planning.target import FeatureTarget, NearTarget, Target
+from kurt2rt.core.planning.target import NearTarget, Target
 from kurt2rt.core.planning.topological_map import Edge, Place, TopologicalMap
 from tests.core.planning.town import SPACE, Town
 from tests.core.rla.helpers import withdrawn
@@ -95,21 +95,6 @@ def test_map_follow_ups_replace_distant_expectation() -> None:
     assert {(way.end, way.share) for way in ways} == {(place_id(town, "ne"), 0.5), (place_id(town, "nw"), 0.5)}
 
 
-def test_plan_partial_goal_is_the_nearest_match() -> None:
-    town = block()
-    town.walled = {"ne", "nw"}
-    fresh = Town(**town.places)
-    fresh.walled = town.walled
-    for start, end in (("sw", "se"), ("se", "ne"), ("ne", "nw")):
-        fresh.way(start, "turn_left", end)
-    fresh.teach("nw", "turn_left")
-    chart = fresh.chart()
-    goals = meeting(chart, FeatureTarget({2: 1.0}, 0.1))
-    assert goals == {place_id(fresh, "ne"), place_id(fresh, "nw")}
-    found = plan_to(chart, place_id(fresh, "sw"), goals)
-    assert actions(found) == ["turn_left", "turn_left"]
-
-
 def test_map_withdrawn_rla_is_no_edge() -> None:
     town = block()
     rla_id = place_id(town, "se")
@@ -117,7 +102,7 @@ def test_map_withdrawn_rla_is_no_edge() -> None:
     assert plan_to(town.chart(), place_id(town, "sw"), {place_id(town, "ne")}) is None
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(5))
 def test_plan_is_that_of_networkx_ties_included(seed: int) -> None:
     random, chart = np.random.default_rng(seed), TopologicalMap()
     graph: nx.DiGraph[int] = nx.DiGraph()

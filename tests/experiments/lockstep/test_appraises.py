@@ -10,7 +10,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs, plan_of
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 DRIVES = RlaCreated(Rla(1, (0.0,) * 72, "forward", 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
@@ -55,17 +55,10 @@ def test_a_taught_critic_always_appraises() -> None:
 @pytest.mark.parametrize(
     ("phase", "signs", "appraises"),
     [
-        (Phase.SUPERVISED, "none", False),
         (Phase.CORRECTIONS, "none", False),
         (Phase.CORRECTIONS, "judge", True),
-        (Phase.REINFORCEMENT, "none", True),
-        (Phase.CRITIC, "none", True),
         (Phase.AUTONOMOUS, "none", True),
     ],
 )
 def test_a_plan_tells_whether_anything_is_appraised(phase: Phase, signs: Signs, appraises: bool) -> None:
     assert LessonPlan(((Phase.SUPERVISED, 1.0), (phase, 1.0)), signs=signs).appraises is appraises
-
-
-def test_the_plan_of_a_task_appraises_nothing() -> None:
-    assert not plan_of(short_task()).appraises

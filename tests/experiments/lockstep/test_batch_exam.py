@@ -60,22 +60,12 @@ def test_start_in_sight_is_that_of_the_bus() -> None:
 
 
 @pytest.mark.parametrize(
-    "name",
-    ["streets", *(pytest.param(name, marks=pytest.mark.deep) for name in ("straight_on", "turn_left", "turn_right"))],
-)
-def test_policy_in_streets_has_the_results_of_the_bus(name: str) -> None:
-    task = load_task(name, changes={"exam.duration_s": str(EXAM_S)})
-    exams = [BatchExam(ExamSetup(world, 2, teacher_policy=True)) for world in ("manhattan", "streets-5")]
-    assert examine_in_batch(STAGE, ROBOT, task, exams) == [exam_on_bus(task, exam) for exam in exams]
-
-
-@pytest.mark.parametrize(
     ("name", "plain", "worlds"),
     [
         ("streets", False, ("manhattan", "streets-5")),
         pytest.param("straight_on", False, ("manhattan", "streets-5"), marks=pytest.mark.deep),
         ("wall_following", True, ("a", "b")),
-        ("streets", True, ("manhattan", "streets-5")),
+        pytest.param("streets", True, ("manhattan", "streets-5"), marks=pytest.mark.deep),
     ],
 )
 def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds: Sequence[str]) -> None:

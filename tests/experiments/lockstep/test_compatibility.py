@@ -25,8 +25,3 @@ def test_require_course_refuses_behaviours_without_an_exit() -> None:
     task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
     with pytest.raises(SettingsError, match="straight_on"):
         require_course(STAGE, task, ["manhattan"])
-
-
-@pytest.mark.parametrize("task", ["wall_following", "fleeing"])
-def test_laps_and_way_are_made_anywhere(task: str) -> None:
-    require_course(STAGE, load_task(task), ["a", "one_object", "manhattan"])

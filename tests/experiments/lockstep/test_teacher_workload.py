@@ -75,15 +75,6 @@ def test_the_release_of_a_hold_is_no_press() -> None:
     assert load.press_ticks == [1]
 
 
-def test_press_ticks_are_of_all_minutes() -> None:
-    load = TeacherWorkload(ticks=12_000, period_s=0.01)
-    load.count(5, Teach("1", "Ann", "a"))
-    load.count_manual(7, "set_down")
-    load.count(6_001, Correct("2", "Ann", "a"))
-    load.count_manual(6_002, "go")
-    assert load.press_ticks == [5, 6_001, 6_002]
-
-
 def test_workload_leaves_out_other_commands() -> None:
     load = TeacherWorkload(ticks=100, period_s=0.01)
     load.count(1, SetPhase("1", "Ann", Phase.CRITIC))

@@ -94,21 +94,6 @@ def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp
         go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)
 
 
-def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path: Path) -> None:
-    plan = of_phase(Phase.REINFORCEMENT, signs="judge", reposition_every_s=2.5)
-    folders = [tmp_path / name for name in ("one", "two")]
-    for folder in folders:
-        folder.mkdir()
-    (one, events), (two, again) = (go_on(taught, folder, plan) for folder in folders)
-    assert events == again
-    assert (one.knowledge_hash, one.saved, one.trail, one.workload) == (
-        two.knowledge_hash,
-        two.saved,
-        two.trail,
-        two.workload,
-    )
-
-
 def rival(action: str) -> RlaCreated:
     """Another RLA on the condition of `knows_only`."""
     first = knows_only("stand").rla
@@ -119,9 +104,7 @@ def rival(action: str) -> RlaCreated:
     ("alone", "drives"),
     [
         (None, False),  # what its teacher had said of the newer one
-        (Statistics(), True),  # of equals the newest
         (Statistics(values={1: -0.3}), True),  # of the other one phase 5 had nothing to say yet
-        (Statistics(values={1: 0.4, 2: 0.6}), True),
         (Statistics(values={2: 0.4}), False),
     ],
 )
@@ -141,12 +124,6 @@ def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bo
         return exam.distance_travelled_m
 
     assert (anyio.run(drive) > 0.3) is drives
-
-
-def test_training_ending_in_phase_5_returns_its_values(taught: Taught, tmp_path: Path) -> None:
-    assert taught.result.autonomous_values is None
-    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
-    assert result.autonomous_values == Statistics()  # the critic was not trusted yet
 
 
 @pytest.mark.parametrize("stuck_ends", [True, False])

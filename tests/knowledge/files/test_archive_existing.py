@@ -45,8 +45,3 @@ def test_archive_existing_file_in_use_is_refused(path: Path) -> None:
         with refused(KnowledgeCode.ANOTHER_WRITER):
             archive_existing(path)
         assert path.exists()
-
-
-def test_archive_existing_without_a_file_does_nothing(path: Path) -> None:
-    archive_existing(path)
-    assert list(path.parent.iterdir()) == []

@@ -1,7 +1,6 @@
 """A copy of the knowledge while the robot goes on writing it."""
 
 import hashlib
-import sqlite3
 import subprocess
 import sys
 from dataclasses import replace
@@ -138,13 +137,6 @@ def test_save_copy_full_disk_leaves_no_file(path: Path, tmp_path: Path) -> None:
     assert names(folder) == []
 
 
-def test_save_copy_impossible_folder_is_refused(path: Path, tmp_path: Path) -> None:
-    (tmp_path / "saved").write_text("in the way")
-
-    with refused(KnowledgeCode.FOLDER_NOT_WRITABLE):
-        save_copy(begun(path), tmp_path / "saved", "x", STAMP)
-
-
 def test_save_copy_other_files_are_refused(path: Path, tmp_path: Path) -> None:
     with refused(KnowledgeCode.NOT_OPENED):
         save_copy(path, tmp_path / "saved", "x", STAMP)
@@ -173,12 +165,3 @@ def test_save_copy_kill_leaves_whole_copies(path: Path, tmp_path: Path) -> None:
     assert len(contents) == 1
     with Journal.read_only(copies[0]) as look:
         assert len(look.events()) == 500
-
-
-def test_save_copy_is_no_log_and_needs_none(path: Path, tmp_path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([entry(1)])
-        saved = save_copy(path, tmp_path / "saved", "", STAMP)
-    connection = sqlite3.connect(tmp_path / "saved" / saved.name)
-    assert connection.execute("PRAGMA journal_mode").fetchone() == ("delete",)
-    connection.close()

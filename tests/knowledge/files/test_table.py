@@ -82,12 +82,6 @@ def test_export_table_numbers_and_names_are_exact(path: Path, tmp_path: Path) ->
     assert row[14] == "-0.0"
 
 
-def test_export_table_without_lessons_has_a_heading(path: Path, tmp_path: Path) -> None:
-    Journal.open(path, BINDING).close()
-
-    assert len(exported(path, tmp_path)) == 1
-
-
 def test_export_table_named_behaviours_have_a_column(path: Path, tmp_path: Path) -> None:
     left = RlaCreated(replace(created(2).rla, behaviour="turn_left"))
     with Journal.open(path, BINDING) as journal:

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import networkx as nx
 import numpy as np
-import pytest
 
 from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla import BASIC, MID
@@ -87,9 +86,8 @@ def test_write_network_graphml_is_read_back(tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("kind", ["svg", "png"])
-def test_write_network_picture_is_reproducible(tmp_path: Path, kind: str) -> None:
-    pictures = [tmp_path / f"{name}.{kind}" for name in ("first", "second")]
+def test_write_network_picture_is_reproducible(tmp_path: Path) -> None:
+    pictures = [tmp_path / f"{name}.svg" for name in ("first", "second")]
     for picture in pictures:
         write_network(build_network(system(), DROVE), "RLAs", picture)
     first, second = (picture.read_bytes() for picture in pictures)

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.exchange.attachments import decode_statistics, encode_statistics
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.statistics_tables import changes
 from tests.knowledge.lessons import BINDING
@@ -23,7 +22,3 @@ def test_checkpoint_only_changed_delays_are_written() -> None:
     (written,) = changes(SAVED, Statistics(answer_delays={"Ann": (120, 80, 80, 300, 90), "Ben": (0,)}))
     assert written.rows == [("Ann", 4, 90)]
     assert changes(SAVED, SAVED) == []
-
-
-def test_statistics_of_a_recording_have_the_delays() -> None:
-    assert decode_statistics(encode_statistics(SAVED)) == SAVED

@@ -1,8 +1,6 @@
 import json
 import struct
-from dataclasses import replace
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -24,7 +22,7 @@ from kurt2rt.core.rla.events import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, MID, Origin, Rla
+from kurt2rt.core.rla.rla import MID, Origin, Rla
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import (
@@ -84,13 +82,6 @@ def test_encode_event_is_decoded_exactly(event: TeachingEvent) -> None:
     assert "\n" not in text
     if isinstance(event, RlaCreated) and isinstance(again, RlaCreated):
         assert bits(again.rla.condition) == bits(event.rla.condition)  # also the sign of a zero
-
-
-def test_encode_event_numpy_condition_is_decoded() -> None:
-    condition = tuple(np.array([0.1, 1 / 3, -0.0, 5e-324]))
-    event = RlaCreated(Rla(1, condition, "forward", None, Origin("c", "t", Phase.SUPERVISED, 0)))
-
-    assert decode_event(encode_event(event), "here") == event
 
 
 @given(st.text() | st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists).map(json.dumps))
@@ -164,12 +155,6 @@ def test_decode_event_wrong_field_of_other_kinds_is_named(event: TeachingEvent, 
 
     with refused(KnowledgeCode.NOT_AN_EVENT, "row 1", key=key):
         decode_event(json.dumps(content), "row 1")
-
-
-def test_decode_event_behaviour_and_level_are_kept() -> None:
-    event = RlaCreated(replace(created(1).rla, behaviour="turn_left", level=CRITIC))
-
-    assert decode_event(encode_event(event), "here") == event
 
 
 @pytest.mark.parametrize(

@@ -222,9 +222,3 @@ def test_read_only_without_rights_on_the_file_is_read() -> None:
         before = contents(Path(folder))
         assert read_without_rights(path) == ("3\n", "")
         assert contents(Path(folder)) == before
-
-
-def test_connect_to_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(KnowledgeError, match="nowhere"):
-        journal_file.connect(tmp_path / "nowhere.knowledge", "mode=rw")
-    assert list(tmp_path.iterdir()) == []

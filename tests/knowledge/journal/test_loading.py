@@ -33,7 +33,6 @@ from tests.knowledge.lessons import (
     created,
     entry,
     origin,
-    rewarded,
     tamper,
     undone,
 )
@@ -59,19 +58,6 @@ def require_refused(
 def only_in(error: KnowledgeError) -> list[tuple[str, str]]:
     """Return owner and names of the features that only one of file and robot has."""
     return re.findall(r"the (file|robot) has ('.*?')(?:, only| and|$)", str(error.fields["difference"]))
-
-
-def test_open_missing_file_is_made(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        assert journal.events() == []
-        assert journal.check() == []
-    assert contents(path.parent).keys() == {"knowledge.db"}
-
-
-def test_open_ignores_temporary_file_of_a_crash(path: Path) -> None:
-    path.with_name(".knowledge.db.unborn").write_bytes(b"SQLite format 3\x00 and then the battery was empty")
-
-    assert Journal.read_only(begun(path)).events() == [created(1), created(2), created(3)]
 
 
 def test_open_other_kinds_of_files_are_refused(path: Path) -> None:
@@ -273,22 +259,6 @@ def test_check_each_overwritten_page_is_found(path: Path) -> None:
     for page in range(1, len(whole) // 4096):
         path.write_bytes(whole[: page * 4096] + b"\xa5" * 4096 + whole[(page + 1) * 4096 :])
         assert errors(path) != []
-
-
-def test_check_misfit_lesson_is_found(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([entry(2), entry(1)])
-        (error,) = check_knowledge(journal)
-
-    assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 2")
-
-
-def test_check_misfit_undo_is_found(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([entry(1), *(JournalEntry(event, STAMP) for event in (rewarded(1), undone("create-1")))])
-        (error,) = check_knowledge(journal)
-
-    assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 3")
 
 
 def test_open_for_teaching_has_lessons_stamps_and_counts(path: Path) -> None:

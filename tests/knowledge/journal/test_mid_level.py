@@ -52,14 +52,6 @@ def test_open_streets_knowledge_for_a_route_adds_the_level(path: Path) -> None:
         assert journal.binding.levels[MID] == TURNS.level_features
 
 
-def test_open_route_knowledge_for_the_streets_keeps_the_level(path: Path) -> None:
-    write(path, basic(1), mid_rla(2, 1, 2))
-    opened = open_for_teaching(path, ROBOT, STREETS)
-    with opened.journal as journal:
-        assert opened.events == [basic(1), mid_rla(2, 1, 2)]
-        assert journal.binding.levels[MID] == TURNS.level_features  # stays for who comes with a mid level
-
-
 def test_open_untaught_level_takes_other_features(path: Path) -> None:
     write(path, basic(1))
     assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
@@ -89,19 +81,6 @@ def test_open_other_junctions_are_refused(path: Path) -> None:
         open_for_teaching(path, ROBOT, other)
 
 
-def test_read_lessons_other_radius_is_compatible(path: Path) -> None:
-    write(path, mid_rla(1, 1))
-    learning = TURNS.learning.model_copy(update={"radius": 0.0})
-    other = TURNS.model_copy(update={"learning": learning})
-    assert read_lessons(path, ROBOT, ROUTE.model_copy(update={"mid": other})) == [mid_rla(1, 1)]
-
-
-def test_open_task_without_system_has_its_own_knowledge(path: Path) -> None:
-    open_knowledge(path, ROBOT, STREETS).close()
-    with refused(KnowledgeCode.OTHER_TASK, taught="streets", wanted="lanes"):
-        open_knowledge(path, ROBOT, STREETS.model_copy(update={"name": "lanes"}))
-
-
 def test_render_mid_level_has_words_teachers_and_successors(path: Path) -> None:
     write(
         path,
@@ -122,15 +101,6 @@ def test_render_mid_level_has_words_teachers_and_successors(path: Path) -> None:
         ["4", "turn_right", "straight_on", when, "0", "right, right, back"],
     ]
     assert LessonRecord(corrected, level=MID).text in lessons
-
-
-def test_render_undone_mid_level_rla_is_only_listed(path: Path) -> None:
-    write(path, basic(1), mid_rla(2, 1), undone("create-2"))
-    with Journal.read_only(path) as journal:
-        shown = "\n".join(printed(render_knowledge(journal)))
-        (listed,) = (line for line in printed(render_lessons(journal)) if "mid-level" in line)
-    assert "mid-level" not in shown
-    assert listed.rstrip().endswith("Joachim")
 
 
 def test_render_named_situations_have_present_meanings(path: Path) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
@@ -18,7 +18,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, rewarded, session, undone
+from tests.knowledge.lessons import BINDING, STAMP, begun, created
 from tests.knowledge.refusals import refused
 
 SOON = RetryDelays(first_s=0.001, longest_s=0.004)
@@ -101,31 +101,6 @@ def test_stamp_is_the_wall_clock_at_submit(path: Path) -> None:
     with Journal.read_only(path) as journal:
         assert [entry.stamped_at for entry in journal.entries()] == ["stamp 1", "stamp 2"]
     assert utc_now().endswith("+00:00")
-
-
-def test_acknowledged_repeated_lesson_has_its_first_stamp(path: Path) -> None:
-    later = "2004-04-27T08:00:00.000+00:00"
-    with JournalWriter(Journal.open(begun(path, lessons=1), BINDING), now=lambda: later) as writer:
-        writer.submit(created(1))
-        writer.submit(created(2))
-        assert [each.stamped_at for each in settled(writer)] == [STAMP, later]
-
-
-def test_submit_every_kind_of_event_is_written(path: Path) -> None:
-    events: list[TeachingEvent] = [created(1), rewarded(1), undone("reward-1"), *session(6000)]
-    with writer_of(path) as writer:
-        for event in events:
-            writer.submit(event)
-        assert [each.sequence for each in settled(writer)] == [1, 2, 3, 4, 5]
-    with Journal.read_only(path) as journal:
-        assert journal.events() == events
-
-
-def test_submit_repeated_command_is_acknowledged_with_its_row(path: Path) -> None:
-    with writer_of(begun(path, lessons=2)) as writer:
-        writer.submit(created(2))
-        assert settled(writer) == [Acknowledgement("create-2", 2, None, STAMP)]
-    assert stored(path) == [created(1), created(2)]
 
 
 def test_submit_unwritable_lesson_does_not_delay_others(path: Path) -> None:

@@ -139,31 +139,6 @@ def test_render_knowledge_has_withdrawals_values_appraisals(path: Path) -> None:
     assert [line.strip().split("  ")[0] for line in of_critic if "RLA" in line] == ["RLA 1 punished"]
 
 
-def narrow(journal: Journal) -> tuple[str, list[str]]:
-    """Headings on 80 columns, and the cells of the only RLA."""
-    console = Console(width=80, color_system=None)
-    with console.capture() as capture:
-        console.print(render_knowledge(journal, wide=False))
-    lines = capture.get().splitlines()
-    assert max(len(line) for line in lines) <= 80
-    (row,) = rows(lines)
-    headings = next(number for number, line in enumerate(lines) if line.startswith("RLA"))
-    return " ".join(" ".join(lines[headings : headings + 2]).split()), row
-
-
-def test_render_knowledge_narrow_keeps_important_columns(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(event, STAMP) for event in (created(1, action="spin_right"), rewarded(1))])
-        headings, row = narrow(journal)
-        journal.checkpoint(Statistics(values={1: 0.5}))
-        with_value, valued_row = narrow(journal)
-
-    assert {"RLA", "action", "uses", "rewards", "tick"} <= set(headings.split())
-    assert {"RLA", "action", "uses", "rewards", "value"} <= set(with_value.split())
-    assert (row[1], row[-1]) == ("spin_right", "+1")
-    assert (valued_row[1], valued_row[-2:]) == ("spin_right", ["+1", "0.50"])
-
-
 def test_render_lessons_newest_first_with_ids_and_undoers(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         events = (created(1), replaced(1, "left", "forward"), *session(10), created(2), undone("create-2"))
@@ -174,15 +149,6 @@ def test_render_lessons_newest_first_with_ids_and_undoers(path: Path) -> None:
     assert [LessonRecord(created(2)).text, "create-2", when, "Joachim"] in lines
     assert [LessonRecord(events[1]).text, "replace-1-left", when] in lines
     assert numbers(lines[-1][0]) == [1]
-
-
-def test_render_knowledge_limit_counts_the_rest(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(created(number), STAMP) for number in range(1, 6)])
-        lines = printed(render_knowledge(journal, limit=2))
-
-    assert len(rows(lines)) == 2
-    assert numbers(lines[-1]) == [3]
 
 
 def test_render_knowledge_without_lessons(path: Path) -> None:
@@ -206,16 +172,6 @@ def test_follow_ups_are_shares_of_the_transitions() -> None:
     assert shares == {1: {3: 75.0, 2: 25.0}, 2: {2: 100.0}}
     assert list(shares[1]) == [3, 2]
     assert sum(shares[1].values()) == pytest.approx(100)
-
-
-def test_render_knowledge_averages_are_no_largest_features(path: Path) -> None:
-    binding = replace(BINDING, feature_names=("s1", "s2", "s1 (10 s average)", "s2 (10 s average)"))
-    with Journal.open(path, binding) as journal:
-        journal.append([JournalEntry(created(1), STAMP)])
-        (row,) = rows(printed(render_knowledge(journal)))
-
-    assert "s1 " in row[-1]
-    assert "average" not in row[-1]
 
 
 def test_render_knowledge_named_behaviours_have_a_column(path: Path) -> None:

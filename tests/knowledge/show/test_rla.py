@@ -41,17 +41,6 @@ def test_render_rla_has_action_successors_and_expectation(path: Path) -> None:
     assert ["wheel", "speed", "left", "-5", "-5", "±0"] in rows
 
 
-def test_render_rla_largest_changes_come_first(path: Path) -> None:
-    text = shown(taught(path), 1, limit=1)
-    assert "s2" in text
-    assert "s1" not in text
-    assert " 3 more" in text
-
-
-def test_render_rla_without_ends_has_no_expectation(path: Path) -> None:
-    assert "±" not in shown(taught(path), 2)
-
-
 def test_render_rla_expectation_of_old_action_is_left_out(path: Path) -> None:
     assert "±" not in shown(taught(path, lesson="of its first action"), 1)
 

@@ -31,9 +31,7 @@ from tests.knowledge.journal.test_writer import largest_file
 from tests.knowledge.lessons import (
     BINDING,
     STAMP,
-    WITH_CRITIC,
     append,
-    appraisal,
     begun,
     created,
     deleted,
@@ -143,14 +141,6 @@ def test_merge_lessons_that_find_another_state_are_left_out(mine: Path, theirs: 
     assert folded(mine).named_situations(BASIC)["door"][0] == 1.0
 
 
-def test_merge_name_is_moved_where_it_is_as_there(mine: Path, theirs: Path) -> None:
-    for path in (mine, theirs):
-        append(path, named(1.0, "door"))
-    append(theirs, named(2.0, "moved"))
-    assert merge(mine, theirs).lessons == 1
-    assert folded(mine).named_situations(BASIC)["door"][0] == 2.0
-
-
 def test_merge_rewards_add_up_with_credits_that_fit(mine: Path, theirs: Path) -> None:
     append(mine, rewarded(1, 1, "mine"), replaced(3, "left", "forward"), at(4, -FAR, command_id="mine-4"))
     with Journal.open(mine, BINDING) as journal:
@@ -244,13 +234,6 @@ def test_merge_refused_or_dry_run_changes_nothing(mine: Path, theirs: Path, tmp_
     with refused(KnowledgeCode.OTHER_FEATURES):
         merge(mine, tmp_path / "other")
     assert mine.read_bytes() == whole
-
-
-def test_merge_brings_the_level_of_its_lessons(mine: Path, tmp_path: Path) -> None:
-    append(tmp_path / "with-critic", appraisal(1), binding=WITH_CRITIC)
-    assert merge(mine, tmp_path / "with-critic", dry_run=True).lessons == 1
-    merge(mine, tmp_path / "with-critic")
-    assert [rla.level for rla in folded(mine).active_rlas if rla.rla_id == 4] == ["critic"]
 
 
 def test_merge_full_disk_writes_all_or_nothing(mine: Path, theirs: Path) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.events import Lesson, LessonRedone, LessonUndone, RlaCreated, RlaRewarded
+from kurt2rt.core.rla.events import Lesson, LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, Rla
@@ -82,22 +82,6 @@ def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
         redo(path)
 
 
-def test_redo_lesson_whose_place_is_taken_is_refused(path: Path) -> None:
-    begun(path)
-    undo(path, "create-3")
-    append(path, replaced(1, "left", "forward"))
-    undo(path)
-    append(path, replaced(1, "right", "forward"))
-    for lesson, outcome in {
-        "replace-1-left": RefusalCode.TAUGHT_INSTEAD,
-        "create-1": RefusalCode.STANDS_ALREADY,
-    }.items():
-        with refused(KnowledgeCode.LESSON_REFUSED, path, outcome=outcome):
-            redo(path, lesson)
-    with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
-        redo(path, "create-3")
-
-
 def test_apply_plan_changed_file_is_refused(path: Path) -> None:
     begun(path, lessons=2)
     planned = plan_undo(path, teacher="command line")
@@ -151,26 +135,6 @@ def test_redo_all_of_a_teacher_skips_replaced_lessons(path: Path) -> None:
         redo_all_of(path, "Hertha")
 
 
-def test_redo_reward_counts_again_for_a_robot() -> None:
-    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
-    robot.go(50.0, 20)
-    robot.go(0.0, 20)
-    praise = robot.signal(1).origin.command_id
-    before = robot.value(1)
-    for change in (LessonUndone(praise, origin("u")), LessonRedone(praise, origin("r"))):
-        robot.school.updater.apply(change)
-    assert robot.value(1) == pytest.approx(before)
-
-
-def test_undo_is_an_event_with_its_teacher(path: Path) -> None:
-    undo(begun(path), "create-2")
-    with Journal.read_only(path) as journal:
-        *_, last = journal.entries()
-
-    assert isinstance(last.event, LessonUndone)
-    assert (last.event.lesson, last.event.origin.teacher, last.stamped_at) == ("create-2", "command line", STAMP)
-
-
 def test_undo_refused_lesson_writes_nothing(path: Path) -> None:
     begun(path)
     append(path, replaced(1, "left", "forward"))
@@ -179,12 +143,6 @@ def test_undo_refused_lesson_writes_nothing(path: Path) -> None:
             undo(path, lesson)
     with Journal.read_only(path) as journal:
         assert len(journal.events()) == 4
-
-
-def test_undo_running_robot_is_refused(path: Path) -> None:
-    begun(path)
-    with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
-        undo(path)
 
 
 def by_critic(*events: Lesson) -> list[JournalEntry]:
@@ -269,12 +227,6 @@ def test_undo_later_lesson_of_another_teacher_is_refused(path: Path) -> None:
         undo_all_of(path, CRITIC)
     with Journal.read_only(path) as journal:
         assert (journal.events(), journal.statistics()) == before
-
-
-def test_undo_all_without_lessons_is_refused(path: Path) -> None:
-    Journal.open(path, BINDING).close()
-    with refused(KnowledgeCode.NO_LESSON_BY, teacher="Ann"):
-        undo_all_of(path, "Ann")
 
 
 def test_undo_of_a_hold_undoes_its_standing_lessons(path: Path) -> None:

@@ -10,11 +10,9 @@ from kurt2rt.runs.explain.from_run import explain_run
 from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import open_run_recorder
-from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
 from tests.runs.explain.helpers import ROBOT, Lesson
 from tests.runs.recording.desk_recording import ATTACHMENTS, HEAD, NAME
-from tests.runs.replay.stored_runs import STORED
 from tests.teacher.helpers import teach
 
 WRITTEN = "2026-11-22T03:10:07.250+00:00"
@@ -49,18 +47,3 @@ def test_lesson_of_the_run_has_the_date_of_its_journal_row(tmp_path: Path, ackno
     assert nearest is not None
     (act,) = nearest.acts
     assert act.stamp == stamp
-
-
-def test_truncated_run_keeps_its_trouble(tmp_path: Path) -> None:
-    (segment,) = segments_in(taught_run(tmp_path, acknowledged=True))
-    truncated = tmp_path / "torn.mcap"
-    truncated.write_bytes(segment.read_bytes()[:-40])
-    run = read_run(truncated)
-    explain_run(run, 60.0)
-    assert "torn.mcap" in run.trouble
-
-
-def test_lesson_without_acknowledgement_has_its_ticks_date() -> None:
-    nearest = explain_run(read_run(STORED / "walls.mcap"), 8.0).facts.basic.nearest
-    assert nearest is not None
-    assert nearest.acts[0].stamp.startswith("2026-03-20T09:46:4")

@@ -1,6 +1,5 @@
 """A run as stretches: what the robot did from when to when."""
 
-import math
 import re
 from collections.abc import Iterator
 from io import StringIO
@@ -10,9 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from kurt2rt.core.rla.events import SessionBegun
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
 from kurt2rt.runs.explain.terminal import render_timeline
 from kurt2rt.runs.explain.timeline import MOST_SAMPLES, Kind, build_timeline, format_summary
 from kurt2rt.runs.explain.timeline_picture import draw_timeline
@@ -68,12 +65,6 @@ def test_a_part_of_a_run_is_told_by_the_runs_own_seconds(lesson: Lesson) -> None
     assert (part.samples[0].x_m, part.samples[0].y_m) == (beginning.x_m, beginning.y_m)
 
 
-def test_the_way_is_that_of_the_wheels(lesson: Lesson) -> None:
-    samples = build_timeline(lesson.entries, ROBOT, every=1).samples
-    driven_m = sum(math.dist((a.x_m, a.y_m), (b.x_m, b.y_m)) for a, b in pairwise(samples))
-    assert 0.25 < driven_m < 0.6
-
-
 def test_ticks_that_were_missed_are_counted(lesson: Lesson) -> None:
     entries = lesson.entries
     late = [entry._replace(number=entry.number - 3) for entry in entries[103:]]
@@ -106,14 +97,6 @@ def test_in_words_the_shares_come_first_then_what_happened_when(lesson: Lesson) 
     assert text.index(summary) < text.index("from s") < text.index(note)
 
 
-def test_timeline_of_a_long_run_lists_exceptional_stretches_only(lesson: Lesson) -> None:
-    text = said(lesson, 3)
-    assert "5 stretches" in text
-    rows = text[text.index("from s") :]
-    assert "stands: stopped" in rows
-    assert "forward  " not in rows
-
-
 def test_the_picture_is_drawn_also_of_nothing(lesson: Lesson, tmp_path: Path) -> None:
     for name, entries in (("run", lesson.entries), ("nothing", [])):
         draw_timeline(build_timeline(entries, ROBOT), "a run", tmp_path / f"{name}.svg")
@@ -134,12 +117,3 @@ def test_timeline_of_many_stretches_draws_shares_fewer_samples(lesson: Lesson, t
     assert apart == {0.04}
     draw_timeline(timeline, "a long run", tmp_path / "long.png")
     assert (tmp_path / "long.png").stat().st_size > 10_000
-
-
-def test_sessions_and_opinions_are_told_and_are_no_lessons(lesson: Lesson) -> None:
-    entries = lesson.entries
-    begun = SessionBegun("afternoon", Origin("s", "Ann", Phase.SUPERVISED, 1))
-    entries[0] = entries[0]._replace(events=(begun,))
-    notes = build_timeline(entries, ROBOT).notes
-    assert [note.kind for note in notes] == ["saying", "lesson", "lesson"]
-    assert "afternoon" in notes[0].text

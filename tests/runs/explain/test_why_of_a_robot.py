@@ -1,18 +1,15 @@
 """A simulated robot is taught, and its decisions are looked into."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.runs.explain.collect import collect_facts
-from kurt2rt.runs.explain.counterfactual import sensor_counterfactuals
 from kurt2rt.runs.explain.picture import draw_why
 from kurt2rt.runs.explain.reasons import headline
 from tests.runs.explain.helpers import ROBOT, Lesson
@@ -81,18 +78,6 @@ def test_why_tells_teacher_time_and_usage(taught_lesson: Lesson) -> None:
     assert (story.uses, story.uses_since) == (1, 1)
 
 
-def test_an_rla_whose_action_was_replaced_tells_instead_of_what(lesson: Lesson) -> None:
-    lesson.go_on(20)
-    lesson.go_on(1, teach("forward"))
-    lesson.go_on(1, set_phase(Phase.CORRECTIONS))
-    lesson.go_on(1, correct("back"))
-    story = lesson.facts.basic.nearest
-    assert story is not None
-    assert ["forward" in act.text for act in story.acts] == [True, True]
-    assert ["back" in act.text for act in story.acts] == [False, True]
-    assert story.uses_since is None  # its uses are counted over both actions
-
-
 def test_counterfactual_is_the_least_change_of_its_reading(
     taught_lesson: Lesson,
 ) -> None:
@@ -116,16 +101,6 @@ def test_counterfactual_is_the_least_change_of_its_reading(
         assert says(tip.sensor, tip.needed_counts - step) == facts.action
     changes = [abs(tip.needed_counts - tip.counts) for tip in found]
     assert changes == sorted(changes)
-
-
-def test_counterfactuals_ignore_an_unchosen_rla_of_one_condition(taught_lesson: Lesson) -> None:
-    facts = taught_lesson.facts
-    driver = facts.basic.driver
-    assert driver is not None
-    twin = replace(driver, rla_id=3, action="spin_left")
-    crowd = replace(facts, basic=replace(facts.basic, others=(twin, *facts.basic.others)))
-    found = sensor_counterfactuals(crowd, taught_lesson.runtime.definition, ROBOT.infrared)
-    assert found == taught_lesson.counterfactuals
 
 
 def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:
@@ -156,24 +131,3 @@ def test_picture_of_a_decision_is_identical_each_time(taught_lesson: Lesson, tmp
     if ending == "svg":
         for words in ("a title", "Now: tick 141", "As taught: RLA 2, bear_right", "Why not RLA 1, forward"):
             assert words.encode() in drawn
-
-
-def test_picture_lesson_text_does_not_overlap_the_distances(
-    taught_lesson: Lesson, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """However much there is to say."""
-    facts = taught_lesson.facts
-    driver = facts.basic.driver
-    assert driver is not None
-    act = replace(driver.acts[-1], text="RLA 1416 of turn_right corrected: quarter_turn_right instead of spin_left")
-    much = replace(driver, acts=(act,), uses=1204, uses_since=0, rewards=12, punishments=31, value=0.51)
-    drawn: list[Figure] = []
-    monkeypatch.setattr("kurt2rt.runs.explain.picture.save_figure", lambda figure, _path: drawn.append(figure))
-    crowd = replace(facts, basic=replace(facts.basic, driver=much, nearest=much))
-    draw_why(crowd, taught_lesson.counterfactuals, ROBOT, "a title", Path("never.png"))
-    (figure,) = drawn
-    figure.draw_without_rendering()
-    caption = next(text for axes in figure.axes for text in axes.texts if "RLA 1416" in text.get_text())
-    strip = next(axes for axes in figure.axes for text in axes.texts if text.get_text() == "how near each RLA is")
-    assert caption.get_text().count("\n") >= 3
-    assert caption.get_window_extent().y0 > strip.get_window_extent().y1

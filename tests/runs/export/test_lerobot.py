@@ -9,9 +9,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from kurt2rt.runs.export.episodes import Feature, features_of, read_episodes
+from kurt2rt.runs.export.episodes import features_of, read_episodes
 from kurt2rt.runs.export.lerobot import DatasetWriter, export_lerobot
-from kurt2rt.runs.export.statistics import merge_statistics, statistics_of
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.run import Run, RunSource
 from tests.runs.replay.stored_runs import stored
@@ -120,14 +119,6 @@ def test_statistics_are_those_of_the_frames(data_set: Path) -> None:
             assert row[f"stats/{name}/min"] == pytest.approx(mine.min(axis=0))
 
 
-def test_statistics_of_one_frame_are_that_frame() -> None:
-    found = merge_statistics([{"x": statistics_of(np.array([[1.0, 2.0]]))}])["x"]
-    assert {key: value.tolist() for key, value in found.items()} == {key: [1.0, 2.0] for key in STATISTICS} | {
-        "std": [0.0, 0.0],
-        "count": [1],
-    }
-
-
 def test_full_file_is_followed_by_the_next(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kurt2rt.runs.export.lerobot.FILES_PER_CHUNK", 2)
     run = stored("walls", 5.0)
@@ -175,7 +166,3 @@ def test_export_that_fails_leaves_what_was_there(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="something is there already"):
         export_lerobot([stored("walls", 1.0)], tmp_path / "set", 100)
     assert [each.name for each in (tmp_path / "set").iterdir()] == ["mine"]
-
-
-def test_feature_without_names_has_one_value() -> None:
-    assert (Feature("bool").length, Feature("float32", ("left", "right")).length) == (1, 2)

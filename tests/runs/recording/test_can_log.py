@@ -7,7 +7,6 @@ from collections.abc import Sequence
 import can
 import pytest
 
-from hal.bus import open_bus
 from hal.control import encode_brake
 from kurt2rt.runs.recording.can_log import CanLog
 from tests.hal.helpers import CODEC, bus_pair, send
@@ -73,21 +72,6 @@ def test_can_log_keeps_order_direction_and_channel() -> None:
         end.shutdown()
 
 
-def test_can_log_stamps_each_frame_with_the_time_on_the_bus() -> None:
-    shelf = Shelf()
-    log = CanLog(shelf, "x.log", "can1")
-    brake = encode_brake()
-    log.on_rx(encoder(1), 0.5)
-    log.on_tx(brake)
-    log.on_tx(brake)
-    log.write_waiting()
-    old, first, second = (frame.timestamp for frame in shelf.frames)
-    assert first - old >= 0.5
-    assert first <= second
-    assert brake.timestamp == 0.0
-    assert shelf.frames[0].channel == "can1"
-
-
 def test_a_writer_that_hangs_costs_frames_but_no_time() -> None:
     stuck = Stuck()
     log = CanLog(stuck, "x.log", "can0", capacity_frames=10)
@@ -150,9 +134,3 @@ def test_can_log_without_an_interface_gets_a_playable_channel() -> None:
         log.on_rx(encoder(1), 0.0)
         log.write_waiting()
         assert [frame.channel for frame in shelf.frames] == [channel]
-
-
-def test_bus_without_a_log_has_no_tap() -> None:
-    bus = open_bus("virtual:no tap")
-    assert bus.tap is None
-    bus.shutdown()

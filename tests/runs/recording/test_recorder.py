@@ -4,34 +4,26 @@ import errno
 import json
 import shutil
 import threading
-import time
 from pathlib import Path
 
-from foxglove.messages import Log, LogLevel
 from mcap.reader import make_reader
 
-from hal.guard_reason import GuardReason
-from hal.odometry import PlanePose
 from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
-from kurt2rt.channel.protocol.health_codec import plain_of, report_of
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, ROBOT, TASK
+from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry
-from kurt2rt.runs.recording.foxglove_scene import ROBOT as ROBOT_FRAME
-from kurt2rt.runs.recording.foxglove_scene import START, WORLD, timestamp, transforms
 from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
-from kurt2rt.runs.recording.topics import GROUND, HEALTH, LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK, TRUTH
+from kurt2rt.runs.recording.topics import LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK
 from tests.runs.recording.desk_recording import ATTACHMENTS, BEGAN_AT_NS, HEAD, NAME, RecordedDesk
 from tests.runs.recording.test_segment import FailingDisk
-from tests.service.health.reports import WELL
 
 
 def messages_of(run: Path, *topics: str) -> list[LoggedMessage]:
@@ -60,17 +52,6 @@ def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
     assert entries_of(tmp_path / NAME) == [entry_of(record) for record in desk.records]
     lessons = [json.loads(each.data) for each in messages_of(tmp_path / NAME, LESSON)]
     assert [each["event"]["command_id"] for each in lessons] == ["t-1"]
-
-
-def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
-    desk.recorder.close()
-    (segment,) = segments_in(tmp_path / NAME)
-    head = SegmentReader(segment).head()
-    assert decode_head(head.metadata[RUN_METADATA]) == HEAD
-    assert head.attachments == ATTACHMENTS
-    assert KNOWLEDGE in head.attachments
 
 
 def test_recording_has_foxglove_scans_poses_scenes_and_log(tmp_path: Path) -> None:
@@ -317,24 +298,6 @@ def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) ->
     assert desk.recorder.dropped == 100
 
 
-def test_a_run_that_rests_is_left_alone_too(tmp_path: Path) -> None:
-    disk = FullDisk(1_000_000_000)
-    other = RecordedDesk(tmp_path, disk=disk, name="20251231T235959Z-wall_following")
-    other.recorder.poll()
-    other.second()
-    disk.free = 100_000_000
-    other.second()
-    assert "100 MB" in other.recorder.trouble
-    desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.poll()
-    desk.recorder.close()
-    disk.free = 1_000_000_000
-    other.second()
-    other.recorder.close()
-    assert other.recorder.trouble == ""
-    assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 300
-
-
 def test_recorder_without_room_leaves_no_folder(tmp_path: Path) -> None:
     empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
     empty.mkdir(parents=True)
@@ -403,28 +366,6 @@ def test_recorder_counts_an_unwritable_note_and_keeps_the_others(tmp_path: Path)
     assert "ZeroDivisionError('unsayable')" in desk.recorder.trouble
 
 
-def test_note_before_the_first_tick_has_the_start_time(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path, began_at_ns=None)
-    started_ns = time.time_ns()
-    desk.recorder.on_question("I know nothing yet, teach me")
-    desk.recorder.poll()
-    desk.second()
-    desk.recorder.close()
-    times = [each.time_ns for each in messages_of(tmp_path / NAME)]
-    assert min(times) >= started_ns - 60_000_000_000  # the wall clock may be set
-    assert times == sorted(times)
-
-
-def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
-    desk.run(1)
-    desk.recorder.on_health(plain_of(WELL))
-    desk.recorder.close()
-    (told,) = messages_of(tmp_path / NAME, HEALTH)
-    assert report_of(json.loads(told.data)) == WELL
-
-
 class Elsewhere:
     """The ground under a simulated robot."""
 
@@ -445,49 +386,3 @@ class Elsewhere:
 
     def put_robot_back(self) -> None:
         raise AssertionError
-
-
-def test_recording_of_a_simulated_robot_has_true_pose_and_world(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path, world=Elsewhere())
-    desk.recorder.poll()
-    for _ in range(6):
-        desk.second()
-    desk.recorder.close()
-    assert len(messages_of(tmp_path / NAME, TRUTH)) == 120
-    assert len(messages_of(tmp_path / NAME, GROUND)) == 2
-
-
-def test_log_warns_of_guard_reasons_except_the_slew_limit(
-    tmp_path: Path,
-) -> None:
-    desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
-    desk.second()
-    for reasons in ((GuardReason.SLEW_LIMIT,), (GuardReason.FRONT_BUMPER, GuardReason.SLEW_LIMIT)):
-        desk.desk.robot.refuses = reasons
-        desk.second()
-    desk.recorder.close()
-    lines = [each for each in messages_of(tmp_path / NAME, LOG) if b"guard: " in each.data]
-    said = [
-        Log(timestamp=timestamp(each.time_ns), level=level, message=message, name="kurt2rt").encode()
-        for each, level, message in zip(
-            lines,
-            (LogLevel.Debug, LogLevel.Warning),
-            ("guard: slew limit", "guard: front bumper, slew limit"),
-            strict=True,
-        )
-    ]
-    assert [each.data for each in lines] == said
-
-
-def test_each_transform_message_holds_all_frames(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path, world=Elsewhere())
-    desk.recorder.poll()
-    desk.second()
-    desk.recorder.close()
-    standing, began = PlanePose(0.0, 0.0, 0.0), PlanePose(1.0, 2.0, 0.0)
-    said = messages_of(tmp_path / NAME, TF)
-    assert len(said) == 20
-    for each in said:
-        tree = transforms([(WORLD, START, began), (START, ROBOT_FRAME, standing)], each.time_ns)
-        assert each.data == tree.encode()

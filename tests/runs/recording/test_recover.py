@@ -43,12 +43,6 @@ def test_recovery_copies_a_truncated_file_and_adds_its_index(whole: Path, tmp_pa
         copy.unlink()
 
 
-def test_a_whole_file_is_copied_whole(whole: Path, tmp_path: Path) -> None:
-    copy = tmp_path / "copy.mcap"
-    assert recover_segment(whole, copy) == ""
-    assert list(SegmentReader(copy).messages()) == list(SegmentReader(whole).messages())
-
-
 def test_of_a_file_in_which_nothing_is_whole_no_copy_is_left(tmp_path: Path) -> None:
     truncated, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
     truncated.write_bytes(b"\x89MCAP")

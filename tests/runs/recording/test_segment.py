@@ -101,27 +101,11 @@ def test_segment_with_holes_is_read_up_to_the_first(tmp_path: Path) -> None:
         assert said(segment.path)[:100] == list(range(1, 101))
 
 
-def test_metadata_and_attachments_come_before_the_first_message(tmp_path: Path) -> None:
-    context = Context()
-    channel = Channel("/number", message_encoding="json", context=context)
-    segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
-    segment.describe("run", {"task": "wall_following"})
-    segment.attach("statistics.json", b"{}", 5)
-    segment.save()
-    channel.log(b"1", log_time=1)
-    segment.save()
-    head = SegmentReader(segment.path).head()
-    assert head.metadata["run"] == {"task": "wall_following"}
-    assert head.attachments == {"statistics.json": b"{}"}
-    segment.close()
-
-
-@pytest.mark.parametrize("error", [errno.ENOSPC, errno.EIO, errno.EINTR])
-def test_a_call_that_fails_costs_nothing(tmp_path: Path, error: int) -> None:
+def test_a_call_that_fails_costs_nothing(tmp_path: Path) -> None:
     for failing in range(8):
         context = Context()
         channel = Channel("/number", message_encoding="json", context=context)
-        failures = iter([*[None] * failing, OSError(error, "as the test says")])
+        failures = iter([*[None] * failing, OSError(errno.EIO, "as the test says")])
         segment = Segment(tmp_path / f"{failing + 1:04d}.mcap", context, FailingDisk(failures))
         failed = 0
         for number in range(1, 101):

@@ -34,9 +34,3 @@ def test_a_wall_to_the_left_is_a_quarter_turn_on() -> None:
     (place,) = [number for number, each in enumerate(scan) if math.isfinite(each)]
     assert place == round(SCAN_RAYS * math.degrees(math.atan2(0.365, 0.047)) / 360)
     assert scan[place] == pytest.approx(math.hypot(0.047, 0.365), abs=0.005)
-
-
-def test_scan_without_obstacles_is_empty() -> None:
-    rays = SensorRays(INFRARED)
-    assert all(math.isinf(each) for each in rays.scan_m(NOTHING))
-    assert not any(ray.seen for ray in rays.rays(NOTHING))

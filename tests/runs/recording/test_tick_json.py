@@ -17,7 +17,7 @@ from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
-from kurt2rt.core.teaching.commands import Command, Seek, SetPhase
+from kurt2rt.core.teaching.commands import Command, Seek
 from kurt2rt.core.teaching.system_events import SystemEvent
 from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
@@ -137,12 +137,6 @@ def test_every_command_comes_back_as_it_was(command: object) -> None:
 def test_a_goal_keeps_its_kind(goal: NamedGoal | RlaGoal | PartialGoal) -> None:
     seek = Seek("s", "Ann", goal, 7)
     assert decode_command(encode_command(seek)) == seek
-
-
-def test_a_phase_comes_back_as_one() -> None:
-    again = decode_command(encode_command(SetPhase("p", "Ann", Phase.CRITIC)))
-    assert isinstance(again, SetPhase)
-    assert again.phase is Phase.CRITIC
 
 
 def test_decode_tick_of_other_content_raises_recording_error() -> None:

@@ -30,11 +30,9 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
-from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recover import _copy as copy_records
 from kurt2rt.runs.recording.segment_reader import SegmentReader
-from kurt2rt.runs.recording.tick_json import decode_tick
-from kurt2rt.runs.replay import reader, trial
+from kurt2rt.runs.replay import trial
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
@@ -285,36 +283,6 @@ def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
     return CommandLine(monkeypatch, capfd)
 
 
-def test_undo_previews_its_changes_on_the_files_newest_run(
-    kurt2rt: CommandLine, knowledge: Path, recordings: Path
-) -> None:
-    assert kurt2rt("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", knowledge).exit_code == 0
-    (own,) = Path("var/runs").iterdir()
-    later = Path("var/runs/20991231T094640Z-wall_following")  # of another file
-    shutil.copytree(next(recordings.iterdir()), later)
-    before = folded(knowledge)
-
-    dry = kurt2rt("knowledge", "undo", knowledge, "--dry-run").out.splitlines()
-    assert dry[0].startswith(f"{knowledge}: ")
-    assert dry[1].startswith(f"{own}: ")
-    assert len(dry) == 3
-    assert "--dry-run" in dry[2]
-    assert folded(knowledge).rlas == before.rlas
-    tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
-    assert tried == dry[1]
-    assert undone.startswith(f"{knowledge}: ")
-    assert undone.endswith("by Ann)")
-    assert "far-2" in undone
-    tried, again = kurt2rt("knowledge", "redo", knowledge).out.splitlines()
-    assert tried == dry[1]
-    assert again.startswith(f"{knowledge}: ")
-    assert "far-2" in again
-    assert folded(knowledge).rlas == before.rlas
-    (undone,) = kurt2rt("knowledge", "undo", knowledge, "--no-preview").out.splitlines()
-    assert undone.endswith("by Ann)")
-    assert "far-2" in undone
-
-
 def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
     said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--dry-run", "--runs", recordings).out
     assert re.search(r"20260320T094640Z-wall_following: .*\b490\b.*\b490\b.* ask", said)
@@ -376,26 +344,6 @@ def test_declined_undo_leaves_no_files_next_to_the_knowledge(kurt2rt: CommandLin
     assert kurt2rt("knowledge", "undo", given, typed=Typed("n\n")).exit_code == 1
     assert list(given.parent.iterdir()) == [given]
     assert given.read_bytes() == before
-
-
-def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
-    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
-    decoded = list[int]()
-
-    def decode_and_count(data: bytes) -> TickEntry:
-        entry = decode_tick(data)
-        decoded.append(entry.number)
-        return entry
-
-    monkeypatch.setattr(reader, "decode_tick", decode_and_count)
-    (tried,) = preview_on_newest(planned, runs, quietly, last_s=0.75).runs
-    assert tried.from_s == pytest.approx(4.24)
-    assert tried.found.ticks == 76
-    looked_at = Counter(decoded)
-    assert len(looked_at) == 500
-    assert {number for number, times in looked_at.items() if times > 1} == {1, 500}  # where it begins and ends
 
 
 def test_undo_in_unwritable_folder_is_refused_before_the_preview(

@@ -15,9 +15,9 @@ from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
+from kurt2rt.runs.replay.counterfactual import counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, load_policy, recorded_answers
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick
+from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
 from tests.runs.replay.stored_runs import NAMES, stored
 
@@ -69,12 +69,6 @@ def test_counterfactual_of_no_knowledge_asks_at_each_drive(
 def test_counterfactual_of_later_knowledge_asks_less(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("errand", 24)
     assert counterfactual(run, CounterfactualPolicy(run, lessons["errand"])).would_drive > 100
-
-
-def test_counterfactual_skips_teacher_driving_and_stops(lessons: dict[str, list[TeachingEvent]]) -> None:
-    run = stored("walls", 16)
-    stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
-    assert counterfactual(run, CounterfactualPolicy(run, lessons["walls"])).decided == 1600 - stood
 
 
 def test_counterfactual_stretches_name_the_corrected_rla(
@@ -166,15 +160,6 @@ def test_policy_skips_withdrawn_rlas_without_a_teacher(
     passed_over = withdrawn.answers(record, replay.runtime).basic
     assert passed_over.nearest is not None
     assert passed_over.nearest.rla_id != asked.rla.rla_id
-
-
-def test_each_tick_is_told_of() -> None:
-    run = stored("walls", 5)
-    seen: list[ReplayedTick] = []
-    found = counterfactual(run, CounterfactualPolicy(run, ()), on_tick=seen.append)
-    assert isinstance(found, Counterfactual)
-    assert [tick.entry.number for tick in seen] == list(range(1, 501))
-    assert not found.trouble
 
 
 def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(

@@ -16,7 +16,7 @@ from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import Resume, Stop, Teach, Watch
+from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -198,11 +198,6 @@ def test_read_run_of_another_file_raises_recording_error(tmp_path: Path) -> None
     (tmp_path / "empty.mcap").write_bytes(b"")
     with pytest.raises(RecordingError, match=r"empty\.mcap: "):
         read_run(tmp_path / "empty.mcap")
-
-
-def test_a_stop_among_the_commands_stays_where_it_was() -> None:
-    entries = [entry for entry in stored("walls").entries() if any(isinstance(each, Stop) for each in entry.commands)]
-    assert [entry.tick for entry in entries] == [571]
 
 
 def follow_the_wall(scene: Scene, record: TickRecord) -> None:

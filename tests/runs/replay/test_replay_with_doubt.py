@@ -18,40 +18,6 @@ from kurt2rt.runs.replay.replay import Replay
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 
-def drives_to_a_wall(scene: Scene, record: TickRecord) -> None:
-    """Teach the robot to drive forward far from walls, twice; answer a doubt of two seconds with a turn."""
-    inbox, tick = scene.runtime.inbox, record.tick
-    if tick == 1:
-        scene.simulation.put(Pose(2.0, 2.0, 0.0))
-        inbox.put(Resume("go", NAME))
-    inbox.put(Watch(NAME, tick))
-    if tick in (20, 40):
-        inbox.put(Teach(f"t{tick}", NAME, "forward"))
-    scene.presses += record.decision.cause is DecisionCause.DOUBT
-    if scene.presses == 200 and record.decision.cause is DecisionCause.DOUBT:
-        inbox.put(Teach("turn", NAME, "spin_right"))
-
-
-def test_run_with_doubts_is_replayed_bit_for_bit_and_explained(tmp_path: Path) -> None:
-    task = load_task("wall_following", changes={"learning.doubt.asks": "true", "learning.doubt.threshold": "2.8"})
-    run = read_run(record_story("walls", tmp_path, seconds=7, other=drives_to_a_wall, task=task))
-    causes, actions, sensors = [], set[str | None](), set[str]()
-    replay = Replay(run)
-    for entry, record in replay:
-        assert compare(entry, record) == []
-        causes.append(entry.decision.cause)
-        actions.add(entry.decision.action)
-        if entry.decision.cause is DecisionCause.DOUBT:
-            facts = collect_facts(replay.runtime, record, lambda _: "")
-            assert facts.doubt is not None
-            assert facts.doubt.score == entry.decision.doubt
-            sensors.add(facts.doubt.sensor)
-            assert format_reasons(facts)
-    assert causes.count(DecisionCause.DOUBT) >= 200
-    assert actions == {None, "forward", "spin_right"}
-    assert any(sensors)  # an obstacle ahead, not a far lesson alone
-
-
 def drives_to_a_wall_alone(scene: Scene, record: TickRecord) -> None:
     """Teach forward far from walls and a turn with a wall on the right; then drive to a wall in phase 5."""
     inbox, tick = scene.runtime.inbox, record.tick

@@ -1,21 +1,16 @@
 """A run of which not all is there any more: it is not replayed, but what there is can be looked at."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.runs.explain.timeline import build_timeline
-from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until
-from kurt2rt.runs.replay.run import Run, RunSource
 from kurt2rt.runs.replay.verify import verify
 from tests.channel.channel_fixture import ROBOT, TASK
 from tests.runs.recording.desk_recording import empty_run, late_run
-from tests.runs.replay.stored_runs import STORED
 
 
 @pytest.fixture(scope="module")
@@ -39,23 +34,6 @@ def test_partial_run_is_read_with_its_own_settings(late: Path) -> None:
     numbers = [entry.number for entry in run.partial_entries()]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     assert f" {numbers[0] - 1} ticks " in run.trouble
-
-
-def with_gaps(run: Run, *lost: range) -> Run:
-    def read() -> Iterator[TickEntry]:
-        return (entry for entry in run._source.ticks() if not any(entry.number in each for each in lost))
-
-    return Run("a run with gaps", run.head, run._attachments, RunSource(read))
-
-
-def test_timeline_goes_on_after_a_gap_and_counts_it_unrecorded() -> None:
-    run = with_gaps(read_run(STORED / "walls.mcap"), range(201, 204), range(1000, 1101))
-    timeline = build_timeline(run.partial_entries(), run.robot)
-    assert (timeline.ticks, timeline.missed, timeline.unrecorded) == (4400 - 104, 0, 104)
-    assert run.trouble.startswith("104 ticks in 2 ")
-    before = max(stretch.to_s for stretch in timeline.stretches if stretch.from_s < 9.9)
-    assert before == pytest.approx(9.99)
-    assert len(list(run.entries())) == 200
 
 
 def test_of_a_run_without_a_tick_nothing_is_the_same(tmp_path: Path) -> None:

@@ -70,13 +70,6 @@ def test_nearest_of_more_equals_than_candidates_is_the_oldest() -> None:
         assert nearest_rla(robots[0], 0, rows, conditions_of(values, weights)) == (0, 6.0)
 
 
-def test_nearest_of_no_condition_is_none() -> None:
-    assert nearest_rla(one_robot()[0], 3, 3, conditions_of(np.zeros((3, FEATURES)), np.ones(FEATURES))) == (
-        -1,
-        math.inf,
-    )
-
-
 @pytest.mark.parametrize(
     ("scale", "weight", "is_whole"), [(1.0, 1.5, True), (0.5, 0.25, True), (0.3, 1.0, False), (1.0, 0.3, False)]
 )

