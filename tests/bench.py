@@ -368,7 +368,7 @@ async def measure(names: Sequence[str], folder: Path, share: float) -> list[Row]
 
 
 def as_table(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield the lines of a table as it stands in docs/results-of-the-runtime.md."""
+    """Yield the lines of a Markdown table, one for each measurement."""
     yield "| measured | median | p99 | reference in the same run | times | goal: met |"
     yield "| --- | --- | --- | --- | --- | --- |"
     for row in rows:

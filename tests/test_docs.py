@@ -427,7 +427,7 @@ def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
 
 
 def test_printed_demos_of_streets_name_one_seed() -> None:
-    # Other seeds may get stuck there: docs/results-and-limits.md#streets-in-manhattan
+    # Other seeds may get stuck there: docs/results.md#taught-by-an-ordinary-person
     assert {seed_of(line) for line in printed_demos() if "streets" in line} == {2}
 
 

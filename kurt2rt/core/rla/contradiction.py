@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 
 NEIGHBOURS = 5
 """Neighbours that must all differ. Of the RLAs that differ from so many, 41 to 45 % were wrong where 11 to 15 % of all
-were (docs/history-of-teaching-by-people.md#contradictions)."""
+were (docs/notebook.md#contradictions)."""
 
 _LOOKED_AT = 2 * NEIGHBOURS + 1
 """Nearest RLAs that are looked at for neighbours: itself, and some that were withdrawn."""

@@ -21,7 +21,7 @@ STEADY_TICKS = 10
 """Time before and after a reaction of the hand in which the hand must not change the action, in ticks of the robot.
 
 A hand that follows a changing situation is now early, now late: a third of the lessons of a hold named an action that
-was right 0.05 to 0.15 s before or after their situation (docs/history-of-teaching-by-people.md).
+was right 0.05 to 0.15 s before or after their situation (docs/notebook.md).
 """
 
 

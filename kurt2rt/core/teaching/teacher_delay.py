@@ -17,7 +17,7 @@ CORRECTION_PART = 0.75
 """Delay of a correction from the moment in which its mistake was noticed, as a fraction of that of an answer.
 
 A person who watches and sees a mistake knows the right action already. Chosen by the tests on search seeds that
-docs/history-of-teaching-by-people.md names.
+docs/notebook.md names.
 """
 _WINDOW = 16
 _LEAST_ANSWERS = 4
