@@ -312,13 +312,6 @@ def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, 
     assert re.search(told, refusal(path, TaskSettings))
 
 
-def test_task_without_behaviours_has_one_without_a_name(tmp_path: Path) -> None:
-    assert load_task("wall_following").behaviours == ("",)
-    path = tmp_path / "task.yaml"
-    path.write_text(TASK.replace("repertoire: basic", "repertoire: basic\nbehaviours: [turn_left, turn_right]", 1))
-    assert load_task(str(path)).behaviours == ("turn_left", "turn_right")
-
-
 @pytest.mark.parametrize(
     ("mid", "told"),
     [
@@ -355,48 +348,11 @@ def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
     assert all(len(taught) == 1 for taught in shared.values()), shared
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "told"),
-    [
-        (
-            "kind: wall_following",
-            "kind: wall_folowing",
-            r"^policy\.kind: .*'wall_folowing'; .*: circle, eight, fleeing, .*streets, wall",
-        ),
-        ("kind: wall_following", "kind: policy", r"^policy\.kind: .*'policy'; .*: circle, eight"),
-        ("kind: wall_following", "kind: 7", r"^policy\.kind: .*7\)"),
-        (
-            "kind: laps",
-            "kind: lap",
-            r"^course\.kind: .*'lap'; .*: eights, ",
-        ),
-        ("front_m: 0.25", "front_m: 2.5", r"^policy\.front_m: .*2\.5\)"),
-        ("front_m: 0.25", "fornt_m: 0.25", r"^policy\.fornt_m: .*: kind, wanted_m, tolerance_m"),
-        ("  wanted_m: 0.365", "  #", r"^course\.wanted_m: "),
-        ("course:\n", "course: laps\nplaces:\n", "^places: .*: name"),
-    ],
-)
-def test_a_policy_or_a_course_is_explained_by_its_own_kind(old: str, new: str, told: str, tmp_path: Path) -> None:
-    task = (CONFIG_DIR / "tasks" / "wall_following.yaml").read_text()
-    assert old in task
-    path = tmp_path / "task.yaml"
-    path.write_text(task.replace(old, new, 1))
-    assert re.search(told, refusal(path, TaskSettings))
-
-
 @pytest.mark.parametrize("key", ["learning.radius", "learning"])
 def test_setting_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
     with pytest.raises(SettingsError, match=rf"streets\.yaml: {key} .*; give plain"):
         load_task("streets", plain=True, changes={key: "300"})
     assert load_task("streets", plain=True, changes={"plain.radius": "300"}).learning.radius == 300.0
-
-
-def test_a_problem_of_the_file_is_not_blamed_on_what_was_set(tmp_path: Path) -> None:
-    path = tmp_path / "task.yaml"
-    path.write_text(TASK.replace("past_weight", "passed_weight", 1))
-    with pytest.raises(SettingsError) as caught:
-        load_task(str(path), changes={"learning.radius": "300"})
-    assert "--set" not in str(caught.value)
 
 
 def test_misspelt_kind_is_refused_though_another_fails_to_import(
@@ -415,13 +371,6 @@ def test_misspelt_kind_is_refused_though_another_fails_to_import(
 def test_set_key_leads_to_a_place_of_a_list() -> None:
     task = load_task("fleeing", changes={"learning.weights.2.weight": "0.5"})
     assert [group.weight for group in task.learning.weights] == [0.97, 0.0, 0.5]
-
-
-def test_a_key_can_be_given_another_value_than_the_file_s() -> None:
-    task = load_task("streets", changes={"learning.radius": "300", "exam.worlds": "[streets-3]"})
-    assert task.learning.radius == 300.0
-    assert task.exam.worlds == ("streets-3",)
-    assert task.model_copy(update={"learning": load_task("streets").learning}).teaching == load_task("streets").teaching
 
 
 @pytest.mark.parametrize(

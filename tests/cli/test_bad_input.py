@@ -215,25 +215,6 @@ def test_task_with_unknown_world_is_refused_before_the_lesson(
     assert not (tmp_path / "out").exists()
 
 
-def test_file_with_a_writer_is_closed_to_writers_not_to_readers(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
-    mine = copied(lessons, tmp_path / "mine.knowledge")
-    with Journal.read_only(mine) as journal:
-        binding = journal.binding
-    with Journal.open(mine, binding):
-        locked = str(KnowledgeError(KnowledgeCode.ANOTHER_WRITER, where=mine, error=BlockingIOError(errno.EAGAIN)))
-        for words in (("lesson", "--knowledge"), ("run", "--seconds", "1", "--knowledge"), ("knowledge", "undo")):
-            assert kurt2rt.refused(*words, mine).partition(" (")[0].endswith(locked.partition(" (")[0])
-        assert kurt2rt("knowledge", "check", mine).exit_code == 0
-        assert kurt2rt("knowledge", "lessons", mine).exit_code == 0
-        assert kurt2rt("knowledge", "table", mine).exit_code == 0
-        assert kurt2rt("knowledge", "export", mine, tmp_path / "mine.zip").exit_code == 0
-        assert kurt2rt("knowledge", "show", mine).exit_code == 0
-        refusal = kurt2rt.refused("exam", mine, "--world", "nope")
-        assert unknown_name("worlds", "nope") in refusal
-
-
 def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = copied(lessons, tmp_path / "mine.knowledge")
     image = mine.read_bytes()

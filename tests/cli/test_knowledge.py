@@ -27,30 +27,6 @@ def folded(knowledge: Path) -> RlaSystem:
         return fold_journal(journal, radius=1.0)
 
 
-def test_undo_last_lesson_then_one_by_id(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
-    mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
-    before = folded(mine)
-    last = before.last_standing_lesson
-    assert last is not None
-    said = kurt2rt("knowledge", "undo", mine)
-    assert said.exit_code == 0
-    not_tried, undone = said.out.splitlines()
-    assert "var/runs" in not_tried
-    assert undone.startswith(f"{mine}: undone: RLA ")
-    assert f"(lesson {last} " in undone
-
-    first = before.lessons[0].event.origin.command_id
-    undone = kurt2rt("knowledge", "undo", mine, "--lesson", first).out
-    assert all(word in undone for word in ("RLA 1 ", before.rlas[0].action, f"(lesson {first} "))
-    assert first in kurt2rt.refused("knowledge", "undo", mine, "--lesson", first)
-    after = folded(mine)
-    assert after.get(1) is None
-    assert after.standing_lessons == before.standing_lessons - 2
-    assert kurt2rt("knowledge", "check", mine).exit_code == 0
-    assert ", 2 undone " in " ".join(kurt2rt("knowledge", "show", mine).out.split())
-    assert kurt2rt("knowledge", "lessons", mine, "--limit", "1").out.count("command line") == 1
-
-
 @pytest.mark.parametrize(
     "words",
     [

@@ -1,18 +1,15 @@
 """Runs of the simulated robot, one after the other in one program."""
 
 from collections.abc import AsyncIterator
-from contextlib import ExitStack, asynccontextmanager
+from contextlib import asynccontextmanager
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
-from typing import cast
 
 import anyio
 import pytest
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
-from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
@@ -25,12 +22,6 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.service.live_exam import LiveExam
-from kurt2rt.service.open_robot import OpenedRobot
-from kurt2rt.service.program import RobotProgram
-from kurt2rt.service.program_screen import ProgramScreen
-from kurt2rt.service.run_options import RunOptions
-from kurt2rt.service.settings import load_service
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.teacher import TeacherClient
 from simbridge.simulation import Kurt2SimulationFactory
@@ -152,29 +143,6 @@ async def test_upload_that_is_no_knowledge_is_refused_in_one_line(
     assert str(tmp_path) not in str(caught.value)
     assert runs.next is None
     assert names_in(tmp_path) == []
-
-
-async def test_verdict_of_an_exam_stays_with_its_knowledge_file(tmp_path: Path) -> None:
-    over = ExamStatus(False, 1.0, "Passed in 2 of 3 worlds.", picture="exam.png")
-    runs = runs_in(tmp_path)
-    opened = cast(OpenedRobot, SimpleNamespace(simulated_world=True))
-    program = RobotProgram(RunOptions(), load_service, ROBOT, TASK, cast(ProgramScreen, None))
-    program._simulated = runs
-
-    async def after(world: str | None, task: str | None, *, fresh: bool = False) -> LiveExam:
-        await runs.prepare(world, task, fresh, TEACHER)
-        runs.advance()
-        with ExitStack() as program._run_stack:
-            exam = program._exam(opened)
-            assert exam is not None
-        return exam
-
-    runs.verdicts[tmp_path / "walls.knowledge"] = over, tmp_path / "exam.png"
-    assert (await after("b", None)).status == over
-    assert (await after(None, "eight")).status == NO_EXAM
-    again = await after(None, "wall_following")
-    assert (again.status, again.picture) == (over, tmp_path / "exam.png")
-    assert (await after(None, None, fresh=True)).status == NO_EXAM
 
 
 def unable(path: Path) -> Path:

@@ -37,6 +37,7 @@ def test_place_to_listen_that_cannot_be_had_is_refused(kurt2rt: CommandLine) -> 
     assert "give another locator" in kurt2rt.refused("ros", "--listen", "tcp/192.0.2.1:7447")
 
 
+@pytest.mark.deep
 def test_device_waits_for_robot_and_router_and_serves_them(kurt2rt: CommandLine, tmp_path: Path) -> None:
     kurt2rt("pair", "ros")
     locator, port = free_locator(), str(free_udp_port())

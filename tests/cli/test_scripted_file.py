@@ -40,7 +40,6 @@ def test_run_auto_leaves_the_usual_file_alone(kurt2rt: CommandLine, tmp_path: Pa
     "words",
     [
         ("run", "--seconds", "0.1", "--teacher", "none", "--no-record"),
-        ("run", "--seconds", "0.1", "--teacher", "none"),
         ("pair", "phone"),
     ],
     ids=" ".join,

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.health_codec import report_of
-from tests.cli.helpers import ROOT, CommandLine, running
+from tests.cli.helpers import CommandLine, running
 
 
 @pytest.mark.deep
@@ -43,19 +43,3 @@ def test_status_by_file_and_over_the_channel_is_of_one_robot(
 
 def test_an_address_is_for_the_channel_only(kurt2rt: CommandLine) -> None:
     assert "give --as" in kurt2rt.misused("status", "--robot", "127.0.0.1")
-
-
-def test_status_says_that_a_run_lacks_the_extra_to_record(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    lacking = tmp_path / "lacking"
-    (lacking / "foxglove").mkdir(parents=True)
-    (lacking / "foxglove" / "__init__.py").write_text("raise ModuleNotFoundError('as if', name='foxglove')")
-    environment = {"PYTHONPATH": f"{lacking}:{ROOT}"}
-    words = ("run", "--teacher", "none", "--knowledge", "mine.knowledge")
-    with running(*words, folder=tmp_path, environment=environment, fresh=True) as robot:
-        robot.wait_for("the run is not recorded")
-        robot.wait_for("RLAs |")
-        report = report_of(json.loads(kurt2rt("status", tmp_path / "mine.knowledge", "--json").out))
-    (told,) = [each for each in report.troubles if each.name == "recording"]
-    assert told.what == "the run is not recorded: foxglove-sdk is not installed"
-    assert told.to_do == "pip install 'kurt2rt[recording]', or give --no-record"
-    assert not told.urgent

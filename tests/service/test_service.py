@@ -1,4 +1,3 @@
-import signal
 from pathlib import Path
 
 import pytest
@@ -15,7 +14,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from tests.service.rig import Rig, eager_task, end_service, rig, scripted
 
 
-async def teach_until(lessons: int, here: Rig, knowledge: Path, number: signal.Signals = signal.SIGTERM) -> list[str]:
+async def teach_until(lessons: int, here: Rig, knowledge: Path) -> list[str]:
     """Let the scripted teacher answer until so many lessons act, then end the service; returns their command ids."""
     teacher = scripted()
     acting: list[str] = []
@@ -23,7 +22,7 @@ async def teach_until(lessons: int, here: Rig, knowledge: Path, number: signal.S
     def watch(record: TickRecord) -> Command | None:
         acting.extend(result.command_id for result in record.results if result.code is ResultCode.RLA_TAUGHT)
         if len(acting) >= lessons:
-            end_service(number)
+            end_service()
             return None
         return teacher(record)
 
@@ -37,11 +36,10 @@ def events_in(knowledge: Path) -> list[str]:
         return [event.origin.command_id for event in journal.events()]
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGTSTP])
-async def test_serve_teaches_drives_and_stops_at_the_end(tmp_path: Path, number: signal.Signals) -> None:
+async def test_serve_teaches_drives_and_stops_at_the_end(tmp_path: Path) -> None:
     knowledge = tmp_path / "var" / "new.knowledge"
     with rig() as here:
-        taught = await teach_until(2, here, knowledge, number)
+        taught = await teach_until(2, here, knowledge)
         payloads = here.control_payloads()
         assert here.robot.health.latched is GuardReason.SERVICE_ENDS
     assert payloads[-1] == bytes(encode_brake().data)

@@ -382,13 +382,6 @@ def test_shown_drive_of_unequal_lists_is_refused() -> None:
         decode_state(cbor2.dumps(body))
 
 
-@pytest.mark.parametrize("percent", [0, 19, 101, 60.5, "60", None])
-def test_lesson_speed_out_of_range_is_refused(percent: object) -> None:
-    body = cbor2.loads(encode_state(state(lesson_speed=0.6)))
-    with pytest.raises(WireError):
-        decode_state(cbor2.dumps({**body, "ls": percent}))
-
-
 @pytest.mark.parametrize("way", [[1.0], [1.0, "x"], [1.0, float("nan")], "11"])
 def test_way_that_is_no_pair_of_numbers_is_refused(way: object) -> None:
     body = cbor2.loads(encode_state(state()))

@@ -1,7 +1,6 @@
 """docs/the-wire.md is enough for a device in another language: one that uses nothing else teaches and stops a robot."""
 
 import ast
-import json
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -100,25 +99,3 @@ def test_device_by_the_book_confirms_and_keeps_observing(
                 assert at_work.channel.site.observers == 1
 
     run_jumping(story)
-
-
-def test_device_by_the_book_answers_challenge_after_restart(tmp_path: Path) -> None:
-    numbers: list[int] = []
-
-    async def story() -> None:
-        boots = set()
-        for _ in range(3):
-            async with the_robot_and_its_device(tmp_path) as (_, device):
-                numbers.append(device.numbers.next)
-                looking = await device.look()
-                boots.add((await looking.picture())["b"])
-                assert device.challenged == 1
-                assert (await device.ask("/stop", [a_command(), None])).body["ok"]
-                assert device.challenged == 1
-                numbers.append(device.numbers.next - 1)
-        assert len(boots) == 3
-
-    run_jumping(story)
-    assert numbers == sorted(set(numbers))
-    stored = json.loads((tmp_path / "devices" / "local" / "sequence.json").read_text(encoding="utf-8"))
-    assert stored == {"next-to-send": numbers[-1] + 1, "received": "unknown"}

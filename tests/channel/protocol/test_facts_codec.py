@@ -1,6 +1,5 @@
 """Facts of a decision over the wire and back."""
 
-from collections import Counter
 from collections.abc import Iterator
 
 import pytest
@@ -8,7 +7,6 @@ import pytest
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.channel.protocol.schema import WireError
-from kurt2rt.runs.explain.collect import LiveExplainer
 from tests.runs.explain.helpers import Lesson, facts, level, story
 from tests.teacher.helpers import teach
 
@@ -35,24 +33,3 @@ def test_facts_codec_malformed_is_refused() -> None:
     with pytest.raises(WireError, match=" tick"):
         facts_of_plain({key: value for key, value in plain.items() if key != "tick"})
     assert facts_of_plain({**plain, "weather": "fine"}) == facts_of_plain(plain)
-
-
-def test_live_facts_are_collected_once_per_tick(lesson: Lesson) -> None:
-    stamps_read = Counter[str]()
-
-    def stamp_of(command_id: str) -> str:
-        stamps_read[command_id] += 1
-        return ""
-
-    explaining = LiveExplainer(lesson.runtime, stamp_of)
-    assert explaining.facts() is None
-    for record in (lesson.records[-1], lesson.go_on(1)):
-        explaining.follow(record)
-        before = stamps_read.total()
-        facts = explaining.facts()
-        assert facts is not None
-        assert facts.tick == record.tick
-        collected = stamps_read.total()
-        assert collected > before
-        assert explaining.facts() == facts
-        assert stamps_read.total() == collected

@@ -78,23 +78,6 @@ async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> No
     assert {"mid-level", "RLA", "turn_left"} <= set(lessons[0][1].split())
 
 
-async def test_mid_level_correction_and_alternative_are_taught(desk: ChannelFixture) -> None:
-    await teach(desk, "turn_left")
-    reply = await desk.ask(desk.command(CorrectRequest, "straight_on", None, MID))
-    assert outcome_of(reply) == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=1, level=MID, action="straight_on", was="turn_left"
-    )
-    added = await teach(desk, "turn_right", alternative=True)
-    assert added == Outcome.of(ResultCode.RLA_ADDED, rla=2, level=MID, action="turn_right", next_to=1)
-    desk.run()
-    told = picture(desk)
-    assert told.mid is not None
-    assert (told.mid.behaviour, told.mid.rla) == ("straight_on", 1)
-    await desk.ask(desk.command(UndoRequest, None))
-    added = await teach(desk, "turn_right", alternative=True)
-    assert added == Outcome.of(ResultCode.RLA_ADDED, rla=3, level=MID, action="turn_right", next_to=1)
-
-
 async def test_mid_level_unknown_level_or_behaviour_is_refused(
     desk: ChannelFixture,
 ) -> None:

@@ -1,7 +1,6 @@
 import os
 import re
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from aiocoap import oscore
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import PairingChange, Teachers
-from kurt2rt.channel.security.pairing import list_pairings, local_pairing, pair, renew, revoke
+from kurt2rt.channel.security.pairing import local_pairing, pair, renew, revoke
 from tests.channel.clock import Clock
 from tests.channel.sides import ask_until_fresh, header_of
 
@@ -152,27 +151,6 @@ async def test_teachers_unreadable_disk_keeps_contexts(house: House, monkeypatch
         assert "Input/output error" in teachers.trouble[0]
     await teachers.refresh()
     assert teachers.trouble == ()
-
-
-async def test_list_pairings_has_last_use_to_the_minute(house: House) -> None:
-    house.pair("phone")
-    teachers = house.start()
-    device = house.device("phone")
-    await teachers.refresh()
-    assert list_pairings(house.teachers)[0].used_at is None
-    ask_until_fresh(device, teachers.find(header_of(device)), "forward")
-    await teachers.refresh()
-    used_at = list_pairings(house.teachers)[0].used_at
-    assert used_at is not None
-    assert used_at >= list_pairings(house.teachers)[0].made_at
-    used = house.teachers / "phone" / "used"
-    for passed_s, noted in ((59.0, False), (2.0, True)):
-        os.utime(used, (1e9, 1e9))
-        ask_until_fresh(device, teachers.find(header_of(device)), "forward")
-        house.clock.now_s += passed_s
-        await teachers.refresh()
-        noted_at = list_pairings(house.teachers)[0].used_at
-        assert (noted_at != datetime.fromtimestamp(1e9, UTC)) is noted
 
 
 def test_only_local_with_own_pairings_is_true(house: House) -> None:

@@ -149,25 +149,6 @@ async def test_hold_of_a_stopped_robot_or_unknown_action_is_refused(desk: Channe
     assert (why(stopped), stopped.body["code"]) == ("stopped", "robot stopped")
 
 
-async def test_lessons_of_a_hold_are_one_line_and_undone_as_one(desk: ChannelFixture) -> None:
-    await desk.stream(desk.hold("forward"))
-    desk.run()
-    await desk.ask(StopRequest(desk.new_id(), 1))
-    for _ in range(110):  # longer than a press is put back
-        await desk.stream(desk.watch())
-        desk.run()
-    await desk.stream(desk.hold("back", press=2))
-    desk.run()
-    await desk.ask(StopRequest(desk.new_id(), 2))
-    hold, first = (await desk.ask(LessonsRequest(5))).body["lessons"]
-    assert (hold[0], hold[2], hold[6]) == ("ann-hold-2", "ann", False)
-    assert "back" in hold[1]
-    assert "forward" in first[1]
-    undone = await desk.ask(desk.command(UndoRequest, hold[0]))
-    assert outcome_of(undone) == Outcome.of(ResultCode.HOLD_UNDONE, lessons=1)
-    assert (await desk.ask(LessonsRequest(1))).body["lessons"][0][6] is True
-
-
 @pytest.mark.parametrize("kind", ["watch", "press"])
 @pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
 async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
@@ -336,12 +317,6 @@ async def test_repeated_answer_names_the_lesson_that_is_known(desk: ChannelFixtu
     desk.run()
     reply = await desk.ask(request)
     assert (outcome_of(reply), reply.body["lesson"]) == (Outcome(ResultCode.REPEATED), lesson)
-
-
-async def test_the_same_id_of_two_devices_is_two_commands(desk: ChannelFixture) -> None:
-    request = desk.command(PhaseRequest, Phase.CORRECTIONS)
-    assert (await desk.ask(request, "ann")).status is ReplyStatus.DONE
-    assert why(await desk.ask(request, "ben")) == "held"
 
 
 async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: ChannelFixture) -> None:

@@ -7,7 +7,7 @@ import pytest
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode
 from hal.settings import SettingsError
-from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, step_named, steps_to_run
+from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, step_named
 from kurt2rt.checks.commission.fault import SkipCode
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, load_progress
@@ -73,22 +73,6 @@ async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
         await session.run("lifted")
     assert [line.split("'")[1::2] for line in session.person.lines(Tone.BAD)] == [["yes", WORDS], ["", WORDS]]
     assert session.outcome("lifted") is StepOutcome.PASSED
-
-
-async def test_checklist_left_session_continues_and_asks_for_the_block(tmp_path: Path) -> None:
-    with Workshop() as workshop:
-        first = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
-        await first.run("identity", "modes", "wheels", "stop")
-        assert max(map(abs, workshop.robot.wheel_speeds)) == 0.0
-        kept = load_progress(first.path)
-        assert kept == first.progress
-        assert [step.name for step in steps_to_run(kept)] == ["wheels", "stop", "sensors", "bumpers", "infrared"]
-
-        second = Session(workshop, tmp_path)
-        second.progress = kept
-        await second.run("wheels", "stop")
-    assert QuestionKind.LIFTED in [question.about for question in second.person.asked]
-    assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [StepOutcome.PASSED] * 4
 
 
 async def test_checklist_left_session_brakes_a_standing_robot(tmp_path: Path) -> None:

@@ -29,16 +29,6 @@ async def listened(tmp_path: Path, wiring: Wiring) -> Session:
     return session
 
 
-async def test_identity_step_names_controller_and_frame_periods(tmp_path: Path) -> None:
-    session = await listened(tmp_path, Wiring())
-    info, *_ = session.measured("identity")
-    assert info.startswith("INFO_1: hardware 21321 ")
-    quick, slow = [line for line in session.measured("identity") if line.startswith("every ")]
-    assert quick == "every 10 ms: ADC00_03, ADC04_07, ADC08_11, ENCODER, BUMPERC, BDC00_03, BDC04_07"
-    assert slow.startswith("every 100 ms: INFO_1, ")
-    assert session.progress.findings.hardware_id == 21321
-
-
 @pytest.mark.parametrize(
     ("name", "fault"),
     [

@@ -88,26 +88,6 @@ def test_robot_file_marks_measured_and_untried_values() -> None:
     assert Kurt2Settings.model_fields.keys() == yaml.safe_load(text).keys()
 
 
-def test_all_that_was_found_is_in_the_settings() -> None:
-    robot = commissioned_settings(
-        BASE,
-        "robbie",
-        Findings(
-            speed_mode=SpeedMode.SPEED,
-            full_speed_m_s=0.72,
-            controller_watchdog_s=0.1,
-            bumper_bits={"front left": 3, "rear left": 0},
-            law=LAW,
-        ),
-    )
-    assert robot.name == "robbie"
-    assert (robot.can.speed_mode, robot.motors.full_speed_m_s) == (SpeedMode.SPEED, 0.72)
-    assert robot.motors.controller_watchdog_s == 0.1
-    assert [bumper.name for bumper in robot.bumpers][0::3] == ["rear left", "front left"]
-    assert robot.infrared.counts_at(0.2) == pytest.approx(90.5 / 0.2405 - 60.1)
-    assert robot.infrared.distance_m(86) == 0.58
-
-
 def test_words_that_mean_something_to_yaml_survive(tmp_path: Path) -> None:
     odd = "left, {front} #1: größer"
     bumper = BASE.bumpers[0].model_copy(update={"name": odd})

@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -13,7 +11,7 @@ from behaviors.repertoire_settings import BEHAVIOURS
 from hal.settings_files import find_config
 from kurt2rt.checks.plugins.kinds import KINDS, KindName
 from kurt2rt.checks.plugins.skeleton import SkeletonKind
-from tests.cli.helpers import ROOT, CommandLine
+from tests.cli.helpers import ROOT, CommandLine, started
 from tests.plugin_packages import install, write_parts
 
 
@@ -33,10 +31,10 @@ def test_skeleton_installs_and_passes_its_tests(kurt2rt: CommandLine, plugin_fol
     name = f"own_{kind}"
     made = kurt2rt("plugin", "new", kind, name, "--out", "out")
     assert made.out.splitlines()[-1] == f"next: pytest out/{name}", made.err
-    words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"out/{name}"]
-    done = subprocess.run(words, cwd=plugin_folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout
-    assert int(re.findall(r"(\d+) passed", done.stdout)[0]) > 7
+    with started("pytest", "-q", "-p", "no:cacheprovider", f"out/{name}", folder=plugin_folder) as tests:
+        said = tests.communicate()[0]
+    assert tests.returncode == 0, said
+    assert int(re.findall(r"(\d+) passed", said)[0]) > 7
     project = tomllib.loads(Path("out", name, "pyproject.toml").read_text(encoding="utf-8"))["project"]
     install(plugin_folder / "out" / name / "src", project["name"], {kind: {name: f"{name}:OWN"}}, project["version"])
     assert project["entry-points"].keys() == {f"kurt2rt.{kind}"}

@@ -12,7 +12,6 @@ from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 from kurt2rt.teacher.scripted.press_times import FixedTimes
 from tests.core.helpers import sensed
@@ -58,12 +57,6 @@ def test_on_tick_asking_answers_after_the_reaction_time() -> None:
     for phase in (Phase.SUPERVISED, Phase.CORRECTIONS):
         answers = said(dispatcher(phase), ASKS, BEFORE_THE_FIRST, REACTION_TICKS)
         assert answers == [(REACTION_TICKS, Teach("s-mid-1", NAME, "turn_left", level=MID))]
-
-
-def test_view_of_tick_question_of_the_mid_level_is_not_asking() -> None:
-    assert not view_of_tick(ASKS).asking
-    basic = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
-    assert view_of_tick(basic).asking
 
 
 def test_on_tick_wrong_behaviour_is_corrected_after_the_patience() -> None:

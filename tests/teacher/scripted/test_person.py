@@ -261,13 +261,6 @@ def test_update_rewind_stops_corrects_the_begin_and_resumes() -> None:
     assert isinstance(resume, Resume)
 
 
-def test_update_rewind_needs_two_presses_of_the_limit() -> None:
-    teacher = person(profile=REWINDS, presses_per_minute=3)
-    pressed = [tick for tick, each in given(teacher, [doing("b")] * 100 + rewind_forever()).items() if counts(each)]
-    assert len(pressed) >= 4
-    assert all(later - sooner >= 6000 for sooner, later in zip(pressed, pressed[3:], strict=False))
-
-
 LOOKS_BACK = {"corrects_by": "press", "corrects_touch_by": "rewind"}
 SURE = LookBackSettings(moment_spread_s=0.0)
 
@@ -291,17 +284,6 @@ def test_update_touch_corrects_the_mistake_before_it() -> None:
     assert not any(isinstance(each, Correct) for each in more)
 
 
-@pytest.mark.parametrize(("wrong", "late"), [(5, 40), (25, 600)])
-def test_update_touch_without_a_mistake_before_is_let_pass(wrong: int, late: int) -> None:
-    """The mistake was too short to be seen on two pictures, or it is long ago."""
-    assert corrected_ticks(person(profile=LOOKS_BACK, look_back=SURE), touched(wrong, late=late)) == []
-
-
-def test_update_touch_takes_the_place_of_a_planned_press() -> None:
-    teacher = person(profile=LOOKS_BACK, look_back=SURE)
-    assert isinstance(next(iter(given(teacher, touched(wrong=60, late=0)).values())), Stop)
-
-
 @pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS])
 def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
     profile = LOOKS_BACK if phase is Phase.SUPERVISED else {"corrects_by": "press"}
@@ -311,11 +293,6 @@ def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
 def rewind_once() -> list[TeacherView]:
     """Return a robot that begins to do the wrong thing after 0.2 s, and stands from then on."""
     return [doing("a")] * 20 + [doing("b")] * 120 + [standing()] * 2000
-
-
-def rewind_forever() -> list[TeacherView]:
-    """Return a robot that stands for 5 s and does the wrong thing for 5 s, again and again."""
-    return ([standing()] * 500 + [doing("b")] * 500) * 15
 
 
 def counts(command: Command) -> bool:

@@ -66,13 +66,6 @@ def test_update_asking_answers_after_the_reaction_time() -> None:
     assert given(person, records) == {REACTION_TICKS: Teach("s-1", NAME, "b")}
 
 
-def test_update_answered_question_does_not_hurry_the_next_answer() -> None:
-    person = teacher(Phase.SUPERVISED)
-    given(person, [asking()] * REACTION_TICKS)
-    given(person, [doing("a")] * 300)
-    assert list(given(person, [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
-
-
 def test_update_phase_1_does_not_correct() -> None:
     assert given(teacher(Phase.SUPERVISED), [doing("b", FAR)] * 500) == {}
 
@@ -124,11 +117,6 @@ def test_corrections_with_errors_err_at_the_rate() -> None:
 
 def wanting(behaviour: str, seen: TickRecord) -> TickRecord:
     return seen._replace(behaviour=behaviour)
-
-
-def test_update_answers_for_the_selected_behaviour() -> None:
-    answers = given(teacher(), [wanting("other", asking())] * REACTION_TICKS)
-    assert answers == {REACTION_TICKS: Teach("s-2", NAME, "c")}
 
 
 def test_update_other_behaviour_resets_question_and_patience() -> None:
