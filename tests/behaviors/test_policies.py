@@ -77,11 +77,6 @@ def test_fleeing_policy(distances_m: dict[str, float], action: str) -> None:
     assert said("fleeing", distances_m) == action
 
 
-@given(view=VIEWS)
-def test_fleeing_policy_spins_to_one_side_only(view: tuple[int, ...]) -> None:
-    assert POLICIES["fleeing"].choose(view, "") in {"flee", "curve_left", "curve_right", "whirl_left"}
-
-
 # Circle
 
 

@@ -53,13 +53,6 @@ def test_turn_ignores_straight_motion() -> None:
         assert behaviour.step(sensed(left_ticks=300, right_ticks=300)) == WheelSpeeds(-0.20, 0.20)
 
 
-def test_turn_start_restarts_the_angle() -> None:
-    behaviour = turn(90.0)
-    for _ in range(3):
-        behaviour.start()
-        assert drive(behaviour, 2000)[0] == pytest.approx(90.0, abs=0.6)
-
-
 def test_turn_swing_the_other_way_lengthens_it() -> None:
     behaviour = turn(90.0)
     for _ in range(20):  # wheels that still turn right from the action before

@@ -1,10 +1,8 @@
 """Progress over the last minute, from the records of ticks."""
 
-import sys
-
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.progress_meter import ProgressMeter
-from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.tick_record import TickRecord
 from tests.channel.channel_fixture import ChannelFixture
 
@@ -13,7 +11,6 @@ RECORD: TickRecord = DESK.run()
 DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
 ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
 STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_resume=True))
-TOUCHES = DRIVES._replace(standing=Standing(StandReason.FRONT_BUMPER, asks=True))
 
 
 class Run:
@@ -30,20 +27,10 @@ class Run:
         return self.meter.progress()
 
 
-def test_progress_before_the_first_tick_is_unknown() -> None:
-    assert ProgressMeter(0.01).progress() == NO_PROGRESS
-
-
 def test_progress_share_is_that_of_ticks_driven_by_an_rla() -> None:
     run = Run()
     run.lasts(5, ASKS)
     assert run.lasts(15, DRIVES) == Progress(20, 75, 1)
-
-
-def test_progress_touching_robot_counts_as_question() -> None:
-    run = Run()
-    run.lasts(2, DRIVES)
-    assert run.lasts(2, TOUCHES) == Progress(4, 50, 1)
 
 
 def test_progress_forgets_what_is_older_than_a_minute() -> None:
@@ -58,11 +45,3 @@ def test_progress_after_missed_ticks_forgets_by_time() -> None:
     run.lasts(1, ASKS)
     run.tick += 100 * 3600  # the program was held for an hour
     assert run.lasts(1, STANDS) == Progress(60, 0, 0)
-
-
-def test_progress_meter_memory_does_not_grow() -> None:
-    run = Run()
-    run.lasts(61, ASKS)
-    before = [sys.getsizeof(each) for each in vars(run.meter).values()]
-    run.lasts(70, DRIVES)
-    assert [sys.getsizeof(each) for each in vars(run.meter).values()] == before

@@ -11,11 +11,9 @@ from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import (
-    QUICK_TEACHER,
     SUPERHUMAN,
     Delay,
     GammaDelay,
-    LogNormalDelay,
     load_teacher,
 )
 
@@ -38,15 +36,6 @@ def test_draw_s_values_stay_within_the_bounds(name: str) -> None:
         assert shortest_s <= min(drawn) < max(drawn) <= delay.longest_s
 
 
-def test_draw_s_log_normal_has_its_median_and_95th_percentile() -> None:
-    delay = delays_of("ordinary")[0]
-    assert isinstance(delay, LogNormalDelay)
-    chance = random.Random(1)
-    drawn = sorted(delay.draw_s(chance) for _ in range(DRAWS))
-    assert drawn[DRAWS // 2] == pytest.approx(1.25, rel=0.05)
-    assert drawn[round(0.95 * DRAWS)] == pytest.approx(2.5, rel=0.1)
-
-
 def test_teachers_each_is_slower_than_the_one_before() -> None:
     medians = []
     for name in PEOPLE:
@@ -54,13 +43,6 @@ def test_teachers_each_is_slower_than_the_one_before() -> None:
         medians.append([sorted(delay.draw_s(chance) for _ in range(DRAWS))[DRAWS // 2] for delay in delays_of(name)])
     for sooner, later in pairwise(medians):
         assert all(one < other for one, other in zip(sooner, later, strict=True))
-
-
-def test_taught_by_changes_the_teacher_alone() -> None:
-    task, profile = load_task("circle"), load_teacher("slow")
-    taught = taught_by(task, profile)
-    assert taught.teaching.profile == profile
-    assert taught_by(taught, QUICK_TEACHER) == task
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
-from tests.teacher.helpers import correct, delete, pursue, resume, stop, teach
+from tests.teacher.helpers import correct, delete, resume, stop, teach
 
 FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
 RADIUS = 50.0
@@ -195,45 +195,9 @@ def test_tick_history_grows_driving_and_freezes_asking(driving: Corridor) -> Non
     assert {tuple(averages(record)) for record in waiting} == {tuple(averages(last_driven))}
 
 
-def test_wheel_speeds_of_the_last_action_are_held_while_it_waits(driving: Corridor) -> None:
-    assert driving.run().situation.vector[2:4].tolist() == [3, 3]
-    for _ in range(3):
-        assert driving.run(400).situation.vector[2:4].tolist() == [3, 3]
-    driving.run(400, teach("back", "second"))
-    assert driving.run(400).situation.vector[2:4].tolist() == [-2, -2]  # -0.15 m/s at 10 counts, rounded to even
-
-
 def test_an_unknown_situation_stops_the_wheels_in_the_same_tick(driving: Corridor) -> None:
     driving.run(400)
     assert driving.robot.driven[-2:] == [FORWARD, STANDSTILL]
-
-
-def test_tick_commands_are_handled_in_order_of_arrival(corridor: Corridor) -> None:
-    record = corridor.run(100, delete(1, "too early"), teach("forward", "t"), delete(1, "d"), teach("back", "t-2"))
-    assert [result.accepted for result in record.results] == [False, True, True, True]
-    assert (record.decision.rla_id, record.decision.action) == (2, "back")
-    assert [event.origin.command_id for event in corridor.notebook.events] == ["t", "d", "t-2"]
-
-
-def test_tick_pursue_acts_in_its_own_tick() -> None:
-    corridor = Corridor(behaviours=("straight_on", "turn_left"))
-    corridor.run(100, teach("forward", "1"))
-    record = corridor.run(100, pursue("turn_left", "2"))
-    assert (record.behaviour, record.decision.cause, record.guard_result.wheel_speeds) == (
-        "turn_left",
-        DecisionCause.UNKNOWN,
-        STANDSTILL,
-    )
-    corridor.run(100, teach("back", "3"))
-    record = corridor.run(100, pursue("straight_on", "4"))
-    assert (record.behaviour, record.decision.action, record.decision.cause) == (
-        "straight_on",
-        "forward",
-        DecisionCause.RLA,
-    )
-    # What came before it in the same tick is about what was wanted before it.
-    corridor.run(900, teach("back", "5"), pursue("turn_left", "6"))
-    assert [rla.behaviour for rla in corridor.system.rlas] == ["straight_on", "turn_left", "straight_on"]
 
 
 def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
@@ -384,15 +348,6 @@ def test_tick_blind_robot_stands_without_asking_or_learning(driving: Corridor) -
     driving.robot.infrared_age_s = 0.0
     assert driving.run(100).decision.cause is DecisionCause.RLA
     assert driving.run(100, teach("back", "in the dark")).results[0].accepted
-
-
-def test_tick_latched_decision_is_not_counted(driving: Corridor) -> None:
-    driving.run(100)
-    uses = dict(driving.statistics.uses)
-    driving.robot.latched = True
-    for _ in range(5):
-        driving.run(100)
-    assert driving.statistics.uses == uses
 
 
 @pytest.mark.parametrize("says_why", [False, True])

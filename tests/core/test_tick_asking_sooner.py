@@ -48,14 +48,6 @@ def test_robot_without_a_teacher_asks_beyond_its_radius() -> None:
     assert cause_between(taught(asked=False)) is DecisionCause.RLA
 
 
-def test_answer_of_the_same_action_ends_the_question() -> None:
-    corridor = taught()
-    assert cause_between(corridor) is DecisionCause.UNKNOWN
-    corridor.run(BETWEEN, teach("forward", "second"))
-    assert len(corridor.system) == 2
-    assert corridor.run(BETWEEN).decision.driving
-
-
 def test_correction_within_its_share_of_whole_radius_replaces() -> None:
     """A correction at 0.3 R replaces the RLA, as half of R says, and not half of the half that counts now."""
     corridor = taught()

@@ -17,7 +17,7 @@ from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from tests.core.test_tick import BACK, Corridor, averages
-from tests.core.test_tick_by_hand import press, watch
+from tests.core.test_tick_by_hand import watch
 from tests.runs.replay.stories import NAME, Scene, record_story
 from tests.teacher.helpers import correct, set_phase, teach
 
@@ -77,13 +77,6 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     assert len(corridor.system) == 1
 
 
-def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) -> None:
-    held(corridor)
-    record = corridor.run(None, teach("forward", "answer"))
-    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
-    assert record.decision.cause is DecisionCause.TOUCHES
-
-
 def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor) -> None:
     held(corridor)
     asked = averages(corridor.run(115))
@@ -122,13 +115,6 @@ def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:
     corridor.robot.touches_in_front = False
     record = corridor.run(None, watch(corridor))
     assert (record.decision.cause, record.standing.needs_resume) == (DecisionCause.STOPPED, True)
-
-
-def test_a_hand_that_pushes_is_told_and_asked_nothing(corridor: Corridor) -> None:
-    corridor.robot.touches_in_front = True
-    for _ in range(2 * ASKS_AFTER_TICKS):
-        record = corridor.run(100, press(corridor))
-    assert (record.decision.cause, record.standing) == (DecisionCause.TEACHER, Standing(StandReason.FRONT_BUMPER))
 
 
 def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:

@@ -1,7 +1,6 @@
 """The tick as a story, continued: teachers who are there or not, a hand on the wheels, and decisions of the past."""
 
 import itertools
-import math
 from collections.abc import Callable
 
 import pytest
@@ -12,7 +11,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.outcome import RefusalCode, ResultCode
+from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import (
     BeginSession,
@@ -139,13 +138,6 @@ def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkey
     assert driving.statistics.uses == uses
 
 
-def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
-    record = driving.run(100, RunBehaviour("b", "Ann", "back", 5))
-    assert (record.decision.cause, record.decision.action) == (DecisionCause.TEACHER, "back")
-    assert causes(driving, 6) == [DecisionCause.TEACHER] * 4 + [DecisionCause.STOPPED] * 2
-    assert driving.run(100, resume()).decision.action == "forward"
-
-
 def test_attended_robot_without_teacher_stands_or_asks(
     attended: Corridor,
 ) -> None:
@@ -189,24 +181,6 @@ def test_phase_5_needs_no_teacher_and_its_end_stops_the_robot(attended: Corridor
 def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> None:
     attended.run(100, set_phase(phase))
     assert attended.run(100).decision.cause is DecisionCause.UNATTENDED
-
-
-def test_blind_robot_takes_lessons_of_seeing_ticks_only(driving: Corridor) -> None:
-    seen = driving.run(400).tick
-    driving.robot.infrared_age_s = math.inf
-    dark = driving.run(400).tick
-    record = driving.run(
-        400,
-        Teach("now", "Ann", "back"),
-        Correct("dark", "Ann", "back", dark),
-        Teach("seen", "Ann", "back", seen),
-    )
-    assert [result.accepted for result in record.results] == [False, False, True]
-    assert record.results[0].code is RefusalCode.BLIND
-    assert record.results[1].code is RefusalCode.WAS_BLIND
-    driving.robot.infrared_age_s = 0.0
-    assert not driving.run(400, Correct("late", "Ann", "forward", dark)).results[0].accepted
-    assert driving.run(400).decision.action == "back"
 
 
 def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:
@@ -389,12 +363,3 @@ def test_manual_drive_is_blocked_if_blind_or_unsaved(
     driving.robot.infrared_age_s = 0.0 if trouble else 1.0
     record = driving.run(100, press(driving))
     assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)
-
-
-def test_a_reward_does_not_cut_an_action_short(driving: Corridor) -> None:
-    driving.run(200, replace := Teach("turn back", "Ann", "back"))
-    assert driving.run(200).decision.action == "back"
-    began = driving.ticks - 1
-    assert replace.action == "back"
-    held = driving.run(100, Reward("praise", "Ann", 1, began))
-    assert (held.decision.cause, held.decision.action) == (DecisionCause.HELD, "back")

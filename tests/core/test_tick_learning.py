@@ -143,16 +143,6 @@ def test_phase_5_trusted_critic_makes_undoable_changes(driving: Drive) -> None:
     assert drive.runtime.level.system.knowledge_hash() == known
 
 
-def test_phase_5_untrusted_critic_changes_nothing(driving: Drive) -> None:
-    driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
-    driving.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
-    taught = len(driving.notebook.events)
-    saved = driving.runtime.snapshot()
-    driving.run(ticks=300)
-    assert len(driving.notebook.events) == taught
-    assert driving.runtime.snapshot().values == saved.values
-
-
 def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> None:
     drive = trusting(driving)
     drive.runtime.handler.stop(STARTED)
@@ -179,13 +169,6 @@ def test_without_teacher_neighbours_answer_for_withdrawn_rla() -> None:
     assert Drive(events).run(counts=NEAR).decision.asking
     assert Drive(events, asked=False).run(counts=NEAR).decision.action == "back"
     assert Drive(events[:2], asked=False).run(counts=NEAR).decision.asking
-
-
-def test_phase_5_asks_no_teacher_and_its_end_asks_again() -> None:
-    drive = Drive(withdrawn_and_neighbour())
-    assert drive.run(counts=NEAR).decision.asking
-    assert drive.run(SetPhase("alone", "Ann", Phase.AUTONOMOUS)).decision.action == "back"
-    assert drive.run(SetPhase("again", "Ann", Phase.CORRECTIONS)).decision.asking
 
 
 def test_values_continue_from_checkpoint_or_journal_credits() -> None:

@@ -42,12 +42,6 @@ def test_tick_resume_tells_what_holds_a_blind_robot(driving: Corridor) -> None:
     )
 
 
-def test_tick_resume_tells_of_lessons_that_cannot_be_saved(driving: Corridor) -> None:
-    driving.run(100, stop())
-    driving.notebook.saving_error = "disk full"
-    assert "lessons cannot be saved" in text_of(driving.run(100, resume()).results[0].outcome)
-
-
 @pytest.mark.parametrize(
     ("standing", "reasons", "told"),
     [

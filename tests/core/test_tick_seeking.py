@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.decision.goal import Goal, NamedGoal
 from kurt2rt.core.decision.goal_text import goal_text
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.event_store import InMemoryEventStore
@@ -20,7 +20,6 @@ from kurt2rt.core.teaching.commands import (
     NameSituation,
     Pursue,
     ReplaceAction,
-    Reward,
     Seek,
     Stop,
     StopSeeking,
@@ -113,55 +112,6 @@ def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     assert record.decision.driving
 
 
-def test_seek_takes_the_way_that_leads_to_the_goal(block: Block) -> None:
-    block.teach("straight_on", next_to=True)
-    assert block.run().behaviour == "turn_left"  # of the ways on one place the mid level goes the oldest
-    block.say(Pursue, "straight_on")
-    block.go()
-    block.teach("straight_on")
-    block.say(NameSituation, "yard")
-    block.say(BeAt, "door")  # from here no teacher ever led it to the yard in one piece
-    block.seek(NamedGoal("yard"))
-    step = block.plan()
-    assert (step.rla_id, len(step.behaviours)) == (6, 3)
-    block.go()
-    block.go()
-    assert block.run().behaviour == "straight_on"
-    block.go()
-    assert block.plan().course is GoalStatus.ARRIVED
-
-
-def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
-    block.teach("straight_on", next_to=True)
-    block.say(Pursue, "straight_on")
-    block.go()
-    for _ in range(3):  # round the next block, in which the far side is the near one's
-        block.teach("turn_left")
-        block.go()
-    assert not block.run().decision.asking
-    block.say(BeAt, "door")
-    block.seek(RlaGoal(4))
-    block.go()
-    block.go("straight_on")  # it was to turn
-    assert block.run().decision.asks_at == MID
-    step = block.plan()
-    assert (step.course, step.surprises) == (GoalStatus.LOST, 1)
-    block.say(BeAt, "door")
-    assert block.plan().course is GoalStatus.UNDER_WAY
-
-
-def test_seek_without_a_way_stands_with_status() -> None:
-    town = Block()
-    town.say(NameSituation, "home")
-    town.teach("straight_on")
-    town.go()
-    town.teach("straight_on")
-    assert told(town.seek(NamedGoal("home"))) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="home", status="planning")
-    assert town.plan().course is GoalStatus.NO_WAY
-    record = town.run()
-    assert (record.decision.cause, record.decision.wheel_speeds) == (DecisionCause.NO_WAY, STANDSTILL)
-
-
 def test_seek_while_standing_stands_until_the_plan_is_ready(block: Block) -> None:
     block.say(NameSituation, "here")
     block.seek(NamedGoal("here"))
@@ -192,15 +142,6 @@ def test_late_plan_applies_after_the_next_junction(block: Block) -> None:
     assert block.run().behaviour == "turn_left"
     block.go()
     assert block.plan().behaviours == ("turn_left", "turn_left", "turn_left", "straight_on")
-
-
-def test_basic_lesson_does_not_delay_a_plan(block: Block) -> None:
-    block.seek(DOOR)
-    ticks = 0
-    while (step := block.say(Reward, 1).decision.plan) is not None and step.course is GoalStatus.PLANNING:
-        ticks += 1
-    assert ticks < 5
-    assert block.plan().course is GoalStatus.UNDER_WAY
 
 
 def test_lesson_about_places_restarts_the_plan_at_intervals(block: Block) -> None:
@@ -239,14 +180,6 @@ def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> Non
     assert block.run().decision.driving
 
 
-def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
-    block.runtime.reposition()
-    assert block.run().decision.asks_at == MID
-    block.seek(PartialGoal((("east", 1.0),)))  # that is how a reckoning begins
-    step = block.plan()
-    assert step.course is GoalStatus.LOST
-
-
 def test_restarted_robot_is_lost_until_its_location_is_set(block: Block) -> None:
     known = [*block.taught_before, *block.notebook.events]
     again = Block(known)
@@ -275,14 +208,6 @@ def test_pursue_overrides_the_plan_until_the_next_junction(block: Block) -> None
     assert block.plan().course is GoalStatus.LOST
 
 
-def test_his_word_drives_also_where_the_robot_has_arrived(block: Block) -> None:
-    block.say(NameSituation, "here")
-    assert block.seek(NamedGoal("here")).decision.cause is DecisionCause.AT_GOAL
-    record = block.say(Pursue, "turn_left")
-    assert record.decision.driving
-    assert block.go().decision.cause is DecisionCause.AT_GOAL  # once he has had his way it stands again
-
-
 def test_a_stop_goes_before_all(block: Block) -> None:
     block.seek()
     assert block.say(Stop).decision.cause is DecisionCause.STOPPED
@@ -300,23 +225,9 @@ def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:
     assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status="under way")
 
 
-def test_names_are_lessons(block: Block) -> None:
-    named = [event for event in block.notebook.events if isinstance(event, SituationNamed)]
-    assert [(event.name, event.level, len(event.situation)) for event in named] == [("door", MID, 6)]
-    undone = told(block.say(Undo, named[0].origin.command_id))
-    assert undone.code is ResultCode.LESSON_UNDONE
-    assert told(block.seek()) == Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
-
-
 @pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
 def test_name_situation_invalid_name_is_refused(block: Block, name: str) -> None:
     assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
-
-
-def test_without_places_nobody_can_say_where_it_is() -> None:
-    town = Town()
-    town.street()
-    assert told(town.run(BeAt("1", "Ann", "door"))) == Outcome(RefusalCode.NO_PLACES)
 
 
 def test_late_goal_does_not_replace_a_newer_one(block: Block) -> None:

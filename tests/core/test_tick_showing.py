@@ -5,8 +5,8 @@ import pytest
 from hal.robot import WheelSpeeds
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.teaching.commands import MOST_SEGMENTS, Drive, Stop, TeachShown, Undo
-from kurt2rt.core.teaching.demonstration import CAPACITY, Segment, nearest_action
+from kurt2rt.core.teaching.commands import Drive, Stop, TeachShown, Undo
+from kurt2rt.core.teaching.demonstration import Segment, nearest_action
 from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS
 from tests.core.test_tick import Corridor
 
@@ -50,12 +50,6 @@ def test_drive_by_hand_is_published_as_segments_of_actions(shown: Corridor) -> N
     assert segments(shown) == (Segment("forward", 2, 60), Segment("back", 62, 60))
     assert taught(shown) == []
     assert shown.system.rlas == ()
-
-
-def test_segments_are_not_published_while_the_press_lasts() -> None:
-    corridor = Corridor()
-    drive(corridor, 60, FORWARD, 100)
-    assert segments(corridor) == ()
 
 
 def test_confirmed_segments_become_lessons(shown: Corridor) -> None:
@@ -126,29 +120,12 @@ def test_confirmation_of_what_was_not_shown_is_refused(shown: Corridor, command:
     assert shown.school.demonstration.press_id == 7
 
 
-def test_confirmation_counts_once(shown: Corridor) -> None:
-    shown.run(200, TeachShown("show-1", "Ann", 7, (0,)))
-    again = shown.run(200, TeachShown("show-2", "Ann", 7, (0,)))
-    assert again.results[0].code is RefusalCode.NO_DEMONSTRATION
-
-
 def test_short_wobble_counts_as_the_action_before_it() -> None:
     corridor = Corridor()
     for ticks, speeds in ((10, BACK), (100, FORWARD), (20, BACK), (100, FORWARD)):
         drive(corridor, ticks, speeds, 100)
     release(corridor)
     assert segments(corridor) == (Segment("forward", 2, 230),)
-
-
-def test_long_drive_keeps_the_last_minute_and_its_last_segments() -> None:
-    corridor = Corridor()
-    for number in range(60):
-        drive(corridor, 150, FORWARD if number % 2 else BACK, 100)
-    release(corridor)
-    published = segments(corridor)
-    assert len(published) == MOST_SEGMENTS
-    assert published[-1].from_tick + published[-1].ticks == 60 * 150 + 2
-    assert published[0].from_tick >= 60 * 150 - CAPACITY * EVERY_TICKS
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ import math
 import pytest
 
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
-from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.teaching.commands import Appraise, Drive, HandOver, HoldAction, Reward, SetLessonSpeed
+from kurt2rt.core.teaching.commands import Appraise, Drive, HoldAction, Reward, SetLessonSpeed
 from tests.core.test_tick import BACK, FORWARD, Corridor, averages
 from tests.teacher.helpers import resume, set_phase, stop, teach
 
@@ -33,21 +33,10 @@ def test_slow_lesson_asks_the_guard_for_a_share_of_the_speeds(driving: Corridor)
     assert driving.robot.driven[-1] == SLOW_FORWARD
 
 
-def test_lesson_at_full_speed_sends_the_decided_speeds(driving: Corridor) -> None:
-    record = driving.run(100, slow(1.0))
-    assert record.results[0].outcome == Outcome.of(ResultCode.LESSON_SPEED_SET, percent=100)
-    assert (driving.robot.driven[-1], record.lesson_speed) == (FORWARD, 1.0)
-
-
 @pytest.mark.parametrize("phase", [Phase.REINFORCEMENT, Phase.AUTONOMOUS])
 def test_later_phases_drive_at_full_speed(driving: Corridor, phase: Phase) -> None:
     record = driving.run(100, set_phase(phase))
     assert (driving.robot.driven[-1], record.lesson_speed) == (FORWARD, 1.0)
-
-
-def test_robot_without_a_teacher_drives_at_full_speed(driving: Corridor) -> None:
-    driving.run(100, HandOver("bye", "Ann"))
-    assert driving.robot.driven[-1] == FORWARD
 
 
 def test_exam_drives_at_full_speed() -> None:
@@ -93,13 +82,6 @@ def test_averages_of_a_slow_lesson_are_those_of_the_way() -> None:
     assert found[1] == pytest.approx(found[0], abs=0.11)
 
 
-def test_clock_of_the_way_counts_a_share_of_the_ticks(driving: Corridor) -> None:
-    counted = [(driving.run(), driving.level.counts)[1] for _ in range(100)]
-    assert sum(counted) == pytest.approx(60, abs=1)
-    driving.run(100, slow(1.0))
-    assert all((driving.run(), driving.level.counts)[1] for _ in range(9))
-
-
 class DrivenTicks:
     """Watch for broken sensors that notes in which ticks it is told that the robot drove."""
 
@@ -130,17 +112,6 @@ def test_reward_of_a_slow_tick_is_refused(driving: Corridor, signal: Reward) -> 
     driving.run()
     (result,) = driving.run(100, signal).results
     assert result.code is RefusalCode.DROVE_SLOWLY
-
-
-def test_reward_at_full_speed_is_about_ticks_at_full_speed(driving: Corridor) -> None:
-    for _ in range(50):
-        driving.run(100)
-    driving.run(100, slow(1.0))
-    driving.run(100)
-    ticks, rlas = driving.school.recent.answering_up_to(driving.ticks)
-    assert [int(tick) for tick, rla in zip(ticks, rlas, strict=True) if rla] == [driving.ticks - 1, driving.ticks]
-    (result,) = driving.run(100, Reward("signal", "Ann", 1)).results
-    assert result.code is ResultCode.RLA_REWARDED
 
 
 def test_appraisal_without_a_critic_is_refused_for_that(driving: Corridor) -> None:

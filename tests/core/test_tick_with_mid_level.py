@@ -163,24 +163,6 @@ def test_mid_level_asks_at_once_and_the_answer_drives() -> None:
     assert (event.rla.level, event.rla.behaviour, event.rla.condition) == (MID, "", (0.0,) * LENGTH)
 
 
-def test_first_of_three_questions_is_the_mid_levels() -> None:
-    town = Town([])
-    assert town.run().decision.asks_at == MID
-    record = town.run(the_way("turn_left"))
-    assert (record.decision.cause, record.decision.asks_at) == (DecisionCause.UNKNOWN, BASIC)
-    record = town.run(Teach("t", "Ann", "forward"))
-    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="forward")
-    assert record.decision.driving
-
-
-def test_mid_lesson_counts_for_similar_histories(town: Town) -> None:
-    record = town.junction(1)
-    assert (town.history, record.decision.asking) == (("left",), False)
-    assert record.mid is not None
-    assert record.mid.match is not None
-    assert (record.mid.rla_id, record.mid.match.distance, record.mid.match.radius) == (4, 1.0, 6.0)
-
-
 def test_mid_correction_replaces_on_equal_history_else_inserts(
     town: Town,
 ) -> None:
@@ -215,28 +197,6 @@ def test_mid_lesson_about_an_old_junction_is_taken(town: Town) -> None:
     )
 
 
-def test_pursue_overrides_mid_level_until_the_next_junction(town: Town) -> None:
-    record = town.run(Pursue("p", "Ann", "turn_left"))
-    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_left")
-    assert record.mid is not None
-    assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("turn_left", True, None)
-    record = town.street(1.0)
-    assert record.behaviour == "turn_left"
-    record = town.junction(1)
-    assert record.mid is not None
-    assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("straight_on", False, 4)
-
-
-def test_pursue_answers_the_mid_level_without_a_lesson() -> None:
-    town = Town()
-    record = town.run(Pursue("p", "Ann", "turn_left"))
-    assert record.decision.driving
-    assert town.ways == {}
-    town.way_to_the_first_junction()
-    decision = town.junction(1).decision
-    assert (decision.asking, decision.asks_at) == (True, MID)
-
-
 def test_pursue_from_before_a_junction_is_refused(town: Town) -> None:
     seen = town.tick
     town.junction()
@@ -245,31 +205,11 @@ def test_pursue_from_before_a_junction_is_refused(town: Town) -> None:
     assert record.behaviour == "straight_on"
 
 
-def test_mid_lesson_about_the_present_ends_the_override(town: Town) -> None:
-    town.run(Pursue("p", "Ann", "turn_left"))
-    record = town.run(another_way("turn_right"))
-    assert record.mid is not None
-    assert (record.behaviour, record.mid.overridden, town.ways) == ("turn_right", False, {4: "turn_right"})
-
-
 def test_mid_lesson_about_the_past_keeps_the_override(town: Town) -> None:
     past = town.tick
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
     assert town.run(another_way("turn_right", of=past)).behaviour == "turn_left"
-
-
-def test_alternative_adds_a_way_at_a_known_place(town: Town) -> None:
-    town.junction()
-    town.run(Pursue("p", "Ann", "turn_left"))
-    record = town.run(the_way("turn_left", next_to=True))
-    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=5, level=MID, action="turn_left", next_to=4)
-    assert record.behaviour == "turn_left"  # as was commanded; what is possible is no command
-    system = town.runtime.level.system
-    first, second = system.rlas_at(MID)
-    assert first.condition == second.condition
-    again = town.run(the_way("turn_left", "again", next_to=True))
-    assert told(again) == Outcome.of(ResultCode.RLA_AGREES, rla=5, level=MID, action="turn_left")
 
 
 def test_mid_rla_is_replaced_deleted_and_undone(town: Town) -> None:
@@ -363,17 +303,6 @@ def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
 
 
-def test_replaced_mid_action_resets_its_follow_ups(town: Town) -> None:
-    for _ in range(3):
-        town.junction()
-    assert town.runtime.snapshot().transitions[4, 4] == 2
-    town.run(ReplaceAction("r", "Ann", 4, "turn_right"))
-    town.junction(-1)
-    town.junction(-1)
-    assert town.runtime.snapshot().transitions[4, 4] == 1
-    assert town.runtime.snapshot().uses[4] == 5
-
-
 def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
@@ -427,14 +356,3 @@ def test_undo_of_an_action_outside_the_task_is_refused(
     assert outcome == Outcome(RefusalCode.ACTION_NOT_IN_TASK, {**fields, "action": "fly"})
     assert not town.notebook.events
     town.run()
-
-
-def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
-    events = [*town.taught_before, *town.notebook.events]
-    runtime = build_runtime(StreetRobot(), ROBOT, STREETS, events, InMemoryEventStore(), LockstepClock(lambda: None))
-    runtime.inbox.put(Pursue("p", "Ann", "turn_left"))
-    runtime.timer.begin(0.0)
-    record = runtime.tick.run(1, 0.01)
-    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
-    assert (record.decision.rla_id, record.mid) == (2, None)
-    assert [rla.action for rla in runtime.level.system.rlas_at(MID)] == ["straight_on"]

@@ -1,6 +1,5 @@
 """The bus in this process behaves as every bus does; one clear line says why there is none."""
 
-import copy
 import itertools
 from collections.abc import Iterator
 
@@ -23,17 +22,6 @@ class TestInProcessBus(ErrorFrameConformance):
         name = f"virtual:conformance-{next(_numbers)}"
         with joining(lambda: open_bus(name)) as join:
             yield join
-
-
-def test_all_ends_of_a_process_share_a_frame(ends: Ends) -> None:
-    robot_end, far_end = ends
-    listener = open_bus(robot_end.name)
-    frame = cycle()[0]
-    far_end.telemetry_port().send(frame)
-    (first,), (second,) = robot_end.drain(), listener.drain()
-    listener.shutdown()
-    assert first is second is frame
-    assert (first.is_extended_id, first.is_fd, first.is_error_frame, first.dlc) == (False, False, False, 8)
 
 
 def test_a_reader_of_single_frames_gets_a_copy_with_a_time_stamp(ends: Ends) -> None:
@@ -64,21 +52,6 @@ def test_a_burst_is_as_so_many_single_frames(ends: Ends) -> None:
     with pytest.raises(ValueError, match="refused"):
         port.send_all([frame, encode_brake()])
     assert robot_end.drain() == []
-
-
-def test_a_kind_of_frame_never_changes() -> None:
-    frame = CODEC.message("ENCODER").pack(1, 2)
-    with pytest.raises(AttributeError):
-        frame.is_extended_id = True
-    with pytest.raises(AttributeError):
-        frame.is_fd = True
-
-
-def test_a_copied_frame_is_the_same_frame() -> None:
-    frame = CODEC.message("ENCODER").pack(1, 2)
-    for twin in (copy.copy(frame), copy.deepcopy(frame)):
-        assert isinstance(twin, Frame)
-        assert twin.equals(frame)
 
 
 def test_in_process_bus_holds_4096_frames_per_end(ends: Ends) -> None:

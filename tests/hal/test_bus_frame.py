@@ -52,12 +52,6 @@ def test_any_16_bytes_are_some_frame_of_at_most_8_bytes(record: bytes) -> None:
     assert 0 <= frame.arbitration_id <= (0x1FFF_FFFF if frame.is_extended_id else 0x7FF)
 
 
-def test_data_frames_are_the_kind_whose_payload_never_changes() -> None:
-    frame = frame_of(*BUS_FRAME.unpack(pack_bus_frame(Frame(0x09, b"12345678"))))
-    assert isinstance(frame, Frame)
-    assert isinstance(frame.data, bytes)
-
-
 @pytest.mark.parametrize(
     "frame",
     [

@@ -60,24 +60,6 @@ def test_any_length_that_covers_the_fields_will_do(message: Message, payload: by
         assert codec.unpack(payload) == codec.unpack(payload[:8].ljust(8, b"\0"))
 
 
-def test_short_encoder_frame_is_read_while_it_holds_both_sides() -> None:
-    encoder = CODEC.message("ENCODER")
-    assert encoder.unpack(bytes.fromhex("0209FDF7")) == (521, -521)
-    with pytest.raises(InvalidFrameError, match="ENCODER: 3"):
-        encoder.unpack(bytes.fromhex("0209FD"))
-
-
-def test_encoder_example_of_the_reference() -> None:
-    assert CODEC.message("ENCODER").pack(521, -521).data == bytes.fromhex("0209FDF700000000")
-
-
-def test_pose_of_the_controller_has_24_bit_places() -> None:
-    pose = CODEC.message("DEADRECK")
-    assert pose.signals == ("X", "Y", "ORIENTATION")
-    assert pose.pack(1, -2, -9000).data == bytes.fromhex("000001FFFFFEDCD8")
-    assert pose.unpack(bytes.fromhex("7FFFFF800000FFFF")) == (8388607, -8388608, -1)
-
-
 @pytest.mark.parametrize(
     ("name", "values", "complaint"),
     [

@@ -30,11 +30,6 @@ def test_pose_turn_on_the_spot_changes_heading_alone() -> None:
     assert reckoned(-quarter_m, quarter_m, 50) == pytest.approx((0.0, 0.0, math.pi / 2), abs=5e-3)
 
 
-def test_pose_full_circle_returns_to_its_start() -> None:
-    left_m, right_m = math.tau * (0.5 - TRACK_M / 2), math.tau * (0.5 + TRACK_M / 2)
-    assert reckoned(left_m, right_m, 1000) == pytest.approx((0.0, 0.0, math.tau), abs=0.02)
-
-
 def test_motion_single_side_tells_distances_and_turn() -> None:
     motion = WheelOdometry(GEOMETRY).motion(0, 10)
     right_m = 10 * GEOMETRY.metres_per_tick

@@ -68,16 +68,6 @@ def test_link_simulation_drives_and_reports() -> None:
         assert simulation.simulated_robot.wheel_speeds == pytest.approx((0.0, 0.0), abs=0.001)
 
 
-def test_link_simulation_same_seed_same_run() -> None:
-    def run(seed: int, purpose: str) -> str:
-        with closing(FACTORY.open("b", seed, purpose)) as simulation:
-            drive(simulation, WheelSpeeds(0.3, 0.2), 200)
-            return simulation.simulated_robot.state_hash()
-
-    assert run(3, "exam") == run(3, "exam")
-    assert len({run(3, "exam"), run(3, "lesson"), run(4, "exam")}) == 3
-
-
 def test_link_simulation_robot_equals_kurt2_of_the_same_seed() -> None:
     with (
         closing(FACTORY.open("a", 5, "exam")) as simulation,

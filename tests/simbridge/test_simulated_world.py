@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 import pytest
 
-from hal.simulation import SimulatedPost, SimulatedWorld
+from hal.simulation import SimulatedWorld
 from hal.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_world import RealtimeWorld
@@ -49,14 +49,6 @@ def refused(code: WorldRefusal, **fields: object) -> Iterator[None]:
 def yard() -> Iterator[Yard]:
     with Rig(WORLD) as rig, RealtimeSimulation(rig.robot) as simulation:
         yield Yard(rig, simulation)
-
-
-def test_the_world_from_above(yard: Yard) -> None:
-    view = yard.ground.world()
-    assert (view.version, view.name, view.size_m) == (0, "room", (4.0, 4.0))
-    assert view.outline == WORLD.outline
-    assert [(wall.name, wall.corners) for wall in view.walls] == [("board", BOARD.corners), ("box", BOX.corners)]
-    assert view.posts == (SimulatedPost("post", 1.0, 1.0, 0.1),)
 
 
 @pytest.mark.parametrize("name", ["board", "post", "box"])
@@ -123,12 +115,3 @@ def test_it_is_put_only_where_there_is_room(yard: Yard, x_m: float, y_m: float) 
         yard.ground.put_robot(x_m, y_m, 0.0)
     yard.step()
     assert yard.ground.place().x_m == 2.0
-
-
-def test_put_robot_considers_moves_not_yet_stepped(yard: Yard) -> None:
-    yard.ground.move_wall("post", 0.0, -0.6)
-    yard.ground.put_robot(1.0, 1.0, 0.0)
-    with refused(WorldRefusal.NO_ROOM):
-        yard.ground.put_robot(1.0, 0.5, 0.0)
-    yard.step()
-    assert yard.ground.place().y_m == pytest.approx(1.0)

@@ -53,12 +53,6 @@ def test_a_round_that_a_hand_broke_off_does_not_count() -> None:
     assert course.progress == 0.5  # the eastern one alone
 
 
-def test_the_distance_error_is_that_from_the_nearer_post() -> None:
-    course = eights()
-    follow(course, WEST_LEFT + EAST_RIGHT)
-    assert course.findings == {"distance error, m": pytest.approx(0.0, abs=0.005)}
-
-
 def test_a_world_without_two_posts_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"one object .*1"):
         course_in("one_object", SETTINGS)

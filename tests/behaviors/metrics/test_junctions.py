@@ -53,12 +53,6 @@ def test_junctions_required_side_counts_as_right(behaviour: str, taken: str) -> 
     assert course.behaviour == behaviour
 
 
-def test_turning_back_in_a_junction_is_wrong() -> None:
-    course = set_down(("straight_on",))
-    follow(course, [SOUTH_OF_A_CROSSING, CROSSING, SOUTH_OF_A_CROSSING])
-    assert passed(course) == (1.0, 0.0)
-
-
 def test_a_junction_is_passed_only_once_it_is_left_behind() -> None:
     course = set_down(("turn_left",))
     follow(course, [SOUTH_OF_A_CROSSING, CROSSING, (1.75, 2.2)])  # out of its square, which ends at 1.8

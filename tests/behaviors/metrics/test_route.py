@@ -132,16 +132,6 @@ def test_route_abort_counts_as_wrong() -> None:
     assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
 
 
-def test_route_depends_on_its_seed_only() -> None:
-    settings = RouteSettings(kind="route", decisions=12, seed=3)
-    routes = []
-    for seed in (1, 2):
-        course = course_in("manhattan", settings, ALL, seed)
-        assert isinstance(course, FixedRoute)
-        routes.append(course.route)
-    assert routes[0] == routes[1] != a_route(4, 12)
-
-
 def test_route_refuses_other_worlds_behaviours_and_numbers() -> None:
     settings = RouteSettings(kind="route")
     with pytest.raises(SettingsError, match="route: world A"):

@@ -39,12 +39,6 @@ def test_on_from_depends_on_the_end_of_the_street(town: Town) -> None:
     assert corner["turn_right"] == street(town, 1.3, 5.8, Side.EAST)
 
 
-def test_within_a_junction_one_is_in_no_street(town: Town) -> None:
-    assert town.street_at(Pose(2.2, 2.2, 0.0)) is None
-    assert town.street_at(Pose(2.55, 2.2, 0.0)) is None
-    assert town.street_at(Pose(2.65, 2.2, 0.0)) is not None  # where a robot may already know that it is there
-
-
 def test_the_shortest_way_never_turns_back(town: Town) -> None:
     start, behind = street(town, 3.1, 2.2, Side.EAST), street(town, 1.3, 2.2, Side.EAST)
     way = town.shortest(start, behind)

@@ -6,7 +6,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import CRITIC
@@ -18,13 +18,6 @@ A_AT_0 = created(1, (0.0,), "a")
 B_AT_8 = created(2, (8.0,), "b")
 
 
-def test_untaught_it_stands_and_asks() -> None:
-    decision = SmallLevel().at(0.0)
-    assert decision.asking
-    assert not decision.driving
-    assert decision == Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
-
-
 def test_winner_drives_with_distance_and_runner_up() -> None:
     decision = SmallLevel(A_AT_0, B_AT_8).at(3.0)
     assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "a", 1)
@@ -34,13 +27,6 @@ def test_winner_drives_with_distance_and_runner_up() -> None:
     assert decision.match.distance == 3.0
     assert decision.match.runner_up is not None
     assert decision.match.runner_up.rla_id == 2
-
-
-def test_an_action_goes_on_without_a_new_start_while_it_wins() -> None:
-    small = SmallLevel(A_AT_0)
-    speeds = [small.at(place).wheel_speeds.left_m_s for place in (0.0, 1.0, 2.0)]
-    assert speeds == pytest.approx([0.001, 0.002, 0.003])
-    assert small.actions["a"].starts == 1
 
 
 def test_an_action_holds_for_its_minimum_time_and_then_gives_way() -> None:
@@ -178,13 +164,6 @@ def test_skipped_withdrawn_rla_lets_neighbours_answer() -> None:
     assert small.at(-5.0).asking  # farther than the radius of the neighbour
 
 
-def test_withdrawing_stops_at_once_whatever_was_being_held() -> None:
-    small = SmallLevel(created(1, (0.0,), "a"))
-    assert small.at(0.0).driving
-    small.level.apply(withdrawn(1, "a"))
-    assert small.at(0.0).wheel_speeds == STANDSTILL
-
-
 @pytest.mark.parametrize(("radius", "answers"), [(2.0, False), (3.0, True), (None, True)])
 def test_a_held_action_answers_only_inside_the_radius_of_its_rla(radius: float | None, answers: bool) -> None:
     small = SmallLevel(created(1, (0.0,), "a", radius), created(2, (4.0,), "b"))
@@ -214,16 +193,3 @@ def test_chosen_competitor_drives_else_the_oldest() -> None:
     assert (decision.action, decision.rla_id, decision.answers) == ("b", 2, True)
     assert decision.match is not None
     assert decision.match.rla.rla_id == 1
-
-
-def test_held_competitor_answers_inside_its_radius() -> None:
-    worths = {1: 0.5, 2: 0.0}
-    system = RlaSystem(1, RADIUS)
-    system.apply_all((created(1, (0.0,), "a"), created(2, (0.0,), "b")))
-    choice = EpsilonGreedy(worths.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
-    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, ActiveBehaviour(), choice)
-    level.decide(situation(0.0), sensed(), None)
-    worths[1] = -1.0
-    choice.reset()
-    held = level.decide(situation(0.0), sensed(), None)
-    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, True)

@@ -52,13 +52,6 @@ def test_it_is_lost_where_the_mid_level_knows_no_answer(tmp_path: Path) -> None:
     assert action.lost
 
 
-def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> None:
-    keep(tmp_path / "walls.knowledge", load_task("wall_following"), created(1, condition_at(WALLS), "spin_left"))
-    action = repertoire(tmp_path, "kind: task, name: walls, task: wall_following, knowledge: walls.knowledge")["walls"]
-    action.start()
-    assert action.step(sensed(WALLS)) == LEFT
-
-
 def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match=r"\(patrol\): .*\bmid level"):
         repertoire(tmp_path, patrol(tmp_path, mid=None))

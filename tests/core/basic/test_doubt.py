@@ -47,11 +47,6 @@ class Doubter:
         return self.level.decide(Situation(np.array([side, ahead]), history_frozen=False), sensed(), None)
 
 
-def test_situation_of_a_lesson_is_not_doubted() -> None:
-    decision = Doubter(*LESSONS).at(120.0)
-    assert (decision.cause, decision.doubt) == (DecisionCause.RLA, 0.0)
-
-
 def test_distance_counts_from_the_usual_one_to_the_rare_one() -> None:
     doubter = Doubter(*LESSONS)
     assert doubter.at(70.0, side=200.0).doubt == pytest.approx(0.0)
@@ -81,15 +76,6 @@ def test_robot_stands_and_asks_at_the_threshold() -> None:
 def test_action_that_does_not_drive_on_meets_no_obstacle(action: str) -> None:
     turned = replaced(3, action, "forward")
     assert Doubter(*LESSONS, turned).at(230.0).doubt == 0.0
-
-
-def test_answer_ends_the_doubt_whichever_action_it_names() -> None:
-    for action in ("forward", "spin"):
-        doubter = Doubter(*LESSONS)
-        assert doubter.at(230.0).cause is DecisionCause.DOUBT
-        doubter.level.apply(created(5, (100.0, 230.0), action))
-        decision = doubter.at(230.0)
-        assert (decision.cause, decision.action) == (DecisionCause.RLA, action)
 
 
 def test_lesson_that_is_deleted_leaves_the_obstacle_new_again() -> None:

@@ -172,11 +172,6 @@ LESSONS = (
 )
 
 
-def test_lesson_about_this_very_situation_is_followed() -> None:
-    decision = Doubter(*LESSONS).after_a_look(side=110.0)
-    assert (decision.cause, decision.action, decision.doubt) == (DecisionCause.RLA, "forward", 0.0)
-
-
 def test_robot_that_asks_stands_instead() -> None:
     decision = Doubter(*LESSONS, asks=True).after_a_look()
     assert decision.cause is DecisionCause.DOUBT

@@ -56,19 +56,10 @@ def test_distance_is_that_of_the_nearest_object() -> None:
     assert near == pytest.approx((0.2, 0.3, 0.15, 0.5, 0.25, 0.35), abs=0.003)
 
 
-def test_distance_without_object_is_far_without_angle() -> None:
-    assert perception().perceive(readings(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
-
-
 def test_angle_is_the_turn_away_from_the_wall() -> None:
     away = perception().perceive(readings(s1=0.34, s3=0.3, s4=0.25, s2=0.2, s5=0.15, s6=0.29), driving=False)
     assert away.left_angle_rad == pytest.approx(math.atan(0.14 / 0.28), abs=0.02)
     assert away.right_angle_rad == pytest.approx(-away.left_angle_rad, abs=0.03)
-
-
-def test_angle_needs_a_wall_at_one_end_of_the_side() -> None:
-    assert perception().perceive(readings(s2=0.3), driving=False).left_angle_rad > 0.7
-    assert perception().perceive(readings(s3=0.3), driving=False).left_angle_rad == 0.0
 
 
 # How it moves
@@ -255,10 +246,6 @@ def test_spun_lasts_as_configured_after_a_turn_on_the_spot() -> None:
     assert after(1.0, of, readings(-0.3, 0.3)).spun == 1.0
     assert after(0.5, of, readings(0.3, 0.3)).spun == 1.0
     assert after(0.3, of, readings(0.3, 0.3)).spun == 0.0
-
-
-def test_spun_is_not_about_curves() -> None:
-    assert after(2.0, spinning(), readings(0.1, 0.3)).spun == 0.0
 
 
 def test_circling_fades_over_the_way_as_configured() -> None:

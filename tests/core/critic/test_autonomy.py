@@ -1,7 +1,7 @@
 """Signals of the critic in phase 5."""
 
 from kurt2rt.core.critic.agreement import Agreement
-from kurt2rt.core.critic.autonomy import Autonomy, Signal
+from kurt2rt.core.critic.autonomy import Autonomy
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.settings import ActivationSettings, AgreementSettings, SignalEverySettings
 from kurt2rt.core.rla.events import Appraised, RlaRewarded
@@ -24,12 +24,6 @@ def agreement(*, trusted: bool = True) -> Agreement:
         heard.on_event(Appraised("good", 1, 0, origin()))
     assert heard.trusted is trusted
     return heard
-
-
-def test_autonomy_trusted_opinion_is_a_signal() -> None:
-    speaking = Autonomy(RATES, agreement(), 0.01)
-    assert speaking.signal(40, BAD, True) == Signal(-1, "bad", 40, 0.7)
-    assert speaking.signal(41, GOOD, True) == Signal(1, "good", 41, 0.5)
 
 
 def test_autonomy_signals_are_rate_limited() -> None:

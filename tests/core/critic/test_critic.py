@@ -3,8 +3,8 @@
 import pytest
 
 from kurt2rt.core.critic.critic import Critic
-from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated
-from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
@@ -15,14 +15,6 @@ CLOSE = FREE._replace(front_m=0.12)
 def system() -> RlaSystem:
     space = Space(len(SETTINGS.names), SETTINGS.learning.radius, SETTINGS.weight_vector)
     return RlaSystem(2, 1.0, others={CRITIC: space})
-
-
-def test_critic_before_first_lesson_has_no_opinion() -> None:
-    knowledge = system()
-    critic = Critic(knowledge, SETTINGS)
-    assert critic.opinion(critic.to_vector(FREE)) is None
-    knowledge.apply(RlaCreated(Rla(1, (0.0, 0.0), "forward", None, origin(), level=BASIC)))
-    assert critic.opinion(critic.to_vector(FREE)) is None
 
 
 def test_critic_opinion_is_that_of_the_nearest_rla() -> None:

@@ -127,20 +127,6 @@ def test_rollback_is_followed_by_a_measured_window() -> None:
     assert kept.best == 0.6
 
 
-def test_rollback_measured_window_reports_measuring() -> None:
-    kept = best()
-    assert kept.is_measuring
-    window(kept, good=8)
-    assert not kept.is_measuring
-    kept.on_event(created(1, "first"))
-    window(kept, good=5)  # rolled back
-    assert kept.is_measuring
-    window(kept, good=5)
-    assert not kept.is_measuring
-    kept.restart()
-    assert kept.is_measuring
-
-
 def test_rollback_won_window_proves_earlier_lessons_only() -> None:
     kept = best()
     window(kept, good=5)
@@ -218,14 +204,6 @@ def test_rollback_restore_continues_from_best_window() -> None:
     again.restore(events, kept.best, kept.includes)
     assert again.is_measuring
     assert [each.lesson for each in window(again, good=2)] == ["late"]
-
-
-def test_rollback_restore_without_best_proves_all() -> None:
-    again = best()
-    again.restore([created(1, "first")], None, 0)
-    window(again, good=8)
-    again.restart()
-    assert window(again, good=0) == ()
 
 
 Act = tuple[str, int]

@@ -70,7 +70,7 @@ def test_sensors_and_sectors_together_are_refused() -> None:
         CriticSettings.model_validate_json(json.dumps(content))
 
 
-@pytest.mark.parametrize("robot", ["school", "turtlebot"])
+@pytest.mark.parametrize("robot", ["turtlebot"])
 def test_shipped_critic_of_a_robot_sees_each_side(robot: str) -> None:
     """An object that one side alone sees is nearer there than on the opposite side."""
     settings = load_robot(robot)

@@ -44,13 +44,3 @@ def test_a_lost_action_that_finds_its_way_goes_on_where_it_was() -> None:
     small.actions["a"].lost = False
     assert small.at(0.0).wheel_speeds == WheelSpeeds(0.003, 0.003)
     assert small.actions["a"].starts == 1
-
-
-def test_the_answer_to_a_lost_action_acts_at_once() -> None:
-    small = SmallLevel(A_AT_0)
-    small.at(0.0)
-    small.actions["a"].lost = True
-    assert small.at(1.0).asking
-    small.level.apply(created(2, (1.0,), "b"))
-    decision = small.at(1.0)
-    assert (decision.action, decision.rla_id) == ("b", 2)

@@ -7,8 +7,7 @@ import pytest
 
 from hal.open_question import OPEN_TICKS, SURE_SHARE
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason
-from kurt2rt.core.outcome import ResultCode
+from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.commands import Resume, Stop
 from kurt2rt.core.teaching.system_events import RobotRepositioned
@@ -111,12 +110,6 @@ def test_question_is_over_at_once(border: Border, end: Callable[[Border], object
     end(border)
     border.run(200)
     assert len(border.asked) == 2
-
-
-def test_answered_robot_drives_and_shows_it(border: Border) -> None:
-    record = border.run(BORDER + 20, 1, teach("back", "second"))
-    assert record.results[0].outcome.code is ResultCode.RLA_TAUGHT
-    assert record.standing == DRIVES
 
 
 def test_question_at_a_bumper_replaces_the_one_before(border: Border) -> None:

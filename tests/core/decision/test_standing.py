@@ -123,15 +123,6 @@ def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
     } == set(LATCHED)
 
 
-def test_a_stop_of_the_program_is_told_in_its_own_words() -> None:
-    desk = LatchingDesk()
-    desk.latch(GuardReason.SERVICE_ENDS)
-    desk.run()
-    stands = desk.picture.standing
-    assert (stands.reason, stands.says) == (StandReason.HALTED, GuardReason.SERVICE_ENDS)
-    assert GuardReason.SERVICE_ENDS in page_of(desk.picture)
-
-
 def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     desk = LatchingDesk()
     desk.runtime.handler.authority.attended = True

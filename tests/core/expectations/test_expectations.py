@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.expectation import pack
-from kurt2rt.core.rla.rla import MID
 from tests.core.expectations.helpers import Small
-from tests.core.rla.helpers import deleted, replaced, rewarded, undone
+from tests.core.rla.helpers import deleted, replaced, undone
 
 PLACES = st.tuples(st.floats(-1000, 1000), st.floats(-1000, 1000))
 
@@ -24,13 +23,6 @@ def test_learn_mean_and_spread_of_all_ends(places: list[tuple[float, float]]) ->
     assert expected.count == len(places)
     assert expected.mean == pytest.approx(np.mean(places, axis=0), abs=1e-9)
     assert expected.spread == pytest.approx(np.std(places, axis=0, ddof=1), abs=1e-4)
-
-
-def test_learn_mean_duration() -> None:
-    small = Small()
-    for ticks in (10, 20, 60):
-        small.ends(1, 2, 0.0, 0.0, ticks=ticks)
-    assert small.expected(1).ticks == pytest.approx(30.0)
 
 
 def test_surprise_only_for_distant_ends() -> None:
@@ -82,17 +74,6 @@ def test_learn_symbols_most_frequent_wins() -> None:
     assert small.expected(1).mean.tolist() == [1.0, 2.0, 2.0]
 
 
-def test_surprise_symbols_different_ones() -> None:
-    small = Small("hamming")
-    for _ in range(8):
-        small.ends(1, 2, 1.0, 2.0, 2.0)
-    as_ever, other = small.ends(1, 2, 1.0, 2.0, 2.0), small.ends(1, 2, 3.0, 2.0, 2.0)
-    assert as_ever is not None
-    assert other is not None
-    assert (as_ever.surprising, as_ever.distance) == (False, 0.0)
-    assert (other.surprising, other.distance, other.level) == (True, 1.0, MID)
-
-
 def test_on_event_new_action_drops_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
@@ -117,14 +98,6 @@ def test_on_event_restored_rla_has_no_expectation() -> None:
     assert small.expectations.get(1) is None
     small.ends(1, 2, 6.0, 5.0)
     assert small.expected(1).mean.tolist() == [6.0, 5.0]
-
-
-def test_on_event_reward_keeps_expectation() -> None:
-    small = Small()
-    small.ends(1, 2, 5.0, 5.0)
-    assert small.happens(rewarded(1)) is None
-    assert small.happens(undone("reward-1")) is None
-    assert small.expectations.get(1) is not None
 
 
 @pytest.mark.parametrize("metric", ["euclidean", "hamming"])

@@ -85,15 +85,6 @@ def test_mid_rla_ends_at_a_junction() -> None:
     assert (expected.mean.tolist(), expected.ticks) == ([2.0, 1.0, 0.0], 800.0)
 
 
-def test_mid_rla_may_follow_itself() -> None:
-    journey = Journey()
-    journey.comes_to(1.0, 0.0, 0.0)
-    journey.sees(1, ticks=10)
-    journey.comes_to(1.0, 1.0, 0.0)
-    journey.sees(1)
-    assert journey.small.expected(1).mean.tolist() == [1.0, 1.0, 0.0]
-
-
 def test_mid_waiting_does_not_count() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)

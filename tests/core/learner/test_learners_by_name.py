@@ -15,11 +15,6 @@ def test_find_learner_by_name_and_by_module() -> None:
     assert find_learner("kurt2rt.core.learner.rla_learner:RlaLearner") is RlaLearner
 
 
-def test_find_learner_in_the_current_folder(plugin_folder: Path) -> None:
-    (plugin_folder / "mine_here.py").write_text(MINE)
-    assert getattr(find_learner("mine_here:Mine"), "__name__", "") == "Mine"
-
-
 def test_find_learner_by_entry_point(plugin_folder: Path) -> None:
     install(plugin_folder, "theirs", {"learners": {"theirs": "kurt2rt.core.learner.rla_learner:RlaLearner"}})
     assert find_learner("theirs") is RlaLearner

@@ -65,12 +65,3 @@ def test_history_reports_a_junction_in_its_tick_only() -> None:
             assert changed == (situation.passed is not None)
             seen.append(situation.passed)
     assert [each.name for each in seen if each is not None] == ["straight"]
-
-
-def test_history_restart_is_empty() -> None:
-    led = Led(load_mid_level("turns")).go(0.5).over(90.0, 0.0)
-    led.go(0.8, OPEN_M)
-    led.situation.restart()
-    assert led.situation.vector.tolist() == [0.0] * 12
-    assert led.go(0.5).words == []
-    assert led.over(-90.0).words == ["right"]

@@ -90,13 +90,6 @@ def test_mid_level_override_answers_a_question() -> None:
     assert small.commanded(1.0).asks
 
 
-def test_mid_level_corrects_a_foreign_change() -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    small.commanded()
-    small.wanted.select("turn_right")
-    assert small.commanded().behaviour == small.wanted.behaviour == "turn_left"
-
-
 def test_mid_level_restart_forgets_the_situation() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
     small.commanded(1.0)

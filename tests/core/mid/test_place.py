@@ -8,7 +8,6 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from hal.kurt2_settings import load_kurt2
-from hal.robot import SensorReadings
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -127,13 +126,6 @@ def test_place_restart_is_lost_until_localised(drive: Drive) -> None:
     drive.place.localise(AT_START)
     drive.lead("turn_right")
     assert drive.off_m < 0.15
-
-
-def test_place_power_on_is_the_origin() -> None:
-    fresh = place()
-    assert tuple(fresh.vector) == (0.0, 0.0, 1.0, 0.0, 0.5, 0.5)
-    assert not fresh.lost
-    assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0))
 
 
 def test_place_opposite_headings_are_distinct() -> None:

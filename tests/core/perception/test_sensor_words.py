@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.sensor_words import NO_WORDS, infrared_law, words_for
+from kurt2rt.core.perception.sensor_words import infrared_law, words_for
 
 INFRARED = load_robot().infrared
 WORDS = words_for(INFRARED)
@@ -20,11 +20,6 @@ def test_reading_out_of_range_names_the_limit(counts: int, limit: str) -> None:
     reading = WORDS.reading("maximum front", counts)
     assert limit in reading
     assert reading != limit
-
-
-def test_reading_other_feature_is_a_number() -> None:
-    assert [WORDS.reading("wheel speed left", value) for value in (30.0, 0.25)] == ["30", "0.25"]
-    assert NO_WORDS.reading("maximum front", 300.0) == "300"
 
 
 def test_infrared_law_inverts_the_settings() -> None:

@@ -11,7 +11,7 @@ from kurt2rt.core.planning.target import Target, Vector, make_target
 from kurt2rt.core.planning.topological_map import build_map
 from kurt2rt.core.rla.rla import MID, Rla
 from tests.core.planning.town import FEATURES, SPACE, Town
-from tests.core.rla.helpers import deleted, named
+from tests.core.rla.helpers import named
 
 
 def grid() -> Town:
@@ -131,16 +131,6 @@ def test_pursuit_replan_uses_new_edge() -> None:
     assert not seeks.stands
     assert course(seeks) is GoalStatus.UNDER_WAY
     assert chosen(town, seeks, "e") == "turn_left"
-
-
-def test_pursuit_deleted_edge_is_planned_around() -> None:
-    town = grid()
-    seeks = seeking(town)
-    arrive(seeks, town.at("a"))
-    town.system.apply(deleted(2))  # from b straight on
-    arrive(seeks, town.at("b"))
-    assert chosen(town, seeks, "b") == "turn_left"
-    assert seeks.surprises == 0
 
 
 def test_pursuit_false_goal_place_is_rejected() -> None:

@@ -69,12 +69,6 @@ def test_plan_unreachable_goal_is_none() -> None:
     assert plan(town, "home", "door") is None
 
 
-def test_plan_at_the_goal_is_empty() -> None:
-    found = plan(block(), "ne", "ne")
-    assert found is not None
-    assert found.next is None
-
-
 def test_plan_goal_may_be_untaught() -> None:
     town = block()
     town.places["yard"] = (4.0, 0.0)

@@ -25,22 +25,6 @@ def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: 
     recent.add(tick, None if blind else situation, decision, behaviour)
 
 
-@pytest.mark.parametrize("tick", [-1, 0, 2**53])
-def test_history_is_empty_before_first_tick(tick: int) -> None:
-    assert not remembered().contains(tick)
-    assert remembered().newest == -1
-
-
-def test_history_returns_situation_and_rla_by_tick() -> None:
-    recent = remembered(3, 4, 5)
-    for tick in (3, 4, 5):
-        assert recent.contains(tick)
-        assert recent.has_situation(tick)
-        assert recent.situation(tick).tolist() == [tick, -tick]
-        assert recent.driving_rla(tick) == 100 + tick
-    assert recent.newest == 5
-
-
 def test_history_full_drops_the_oldest() -> None:
     recent = remembered(*range(1, 11))
     assert [recent.contains(tick) for tick in (0, 1, 10, 11)] == [False, True, True, False]

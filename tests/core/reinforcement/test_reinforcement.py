@@ -91,20 +91,6 @@ def test_undo_subtracts_exactly_the_credits() -> None:
     assert (robot.value(1), robot.value(2)) == pytest.approx((0.5, 0.5))
 
 
-def test_undo_subtracts_credits_from_their_action() -> None:
-    robot = track()
-    robot.go(LEFT, 400)
-    robot.go(RIGHT, 20)
-    blame = robot.signal(-1)
-    assert shares(blame).keys() == {1, 2}
-    robot.say(correct("c", "c-1"), LEFT)  # what the first one did was wrong: another action
-    assert robot.value(1) == 0.5
-    assert robot.say(Undo("u-1", "Ann", blame.origin.command_id)).accepted
-    assert (robot.value(1), robot.value(2)) == pytest.approx((0.5, 0.5))
-    assert robot.say(Undo("u-2", "Ann", "c-1")).accepted
-    assert robot.value(1) == pytest.approx(0.5)
-
-
 def test_reward_after_correction_skips_the_old_action() -> None:
     robot = track()
     robot.go(LEFT, 100)
@@ -130,15 +116,6 @@ def test_punished_rla_is_withdrawn_and_asks_next_tick() -> None:
     assert not robot.go(RIGHT).asking
 
 
-def test_low_value_without_punishment_is_not_repaired() -> None:
-    robot = track(saved=saved_values({1: -0.9}, 3))
-    robot.go(LEFT, 400)
-    assert robot.learnt == []
-    robot.signal(1)
-    robot.go(LEFT)
-    assert robot.learnt == []
-
-
 def test_answer_to_withdrawn_rla_acts_next_tick() -> None:
     robot = track()
     sink(robot, LEFT)
@@ -151,17 +128,6 @@ def test_answer_to_withdrawn_rla_acts_next_tick() -> None:
     assert robot.value(1) == 0.5
     decision = robot.go(LEFT)
     assert (decision.driving, decision.action) == (True, "c")
-
-
-def test_answer_farther_off_inserts_and_still_asks() -> None:
-    robot = track()
-    sink(robot, LEFT)
-    robot.go(LEFT, 2)
-    assert robot.say(teach("c"), LEFT + SHARE * RADIUS + 0.5).outcome == Outcome.of(
-        ResultCode.RLA_TAUGHT, rla=3, action="c"
-    )
-    assert robot.go(LEFT + SHARE * RADIUS).action == "c"
-    assert robot.go(LEFT).asking
 
 
 @pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CRITIC])
@@ -214,14 +180,6 @@ def test_phase_5_enough_tries_delete_all_competitors() -> None:
     robot.go(LEFT)
     assert deleted_ids(robot.learnt) == [1, 4]
     assert robot.go(LEFT).rla_id == 3
-
-
-def test_correction_of_competitors_means_the_driver() -> None:
-    robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), saved=saved_values({1: -0.5}, 2))
-    assert robot.go(LEFT).rla_id == 2
-    assert robot.say(correct("c"), LEFT).outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=2, action="c", was="b")
-    robot.go(LEFT)
-    assert robot.go(LEFT).action == "c"
 
 
 def test_competitors_with_teacher_are_deleted_last_asks() -> None:

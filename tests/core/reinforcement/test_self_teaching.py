@@ -2,13 +2,11 @@
 
 import pytest
 
-from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC, MID, Origin
-from kurt2rt.core.teaching.commands import Correct, Undo
+from kurt2rt.core.teaching.commands import Undo
 from tests.core.helpers import sensed, situation
 from tests.core.reinforcement.helpers import (
     CALM,
@@ -125,12 +123,6 @@ def test_critic_changes_are_equal_after_reload() -> None:
     assert len(changes(again)) > len(changes(robot))
 
 
-def test_critic_deletes_nothing_without_a_neighbour() -> None:
-    robot = alone()
-    robot.go(HERE, 1500, CRASHED)
-    assert not robot.go(HERE).asking
-
-
 class Judged:
     """A robot that does well for a while, and then badly."""
 
@@ -141,19 +133,6 @@ class Judged:
 
     def bad_window(self) -> None:
         self.robot.go(HERE, 100, CRASHED)
-
-
-def test_critic_lower_score_rolls_back() -> None:
-    story = Judged()
-    robot = story.robot
-    robot.go(HERE, 99, CRASHED)
-    assert robot.hash != story.known
-    robot.go(HERE, 1, CRASHED)
-    undone = [event for event in robot.learnt if isinstance(event, LessonUndone)]
-    assert undone
-    assert {event.origin.teacher for event in undone} == {CRITIC}
-    assert robot.hash == story.known
-    assert robot.go(THERE).action == "b"
 
 
 def test_rollback_restores_values_of_best_window() -> None:
@@ -186,32 +165,6 @@ def test_rollback_keeps_other_values_and_rewards() -> None:
     assert deleted_ids(changes(robot)) == [1]  # it had sunk
     assert worths[1] != 0.5
     assert [robot.value(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
-
-
-def test_rollback_keeps_lessons_of_teachers() -> None:
-    story = Judged()
-    robot = story.robot
-    while not changes(robot):
-        robot.go(HERE, 1, CRASHED)
-    (event,) = changes(robot)
-    assert isinstance(event, RlaCreated)
-    tried, (place,) = event.rla.rla_id, event.rla.condition
-    assert robot.go(place, 1, CRASHED).rla_id == tried
-    assert robot.say(Correct("c-1", "Ann", "c"), place).outcome == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=tried, action="c", was="a"
-    )
-    robot.go(HERE, 100, CRASHED)
-    assert robot.actions[tried] == "c"
-
-
-@pytest.mark.parametrize("seen", [CALM, CRASHED])
-def test_first_window_only_measures(seen: AppraisalFeatures) -> None:
-    robot = alone()
-    known = robot.hash
-    robot.go(HERE, 100, seen)
-    assert (robot.hash, robot.value(1), changes(robot)) == (known, 0.5, [])
-    robot.go(HERE, 1, seen)
-    assert robot.value(1) != 0.5
 
 
 def test_window_after_rollback_only_measures() -> None:

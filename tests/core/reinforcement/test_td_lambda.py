@@ -44,14 +44,6 @@ def test_td_lambda_unrewarded_value_decays() -> None:
     assert 0.0 <= learner.value(1) < 0.01
 
 
-def test_td_lambda_worse_successor_lowers_value() -> None:
-    learner = rule()
-    learner.restore(Statistics(values={2: -1.0}))
-    drive(learner, 1, 1, 10)
-    drive(learner, 2, 11, 20)
-    assert learner.value(1) == pytest.approx(V0 + ALPHA * (GAMMA * -1.0 - V0) * (1 - D**10))
-
-
 def test_td_lambda_standstill_makes_no_step() -> None:
     learner = rule()
     drive(learner, 1, 1, 15)
@@ -78,15 +70,6 @@ def test_td_lambda_reset_and_restore_previous() -> None:
     assert learner.value(1) == pytest.approx(V0 + ALPHA)
     learner.restore_previous(1)
     assert (learner.value(1), learner.depth(1)) == pytest.approx((V0, 0))
-
-
-def test_td_lambda_new_action_has_no_old_trace() -> None:
-    learner = rule()
-    learner.restore(Statistics(values={2: -1.0}))
-    drive(learner, 1, 1, 10)
-    learner.reset(1)
-    drive(learner, 2, 11, 20)
-    assert learner.value(1) == V0
 
 
 def test_td_lambda_trace_size_is_bounded() -> None:

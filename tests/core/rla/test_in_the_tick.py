@@ -18,7 +18,7 @@ from kurt2rt.core.teaching.commands import (
 )
 from tests.core.rla.helpers import created
 from tests.core.test_tick_learning import Drive
-from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
+from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, the_way
 
 NEAR, FAR = 400, 50
 
@@ -53,12 +53,6 @@ def test_expectation_is_learned_in_phases_1_and_5(drive: Drive) -> None:
     assert expected.count == 3
     assert 30 <= expected.ticks < 31
     assert expected.mean[:18].tolist() == [float(FAR)] * 18  # the readings
-
-
-def test_expectation_stop_is_no_follow_up(drive: Drive) -> None:
-    drive.run(counts=NEAR, ticks=30)
-    drive.run(Stop("s", "Ann"), counts=FAR, ticks=5)
-    assert drive.runtime.expectations.get(1) is None
 
 
 def test_expectations_survive_a_restart(drive: Drive) -> None:
@@ -120,14 +114,6 @@ def test_mid_expectation_is_the_next_history(town: Town) -> None:
     assert 30 < expected.ticks < 60
 
 
-def test_mid_expectation_ignores_repositioning(town: Town) -> None:
-    town.junction(1)
-    assert town.runtime.snapshot().expectations[4].count == 1
-    town.runtime.reposition()
-    town.way_to_the_first_junction()
-    assert town.runtime.snapshot().expectations[4].count == 1
-
-
 def test_mid_expectation_ignores_localisation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.core.test_tick_with_mid_level.ROUTE", STREETS.model_copy(update={"mid": "places"}))
     town = Town()
@@ -144,11 +130,3 @@ def test_mid_expectation_ignores_localisation(monkeypatch: pytest.MonkeyPatch) -
     saved = town.runtime.snapshot()
     assert 5 not in saved.expectations
     assert saved.uses[4] == 1
-
-
-def test_mid_expectation_ignores_corrected_rla(town: Town) -> None:
-    town.junction()
-    town.run(another_way("turn_left", "c-1"))  # RLA 5
-    town.junction(1)
-    counts = {rla_id: each.count for rla_id, each in town.runtime.snapshot().expectations.items() if rla_id > 3}
-    assert counts == {4: 1, 5: 1}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.rla import ASK, CRITIC, rla_title
+from kurt2rt.core.rla.rla import ASK, CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone, withdrawn
@@ -20,18 +20,6 @@ def system_of(*events: TeachingEvent) -> RlaSystem:
     system = RlaSystem(2, 5.0, others={CRITIC: CRITICS})
     system.apply_all(events)
     return system
-
-
-def test_levels_match_in_their_own_spaces() -> None:
-    system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0, 9.0), "bad", level=CRITIC))
-    driving = system.match(np.array([3.0, 4.0]))
-    appraising = system.match(np.array([0.3, 0.4, -9.0]), level=CRITIC)
-    assert driving is not None
-    assert appraising is not None
-    assert (driving.rla.rla_id, driving.distance, driving.radius, driving.known) == (1, 5.0, 5.0, True)
-    assert (appraising.rla.rla_id, appraising.distance, appraising.radius, appraising.known) == (2, 0.5, 0.5, True)
-    assert driving.runner_up is appraising.runner_up is None
-    assert system.match(np.zeros(3), "turn_left", CRITIC) is None
 
 
 @pytest.mark.parametrize("known", [1, 3])
@@ -114,13 +102,6 @@ def test_ask_is_no_teachable_action(event: TeachingEvent, fault: EventFault) -> 
     before = system.knowledge_hash(), system.lessons, system.next_id
     assert refused_by(system, event).fault is fault
     assert (system.knowledge_hash(), system.lessons, system.next_id) == before
-
-
-def test_rla_title_by_behaviour_and_level() -> None:
-    assert rla_title(17, "") == "RLA 17"
-    assert rla_title(17, "turn_left") == "RLA 17 of turn_left"
-    assert rla_title(40, "", CRITIC) == created(40, (), level=CRITIC).rla.title == "appraisal RLA 40"
-    assert rla_title(3, "", "reflex") == "reflex RLA 3"
 
 
 @examples(60)

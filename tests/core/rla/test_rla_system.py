@@ -12,7 +12,7 @@ from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID, Rla
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, rewarded, session, undone
@@ -82,16 +82,6 @@ def test_match_known_up_to_the_exact_radius(seed: int) -> None:
         match = system.match(situation)
         assert match is not None
         assert (match.distance, match.known) == (distance, known)
-
-
-def test_action_replaced_keeps_all_but_action_and_origin() -> None:
-    system = system_of(created(1, (1.0, 2.0), "forward", radius=3.0), created(2, (1.0, 2.0), "back"))
-    correction = replaced(1, "spin_right", "forward")
-    system.apply(correction)
-    assert system.get(1) == Rla(1, (1.0, 2.0), "spin_right", 3.0, correction.origin)
-    match = system.match(np.array([1.0, 2.0]))
-    assert match is not None
-    assert match.rla.rla_id == 1  # still the older one
 
 
 @pytest.mark.parametrize(
@@ -173,17 +163,6 @@ def test_knowledge_hash_ignores_teachers_and_history() -> None:
     detour = system_of(created(1, (5.0, 5.0)), created(2, (1.0, 2.0)), deleted(1))
     detour.apply(replace(replaced(2, "back", "forward"), origin=by_bob))
     assert detour.knowledge_hash() == direct.knowledge_hash()
-
-
-def test_match_weights_scale_distances_only() -> None:
-    system = RlaSystem(2, 10.0, np.array([1.0, 0.5]))
-    system.apply(created(1, (0.0, 0.0)))
-    system.apply(created(2, (3.0, 40.0)))
-    match = system.match(np.array([3.0, 8.0]))
-    assert match is not None
-    assert match.rla.rla_id == 1
-    assert match.distance == 5.0
-    assert match.rla.condition == (0.0, 0.0)
 
 
 def test_knowledge_hash_unnamed_behaviour_is_unchanged() -> None:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import Lesson, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import ASK
@@ -75,14 +75,6 @@ def test_lessons_list_all_with_their_state() -> None:
     assert (system.standing_lessons, system.last_standing_lesson) == (1, "lesson-2")
     system.apply(undone("lesson-2"))
     assert (system.standing_lessons, system.last_standing_lesson) == (0, None)
-
-
-def test_sessions_change_no_rla_and_add_up() -> None:
-    system = system_of(FIRST)
-    before = system.rlas, system.lessons
-    system.apply_all([*session(6000), *session(30)])
-    assert (system.rlas, system.lessons) == before
-    assert system.teaching_ticks == 6030
 
 
 @pytest.mark.parametrize("event", [replaced(1, "back", "forward"), deleted(1), rewarded(1)])
@@ -156,9 +148,3 @@ def test_undo_random_sequences_equal_standing_lessons(steps: list[tuple[str, int
     for rla in system.rlas:
         assert system.competitors(rla) == direct.competitors(rla)
         assert system.competitors(rla) == tuple(each for each in system.rlas if each.condition == rla.condition)
-
-
-def test_undo_then_teach_needs_a_new_command_id() -> None:
-    system = system_of(FIRST, undone("lesson-1"), created(2, (0.0, 0.0)))
-    assert [rla.rla_id for rla in system.rlas] == [2]
-    assert refused_by(system, created(3, (1.0, 0.0), command_id="lesson-1")).fault is EventFault.LESSON_EXISTS

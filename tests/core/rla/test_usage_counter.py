@@ -9,13 +9,6 @@ def drive(statistics: StatisticsCounter, ticks: list[int | None]) -> None:
         statistics.count(rla_id)
 
 
-def test_usage_counter_counts_one_use_per_drive() -> None:
-    statistics = StatisticsCounter()
-    drive(statistics, [1, 1, 1, 2, 2, 1])
-    assert statistics.uses == {1: 2, 2: 1}
-    assert statistics.transitions == {(1, 2): 1, (2, 1): 1}
-
-
 def test_usage_counter_standstill_ends_the_chain() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, None, None, 2, None, 2])

@@ -46,19 +46,6 @@ def test_first_appraisal_creates_a_critic_rla_on_its_tick() -> None:
     assert robot.critic.appraise(robot.tick + 1, CRASHED) is not None
 
 
-def test_without_a_tick_the_newest_one_is_meant() -> None:
-    robot = track()
-    robot.go(0.0, 5, CRASHED)
-    appraise(robot, "bad")
-    assert robot.system.rlas_at(CRITIC)[0].condition == tuple(CRASHED)[: len(NAMES)]
-
-
-def test_the_robot_need_not_drive_to_be_appraised() -> None:
-    robot = track()
-    robot.go(0.0, 1, CRASHED, DecisionCause.STOPPED)
-    assert appraise(robot, "bad").accepted
-
-
 def test_other_appraisal_replaces_near_and_inserts_far() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, NEAR_CALM)
@@ -113,14 +100,6 @@ def test_a_reward_tells_what_the_critic_had_said_of_that_tick() -> None:
     appraise(robot, "good", "x-1", meant)  # what it learns afterwards does not change what it had said
     assert [getattr(event, "said", None) for event in robot.events[-2:-1]] == [-1]
     assert robot.agreement.share_for(1) == 0.0
-
-
-def test_unknown_appraisal_is_refused_with_the_known_ones() -> None:
-    robot = track()
-    robot.go(0.0)
-    result = appraise(robot, "lovely")
-    known = ("bad", "neutral", "good")
-    assert result.outcome == Outcome.of(RefusalCode.NO_APPRAISAL, appraisal="lovely", known=known)
 
 
 @pytest.mark.parametrize("meant", [0, 1, 500])

@@ -42,19 +42,6 @@ def hands() -> Hands:
     return Hands()
 
 
-def test_one_message_drives_for_thirty_ticks_from_its_arrival(hands: Hands) -> None:
-    hands.drive(NOW)
-    assert hands.driven_ticks() == list(range(NOW, NOW + LEASE))
-
-
-def test_the_hand_does_what_the_newest_message_says(hands: Hands) -> None:
-    hands.drive(NOW)
-    assert hands.authority.is_manual(NOW)
-    assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(0.2, 0.1))
-    hands.authority.drive(Drive("Ann", NOW + 1, 1, -0.1, 0.3), NOW + 1)
-    assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(-0.1, 0.3))
-
-
 @pytest.mark.parametrize(
     ("age", "driven"),
     [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0), (40, 0)],
@@ -117,13 +104,6 @@ def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
     assert Hands(attended=False).authority.is_present(NOW)
 
 
-def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -> None:
-    hands.authority.renew_presence("Ann", NOW, NOW)
-    assert hands.authority.take_over("Ben", NOW) is None
-    assert hands.authority.teacher == "Ben"
-    assert not hands.authority.is_present(NOW)
-
-
 def test_take_over_by_the_present_teacher_changes_nothing(hands: Hands) -> None:
     hands.drive(NOW)
     assert hands.authority.take_over("Ann", NOW) is None
@@ -170,15 +150,6 @@ def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> Non
     assert hands.driven_ticks(NOW, NOW + 60) == list(range(NOW, NOW + LEASE))
     hands.authority.renew_presence("Ann", NOW + 60, NOW + 60)
     assert not hands.authority.is_manual(NOW + 60)
-
-
-def test_drive_and_run_replace_each_other() -> None:
-    hands = Hands(attended=False)
-    hands.authority.run("a", NOW, 1000)
-    hands.drive(NOW + 1)
-    assert hands.authority.step(sensed())[0] == "by hand"
-    hands.authority.run("a", NOW + 2, 1000)
-    assert hands.authority.step(sensed())[0] == "a"
 
 
 def test_a_device_with_new_keys_counts_its_presses_anew() -> None:

@@ -12,7 +12,6 @@ from kurt2rt.core.rla.events import (
     ActionReplaced,
     LessonUndone,
     RlaCreated,
-    RlaDeleted,
     RlaRewarded,
     SessionBegun,
     SessionEnded,
@@ -21,7 +20,6 @@ from kurt2rt.core.rla.events import (
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import Origin, Rla
-from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import (
@@ -140,29 +138,6 @@ def test_the_border_is_a_share_of_the_nearest_rlas_own_radius() -> None:
     assert lesson.actions == {1: "a", 2: "b"}
 
 
-def test_rla_is_replaced_or_deleted_by_its_id() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
-    assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).outcome == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=2, action="c", was="b"
-    )
-    assert lesson.say(delete(1, "d-1"), place=999.0).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
-    assert lesson.events[2:] == [
-        ActionReplaced(2, "c", "b", Origin("r-1", "Ann", Phase.SUPERVISED, 101)),
-        RlaDeleted(1, Origin("d-1", "Ann", Phase.SUPERVISED, 102)),
-    ]
-    assert lesson.actions == {2: "c"}
-
-
-def test_phase_is_in_the_origin_of_later_lessons() -> None:
-    lesson = Lesson()
-    lesson.say(teach("a", "t-1"), place=0.0)
-    assert lesson.say(set_phase(Phase.CORRECTIONS)).outcome == Outcome.of(
-        ResultCode.PHASE_SET, phase=2, name="corrections"
-    )
-    lesson.say(teach("b", "t-2"), place=50.0)
-    assert [event.origin.phase for event in lesson.events] == [Phase.SUPERVISED, Phase.CORRECTIONS]
-
-
 @pytest.mark.parametrize(
     "command",
     [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)],
@@ -223,26 +198,6 @@ def test_a_refused_command_may_come_again() -> None:
     assert lesson.say(delete(1, "x")).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
 
 
-def test_the_events_of_a_lesson_fold_to_the_same_knowledge() -> None:
-    lesson = Lesson()
-    commands: list[tuple[Command, float]] = [
-        (teach("a", "1"), 0.0),
-        (teach("b", "2"), 20.0),
-        (correct("c", "3"), 1.0),
-        (correct("b", "4"), 7.0),
-        (delete(2, "5"), 0.0),
-        (teach("a", "6"), 20.0),
-        (replace_action(3, "c", "7"), 0.0),
-    ]
-    for command, place in commands:
-        assert lesson.say(command, place).accepted
-    again = RlaSystem(1, RADIUS)
-    again.apply_all(lesson.events)
-    assert again.rlas == lesson.small.level.system.rlas
-    assert again.knowledge_hash() == lesson.small.level.system.knowledge_hash()
-    assert again.next_id == 5
-
-
 def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     wrong = lesson.go_on(0.0)
@@ -251,16 +206,6 @@ def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="c", was="a")
     assert lesson.actions == {1: "c", 2: "b"}
     assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
-
-
-def test_answer_applies_to_the_situation_of_the_question() -> None:
-    lesson = Lesson()
-    asked = lesson.go_on(2.5)
-    lesson.go_on(80.0)
-    lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
-    assert lesson.small.at(2.5).action == "a"
-    assert lesson.small.at(80.0).asking
-    assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
 
 
 def test_stored_answer_does_not_change_later() -> None:
@@ -290,15 +235,6 @@ def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> 
     assert result.outcome == Outcome.of(RefusalCode.TICK_FORGOTTEN, tick=meant)
     assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
     assert not lesson.school.was_handled("x")
-
-
-def test_lesson_about_the_oldest_remembered_tick_is_taken() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    first = lesson.go_on(0.0)
-    lesson.go_on(50.0, 999)
-    assert lesson.say(Correct("x", "Ann", "b", first), place=50.0).outcome == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=1, action="b", was="a"
-    )
 
 
 def test_lesson_about_a_blind_tick_is_refused() -> None:
@@ -414,15 +350,6 @@ def test_to_be_there_is_not_to_speak() -> None:
     lesson = Lesson()
     assert lesson.school.handle_stream(Watch("Ben", 100), 100) is None
     assert lesson.school.authority.teacher is None
-
-
-def test_handing_over_to_a_name_and_to_nobody() -> None:
-    lesson = Lesson()
-    assert lesson.say(HandOver("1", "Ann", "Ben")).outcome == Outcome.of(ResultCode.HANDED_OVER, teacher="Ben")
-    assert not lesson.say(HandOver("2", "Ann")).accepted
-    assert lesson.say(HandOver("3", "Ben")).outcome == Outcome(ResultCode.RELEASED)
-    assert lesson.say(Teach("4", "Cleo", "a")).accepted
-    assert lesson.school.authority.teacher == "Cleo"
 
 
 def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
@@ -569,14 +496,6 @@ def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
     assert lesson.small.at(0.0).action == "a"
 
 
-def test_pursue_is_no_lesson_and_counts_once() -> None:
-    lesson = Lesson(behaviours=TURNS)
-    lesson.say(pursue("turn_left", "p-1"))
-    lesson.say(pursue("turn_right", "p-2"))
-    assert lesson.say(pursue("turn_left", "p-1")).outcome == Outcome(ResultCode.REPEATED)
-    assert (lesson.small.wanted.behaviour, lesson.events) == ("turn_right", [])
-
-
 @pytest.mark.parametrize(("behaviours", "known"), [(TURNS, TURNS), (("",), ("",))])
 def test_unknown_behaviour_is_refused_with_the_known_ones(behaviours: tuple[str, ...], known: tuple[str, ...]) -> None:
     lesson = Lesson(behaviours=behaviours)
@@ -622,30 +541,6 @@ def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teac
     assert lesson.small.at(2.5).asking
     lesson.say(pursue("straight_on", "back"))
     assert lesson.small.at(2.5).action == "a"
-
-
-def test_correction_of_past_tick_is_about_its_behaviour() -> None:
-    lesson = Lesson(
-        created(1, (0.0,), "a", behaviour="straight_on"),
-        created(2, (0.0,), "b", behaviour="turn_left"),
-        behaviours=TURNS,
-    )
-    wrong = lesson.go_on(0.0)
-    lesson.say(pursue("turn_left"))
-    praised = lesson.go_on(0.0, 20)
-    assert lesson.say(Correct("c-1", "Ann", "c", wrong)).outcome == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=1, behaviour="straight_on", action="c", was="a"
-    )
-    assert lesson.say(Reward("r-1", "Ann", 1, praised)).outcome == Outcome.of(
-        ResultCode.RLA_REWARDED, rla=2, behaviour="turn_left"
-    )
-    undone = lesson.say(Undo("u-1", "Ann", "c-1")).outcome
-    assert undone.code is ResultCode.LESSON_UNDONE
-    assert "straight_on" in str(undone.fields["says"])
-    assert lesson.say(delete(1)).outcome == Outcome.of(
-        ResultCode.RLA_DELETED, rla=1, behaviour="straight_on"
-    )  # by its id, whatever is wanted
-    assert lesson.actions == {2: "b"}
 
 
 @pytest.mark.parametrize(

@@ -137,10 +137,3 @@ def test_correction_without_the_option_is_about_the_present(driving: Corridor) -
     result = given(driving, Correct("now", "Ann", "back", seen_tick=driving.ticks))
     assert "put_back_ticks" not in result.outcome.fields
     assert driving.system.rlas[-1].condition == condition(driving, driving.ticks)
-
-
-def test_late_press_on_a_named_state_counts_from_that_state(driving: Corridor) -> None:
-    shown = driving.ticks - 5
-    named = Correct("named", "Ann", "back", shown, late=True, seen_tick=driving.ticks)
-    fields = given(driving, named).outcome.fields
-    assert (fields["decision_tick"], fields["put_back_ticks"]) == (shown - DELAY, DELAY)

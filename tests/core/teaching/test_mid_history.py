@@ -38,14 +38,6 @@ def test_mid_history_stores_one_snapshot_per_junction() -> None:
     assert told(recent.newest) == (90_002.0, None)
 
 
-def test_another_rla_at_the_same_place_is_another_moment() -> None:
-    recent = MidHistory()
-    vector = np.zeros(1)
-    for tick, rla_id in enumerate((None, None, 7, 7, 8)):
-        recent.remember(tick, vector, rla_id)
-    assert [told(recent.get(tick)) for tick in range(5)] == [(0.0, each) for each in (None, None, 7, 7, 8)]
-
-
 def test_memory_does_not_grow_and_the_oldest_is_forgotten() -> None:
     recent = remembered(*((tick, tick, tick) for tick in range(100)), capacity=10)
     assert recent.get(89) is None

@@ -41,10 +41,6 @@ def test_question_keeps_the_words_it_is_asked_with() -> None:
     assert ask(system.match(here), here, system.weights, ("s9",), words=words).words is words
 
 
-def test_features_that_do_not_differ_are_not_named() -> None:
-    assert [each.name for each in asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0)).differing] == ["s3"]
-
-
 def test_of_features_that_differ_alike_the_first_come_first() -> None:
     names = [each.name for each in asked((0,) * 7, (9, -9, 9, 9, 9, 9, 9)).differing]
     assert names == ["s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)"]
@@ -80,11 +76,6 @@ def test_mid_question_lists_the_passed_junctions() -> None:
     question = of_the_way((2.0, 1.0, 0.0))
     assert (question.nearest_rla, question.behaviour, question.distance, question.radius) == (1, "turn_left", 2.0, 1.0)
     assert question.here == ("straight", "left")
-
-
-def test_the_mid_level_knows_no_way_before_its_first_lesson() -> None:
-    assert (of_the_way().nearest_rla, of_the_way().here) == (None, ("straight", "left"))
-    assert ask_the_way(None, ("", "")).here == ()
 
 
 def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:

@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause
@@ -63,11 +62,6 @@ def test_rewind_while_driving_keeps_the_drive_before() -> None:
     drive.run(DRIVEN_TICKS, driving=True)
     assert drive.remembers(6900 + DRIVEN_TICKS - 700)
     assert not drive.remembers(899)
-
-
-@pytest.mark.parametrize("tick", [-1, 10_000])
-def test_rewind_unknown_tick_is_not_found(tick: int) -> None:
-    assert Drive().rewind.find(tick) is None
 
 
 def test_correction_after_long_standstill_is_about_the_drive() -> None:

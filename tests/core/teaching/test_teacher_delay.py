@@ -65,15 +65,6 @@ def test_answer_after_five_seconds_is_no_delay() -> None:
     assert answers_of_ann(delay) == 1
 
 
-def test_second_answer_to_a_question_does_not_count() -> None:
-    delay = TeacherDelay()
-    delay.on_decision(100, asks=True)
-    delay.on_answer("Ann", 130, 1)
-    delay.on_decision(131, asks=True)
-    delay.on_answer("Ann", 190, 1)
-    assert answers_of_ann(delay) == 1
-
-
 def test_answer_of_a_teacher_who_came_later_is_no_delay() -> None:
     delay = TeacherDelay()
     delay.on_decision(100, asks=True, present=False)

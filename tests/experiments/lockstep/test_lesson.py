@@ -56,11 +56,6 @@ def test_teacher_corrects_from_phase_2_on(taught: Taught) -> None:
     assert answers + taught.result.corrections >= len(origins)
 
 
-def test_it_is_told_of_every_lesson_that_is_saved(taught: Taught) -> None:
-    assert [each.command_id for each in taught.saved] == [event.origin.command_id for event in taught.events]
-    assert [each.sequence for each in taught.saved] == list(range(1, len(taught.events) + 1))
-
-
 def test_same_seed_gives_the_same_knowledge_and_trail(taught: Taught, tmp_path: Path) -> None:
     again = teach(tmp_path / "again")
     # Counters are compared by what they counted.

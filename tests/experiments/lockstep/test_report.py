@@ -84,15 +84,6 @@ def test_deletions_and_repositions_are_told_where_there_were_any() -> None:
     assert ["11"] in [row[1:] for row in rows]
 
 
-def test_each_exam_is_a_row_with_its_verdict() -> None:
-    exams = [exam_result("b", laps=2.0), exam_result("kitchen", collisions=2), exam_result("c", stuck=True)]
-    rows = printed(render_exams([world_result(each) for each in exams], short_task(exam_s=300.0)))
-    assert "300 s" in rows[0][0]
-    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "no"] in rows
-    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "no"] in rows
-    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
-
-
 def test_render_exams_marks_a_failed_teacher() -> None:
     def told(**teacher: Any) -> str:
         compared = world_result(exam_result())

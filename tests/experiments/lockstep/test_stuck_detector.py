@@ -48,10 +48,3 @@ def test_the_least_way_is_what_tells_slow_from_stuck() -> None:
     crawling = [Position(0.0005 * i, 0.0) for i in ticks(20)]
     assert stuck_after_s(StuckDetector(5.0, PERIOD_S), crawling) == 5.0
     assert stuck_after_s(StuckDetector(5.0, PERIOD_S, least_m=0.2), crawling) is None
-
-
-def test_a_restart_gives_a_whole_new_window() -> None:
-    way = StuckDetector(5.0, PERIOD_S)
-    assert stuck_after_s(way, STANDING[:499]) is None
-    way.restart()
-    assert stuck_after_s(way, STANDING) == 5.0

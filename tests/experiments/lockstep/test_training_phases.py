@@ -15,7 +15,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, plan_of
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
 from tests.experiments.lockstep.test_exam import knows_only
@@ -38,12 +38,6 @@ def go_on(
 
 def of_phase(phase: Phase, lasts_s: float = 6.0, **more: object) -> LessonPlan:
     return LessonPlan(((phase, lasts_s),), purpose="another lesson", **more)  # type: ignore[arg-type]
-
-
-def test_the_plan_of_a_task_is_its_own_lesson() -> None:
-    task = short_task(9.0, 6.0)
-    assert plan_of(task) == LessonPlan(((Phase.SUPERVISED, 9.0), (Phase.CORRECTIONS, 6.0)))
-    assert plan_of(task).duration_s == task.teaching.duration_s
 
 
 def test_phase_3_stores_rewards_and_values(taught: Taught, tmp_path: Path) -> None:

@@ -338,11 +338,6 @@ def test_import_knowledge_other_features_are_named(exported: Path, tmp_path: Pat
     assert not (tmp_path / "k").exists()
 
 
-def test_import_knowledge_differing_settings_are_named(exported: Path, tmp_path: Path) -> None:
-    wider = load_task("wall_following", changes={"learning.radius": "800.0"})
-    assert import_from(exported, tmp_path / "k", wider).differing_settings == ("settings/task.json",)
-
-
 def test_export_and_import_existing_file_is_refused(exported: Path, taught: Path, tmp_path: Path) -> None:
     there = Path(shutil.copy(taught, tmp_path / "there"))
     with refused(KnowledgeCode.ALREADY_THERE):

@@ -82,17 +82,6 @@ def test_export_table_numbers_and_names_are_exact(path: Path, tmp_path: Path) ->
     assert row[14] == "-0.0"
 
 
-def test_export_table_named_behaviours_have_a_column(path: Path, tmp_path: Path) -> None:
-    left = RlaCreated(replace(created(2).rla, behaviour="turn_left"))
-    with Journal.open(path, BINDING) as journal:
-        journal.append([entry(1), JournalEntry(left, STAMP)])
-        heading, first, second = exported(path, tmp_path)
-
-    column = heading.index("behaviour")
-    assert (heading[column - 1], heading[column + 1]) == ("level", "s1")
-    assert (first[column], second[column]) == ("", "turn_left")
-
-
 def test_export_table_appraisal_rlas_have_own_columns(path: Path, tmp_path: Path) -> None:
     with Journal.open(path, WITH_CRITIC) as journal:
         journal.append([entry(1)])

@@ -38,12 +38,6 @@ def test_compute_layout_dense_network_keeps_distances() -> None:
     assert nearest(compute_layout(dense)) > 0.95 * APART
 
 
-def test_compute_layout_separate_parts_are_apart() -> None:
-    places = compute_layout(network((1, 2, 100.0), (3, 4, 100.0), alone=5))
-    assert len(places) == 9
-    assert nearest(places) > 0.95 * APART
-
-
 def test_compute_layout_known_places_are_kept() -> None:
     streets = network((1, 2, 100.0), (2, 3, 100.0))
     for rla_id, x_m, y_m in ((1, 0.0, 0.0), (2, 1.8, 0.0), (3, 1.8, 1.8)):

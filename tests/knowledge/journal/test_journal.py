@@ -62,15 +62,6 @@ def test_append_other_lesson_of_known_command_disagrees(path: Path) -> None:
         assert journal.events() == [created(1)]
 
 
-def test_receipt_repeated_command_has_the_stamp_of_its_row(path: Path) -> None:
-    later = "2004-04-27T08:00:00.000+00:00"
-    with Journal.open(begun(path, lessons=1), BINDING) as journal:
-        known, fresh = journal.append([JournalEntry(created(1), later), JournalEntry(created(2), later)])
-
-        assert (known.stamped_at, known.new, known.agrees) == (STAMP, False, True)
-        assert (fresh.stamped_at, fresh.new, fresh.agrees) == (later, True, True)
-
-
 def test_append_batch_is_all_or_nothing(path: Path) -> None:
     unwritable = replace(created(2).rla, condition=(float("nan"),))
     with Journal.open(path, BINDING) as journal:

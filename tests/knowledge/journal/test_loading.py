@@ -1,9 +1,7 @@
 import os
 import re
 import shutil
-import sqlite3
 from collections.abc import Iterator
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,11 +63,6 @@ def test_open_other_kinds_of_files_are_refused(path: Path) -> None:
     require_refused(path, KnowledgeCode.NO_SQLITE_FILE)
     path.write_bytes(b"")
     require_refused(path, KnowledgeCode.NO_SQLITE_FILE)
-
-
-def test_open_sqlite_file_of_another_program_is_refused(path: Path) -> None:
-    tamper(path, "CREATE TABLE bookmark (url TEXT)")
-    require_refused(path, KnowledgeCode.OTHER_PROGRAM)
 
 
 def test_open_places_without_a_file_are_refused(tmp_path: Path) -> None:
@@ -141,15 +134,6 @@ def test_open_other_level_features_are_refused_with_difference(
     other = replace(BINDING, levels={CRITIC: features})
     error = require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, other, level=CRITIC)
     assert only_in(error) == differing
-
-
-def test_open_level_without_lessons_is_bound_again(path: Path) -> None:
-    Journal.open(path, WITH_CRITIC).close()
-    other = replace(BINDING, levels={CRITIC: LevelFeatures("0", ("left_m", "speed_m_s"))})
-    with Journal.open(path, other) as journal:
-        assert journal.binding == other
-        journal.append([JournalEntry(appraisal(1, (0.4, 0.2)), STAMP)])
-    require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, WITH_CRITIC, level=CRITIC)
 
 
 def test_check_rla_of_an_unknown_level_is_found(path: Path) -> None:
@@ -290,12 +274,6 @@ def test_open_for_teaching_misfit_lesson_frees_the_lock(path: Path) -> None:
     for _ in range(2):
         with refused(KnowledgeCode.LESSON_MISFIT, f"{path}: row 1"):
             open_for_teaching(path, ROBOT, task)
-
-
-def test_open_damaged_binding_is_refused(path: Path) -> None:
-    with closing(sqlite3.connect(begun(path))) as connection, connection:
-        connection.execute("DELETE FROM binding WHERE key = 'system'")
-    require_refused(path, KnowledgeCode.BINDING_DAMAGED, error="KeyError('system')")
 
 
 def test_open_damaged_level_binding_is_refused(path: Path) -> None:

@@ -73,14 +73,6 @@ def test_open_undone_lesson_still_binds_its_level(path: Path) -> None:
         read_lessons(path, ROBOT, ERRANDS)
 
 
-def test_open_other_junctions_are_refused(path: Path) -> None:
-    write(path, mid_rla(1, 1))
-    junctions = TURNS.junctions.model_copy(update={"wall_m": 0.3})
-    other = ROUTE.model_copy(update={"mid": TURNS.model_copy(update={"junctions": junctions})})
-    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
-        open_for_teaching(path, ROBOT, other)
-
-
 def test_render_mid_level_has_words_teachers_and_successors(path: Path) -> None:
     write(
         path,

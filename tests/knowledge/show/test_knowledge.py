@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console, RenderableType
 
-from kurt2rt.core.rla.events import Appraised, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import Appraised, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
@@ -172,19 +172,3 @@ def test_follow_ups_are_shares_of_the_transitions() -> None:
     assert shares == {1: {3: 75.0, 2: 25.0}, 2: {2: 100.0}}
     assert list(shares[1]) == [3, 2]
     assert sum(shares[1].values()) == pytest.approx(100)
-
-
-def test_render_knowledge_named_behaviours_have_a_column(path: Path) -> None:
-    left = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(left, STAMP), JournalEntry(deleted(1), STAMP), JournalEntry(created(2), STAMP)])
-        before = printed(render_knowledge(journal))  # none that stands has a name
-        journal.append([JournalEntry(undone("delete-1"), STAMP)])
-        lines = printed(render_knowledge(journal))
-        told = printed(render_lessons(journal))
-
-    assert any(re.match(r"\s*RLA\s+action", line) for line in before)
-    assert any(re.match(r"\s*RLA\s+behaviour\s+action", line) for line in lines)
-    assert [row[:3] for row in rows(lines)] == [["1", "turn_left", "forward"], ["2", "forward", rows(lines)[1][2]]]
-    deletion = LessonRecord(deleted(1), behaviour="turn_left").text
-    assert any(deletion in line for line in told)

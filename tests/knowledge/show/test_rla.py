@@ -41,10 +41,6 @@ def test_render_rla_has_action_successors_and_expectation(path: Path) -> None:
     assert ["wheel", "speed", "left", "-5", "-5", "±0"] in rows
 
 
-def test_render_rla_expectation_of_old_action_is_left_out(path: Path) -> None:
-    assert "±" not in shown(taught(path, lesson="of its first action"), 1)
-
-
 def test_render_rla_unknown_id_is_refused(path: Path) -> None:
     with refused(KnowledgeCode.NO_SUCH_RLA, rla_id=9):
         shown(begun(path), 9)

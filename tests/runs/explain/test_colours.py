@@ -1,7 +1,5 @@
 """One colour for each action."""
 
-from itertools import permutations
-
 from kurt2rt.runs.explain.colours import colours_of
 
 
@@ -17,8 +15,3 @@ def test_no_two_actions_look_the_same() -> None:
 
 def test_colours_of_many_actions_repeat() -> None:
     assert len(colours_of(f"thing_{number}" for number in range(40))) == 40
-
-
-def test_the_order_in_which_they_come_does_not_matter() -> None:
-    actions = ("along_right_wall", "bear_right", "forward", "spin_left")
-    assert len({tuple(sorted(colours_of(each).items())) for each in permutations(actions)}) == 1

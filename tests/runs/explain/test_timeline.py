@@ -77,11 +77,6 @@ def test_ticks_that_the_recording_lacks_are_not_called_missed(lesson: Lesson) ->
     assert (timeline.missed, timeline.unrecorded) == (0, 3)
 
 
-def test_timeline_without_ticks_has_no_stretches() -> None:
-    timeline = build_timeline([], ROBOT)
-    assert (timeline.stretches, timeline.ticks) == ((), 0)
-
-
 def said(lesson: Lesson, most: int) -> str:
     console = Console(width=120, file=StringIO())
     with console.capture() as capture:

@@ -94,10 +94,6 @@ def test_missed_ticks_repeat_the_frame_before_them() -> None:
     assert (sensors[510] != sensors[499]).any()
 
 
-def test_ticks_that_begin_again_begin_the_next_episode() -> None:
-    assert [each.frames for each in read_episodes(run_of(ENTRIES[:20] + ENTRIES[:30]), 1)] == [20, 30]
-
-
 def test_a_long_gap_begins_the_next_episode() -> None:
     first, second = read_episodes(run_of(ENTRIES[:500] + ENTRIES[600:1000]), 1)
     assert (first.frames, second.frames) == (500, 400)

@@ -258,14 +258,6 @@ def test_the_thread_writes_all_that_was_noted(tmp_path: Path) -> None:
     assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records]
 
 
-def test_two_runs_of_one_second_have_a_folder_each(tmp_path: Path) -> None:
-    for _ in range(2):
-        desk = RecordedDesk(tmp_path)
-        desk.recorder.poll()
-        desk.recorder.close()
-    assert [run.name for run in runs_in(tmp_path)] == [NAME, f"{NAME}-2"]
-
-
 def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path / "runs")
     desk.recorder.poll()
@@ -326,15 +318,6 @@ def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -
     assert "input/output error" in desk.recorder.trouble
     assert desk.recorder.run is None
     assert runs_in(tmp_path) == []
-
-
-def test_a_start_that_fails_leaves_no_run(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path / "runs")
-    with desk.recorder:
-        desk.recorder.on_question("is anybody there?")
-    assert desk.recorder.trouble == ""
-    assert desk.recorder.run is None
-    assert not (tmp_path / "runs").exists()
 
 
 def test_the_end_that_the_disk_does_not_take_is_counted(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import sys
-import weakref
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -32,10 +31,8 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from kurt2rt.runs.recording.recover import _copy as copy_records
 from kurt2rt.runs.recording.segment_reader import SegmentReader
-from kurt2rt.runs.replay import trial
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import compatible_runs, newest_compatible_run
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
@@ -240,28 +237,6 @@ def test_preview_of_a_run_with_a_gap_tries_the_part_before_it(knowledge: Path, r
 
     (short,) = preview_on_newest(planned, runs, quietly, last_s=4.5).runs
     assert (short.from_s, short.found.ticks) == (0.0, 400)
-
-
-def test_search_for_the_newest_run_keeps_one_run_in_memory(
-    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (own,) = runs.iterdir()
-    for day in range(21, 25):
-        shutil.copytree(own, runs / f"202603{day}T094640Z-wall_following")
-    read, alive = list[weakref.ref[Run]](), list[int]()
-
-    def read_and_count(path: Path) -> Run:
-        run = read_run(path)
-        alive.append(sum(each() is not None for each in read))
-        read.append(weakref.ref(run))
-        return run
-
-    monkeypatch.setattr(trial, "read_run", read_and_count)
-    with Journal.read_only(knowledge) as journal:
-        (newest,) = newest_compatible_run(runs, journal.binding, knowledge).runs
-    assert newest.name.endswith("20260324T094640Z-wall_following")
-    assert len(read) == 5
-    assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
 
 
 def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.rla.event_error import InvalidEventError
-from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.knowledge.journal.entry import JournalEntry
@@ -142,26 +140,6 @@ def test_recorded_answer_keeps_an_action_withdrawn_in_its_tick() -> None:
     assert recorded_answers(record, replay.runtime).basic.action == record.decision.action
 
 
-def test_policy_skips_withdrawn_rlas_without_a_teacher(
-    lessons: dict[str, list[TeachingEvent]],
-) -> None:
-    run = stored("walls")
-    events = [event for event in lessons["walls"] if isinstance(event, RlaCreated) and event.rla.level == BASIC]
-    known = CounterfactualPolicy(run, events)
-    replay = Replay(run)
-    for _entry, record in replay:
-        if record.decision.cause is DecisionCause.RLA and record.tick > 1200:
-            break
-    asked = known.answers(record, replay.runtime).basic
-    assert asked.rla is not None
-    withdrawn = CounterfactualPolicy(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
-    assert withdrawn.answers(record, replay.runtime).basic.rla is None
-    replay.runtime.level.skip_withdrawn = True
-    passed_over = withdrawn.answers(record, replay.runtime).basic
-    assert passed_over.nearest is not None
-    assert passed_over.nearest.rla_id != asked.rla.rla_id
-
-
 def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
     tmp_path: Path, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
@@ -178,12 +156,3 @@ def test_knowledge_of_other_features_is_refused() -> None:
     run = stored("walls")
     with pytest.raises(RecordingError, match="knowledge"):
         CounterfactualPolicy(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])
-
-
-def test_undo_of_an_unknown_lesson_is_refused_in_words() -> None:
-    with pytest.raises(RecordingError) as caught:
-        CounterfactualPolicy(stored("walls"), [LessonUndone("none", ORIGIN)])
-    event_error = caught.value.__cause__
-    assert isinstance(event_error, InvalidEventError)
-    assert event_error.refusal is not None
-    assert text_of(event_error.refusal) in caught.value.what

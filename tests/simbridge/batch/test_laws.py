@@ -113,11 +113,6 @@ def test_watch_finds_a_sign_when_the_sensor_watch_does(seed: int, quiet: int) ->
 Targets = list[tuple[float, int]]
 
 
-@given(targets=st.lists(st.tuples(st.floats(-0.6, 0.6), st.integers(1, 60)), min_size=1, max_size=8))
-def test_sound_motor_never_looks_disobedient(targets: Targets) -> None:
-    assert_obeys(targets, put_every=None)
-
-
 @given(targets=st.lists(st.tuples(st.floats(-0.6, 0.6), st.integers(1, 60)), min_size=1, max_size=16))
 def test_wheels_of_a_robot_that_is_put_obey_too(targets: Targets) -> None:
     assert_obeys(targets, put_every=100)

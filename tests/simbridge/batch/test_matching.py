@@ -78,11 +78,6 @@ def test_conditions_are_whole_if_no_sum_is_rounded(scale: float, weight: float, 
     assert conditions_of(values, np.full(FEATURES, weight)).is_whole is is_whole
 
 
-def test_conditions_with_averages_are_not_whole() -> None:
-    steps = [1.0] * FEATURES + [1.0 / AVERAGE_STEPS] * FEATURES
-    assert not build_conditions(np.ones((2, 2 * FEATURES)), np.array([0, 2]), steps).is_whole
-
-
 @given(rows=st.integers(1, 200), seed=st.integers(0, 2**32 - 1), most_step=st.sampled_from([3, 1024]))
 def test_nearest_with_averages_is_that_of_the_match(rows: int, seed: int, most_step: int) -> None:
     chance = np.random.default_rng(seed)

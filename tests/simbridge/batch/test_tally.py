@@ -30,22 +30,6 @@ def test_questions_and_unknown_ticks_are_counted() -> None:
     assert (robot.unknown_ticks, robot.questions, robot.first_question) == (4, 2, 2)
 
 
-def test_first_collision_keeps_its_tick() -> None:
-    robot = empty_robots(1, SIZES)[0]
-    for tick, collisions in enumerate([0, 1, 1, 2], start=1):
-        robot.tick, robot.collisions = tick, collisions
-        count_tick(robot, NO_RULE)
-    assert robot.first_collision == 2
-
-
-def test_distance_is_measured_from_the_tenth_tick_on() -> None:
-    robot = empty_robots(1, SIZES)[0]
-    for tick in range(1, 36):
-        robot.tick, robot.x_m = tick, 0.003 * tick
-        count_tick(robot, NO_RULE)
-    assert robot.travelled_m == pytest.approx(0.06)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_batch_robot_is_stuck_in_the_tick_of_the_detector(seed: int) -> None:
     chance = random.Random(seed)

@@ -7,7 +7,7 @@ from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
 from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.simulated_kurt2 import SimulatedKurt2
-from tests.simbridge.rig import BRAKE, CODEC, ROBOT, STAND, Rig, facing_wall, room
+from tests.simbridge.rig import CODEC, ROBOT, STAND, Rig, facing_wall, room
 
 FORWARD = SpeedControl(Mode.SPEED_CM, 30, 30)
 RESET = SystemControl(Mode.MC_RESET)
@@ -47,13 +47,6 @@ def test_control_invalid_frames_are_only_counted(rig: Rig) -> None:
     assert rig.robot.controller.junk_frames == 9 * len(invalid)
 
 
-def test_control_newest_of_a_cycle_wins(rig: Rig) -> None:
-    for cm_s in (-30, 10, 20):
-        rig.tell(SpeedControl(Mode.SPEED_CM, cm_s, cm_s))
-    rig.step()
-    assert rig.robot.controller.commands.left_m_s == 0.20
-
-
 @pytest.mark.parametrize(
     "jump",
     [
@@ -83,17 +76,6 @@ def test_control_stop_from_full_speed_is_no_crash(rig: Rig) -> None:
     rig.run(1.0, STAND)
     assert not rig.robot.controller.crashed
     assert rig.heard["ENCODER"] == (0, 0) or abs(rig.speed_m_s) < 0.001
-
-
-def test_brake_stops_sooner_than_a_zero_set_point() -> None:
-    ways = []
-    for command in (BRAKE, STAND):
-        with Rig() as rig:
-            rig.drive(40, 40, 1.0)
-            before = rig.robot.pose
-            rig.run(1.0, command)
-            ways.append(rig.robot.pose.x_m - before.x_m)
-    assert ways[0] < 0.7 * ways[1]
 
 
 def test_actuators_off_holds_the_motors_until_on(rig: Rig) -> None:

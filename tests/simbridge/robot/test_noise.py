@@ -20,17 +20,6 @@ def test_normals_are_those_of_single_draws(seed: int) -> None:
     assert mixed.drawn == len(drawn)
 
 
-def test_fractions_between_normals_shift_no_normal() -> None:
-    single, mixed = Noise(1, "slip"), Noise(1, "slip")
-    expected = []
-    for noise, many in ((single, False), (mixed, True)):
-        found = noise.normals(100).tolist() if many else [noise.normal() for _ in range(100)]
-        noise.fraction()
-        found += noise.normals(3000).tolist() if many else [noise.normal() for _ in range(3000)]
-        expected.append(found)
-    assert expected[0] == expected[1]
-
-
 def test_copied_stream_goes_on_by_itself() -> None:
     noise, alone = Noise(1, "slip"), Noise(1, "slip")
     for each in (noise, alone):

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-import pytest
 from matplotlib.figure import Figure
 
 from hal.simulation import Pose
@@ -23,11 +21,3 @@ def test_drawing_of_a_world_with_a_robot_is_saved(tmp_path: Path) -> None:
     figure.savefig(tmp_path / "room.png")
     assert (tmp_path / "room.png").stat().st_size > 2000
     assert axes.get_aspect() == 1.0
-
-
-def test_draw_robot_is_to_scale() -> None:
-    axes = Figure().add_subplot()
-    draw_robot(axes, Pose(1.0, 1.0, 0.0), ROBOT)
-    corners = np.asarray(axes.patches[0].get_path().vertices)
-    assert np.ptp(corners[:, 0]) == pytest.approx(ROBOT.geometry.outline_length_m)
-    assert np.ptp(corners[:, 1]) == pytest.approx(ROBOT.geometry.outline_width_m)

@@ -40,12 +40,6 @@ def test_free_poses_close_touch_nothing() -> None:
     assert sum(each < 0.1 for each in clear_m) > 5
 
 
-def test_free_poses_without_a_post_see_a_wall() -> None:
-    nearest = Clearance(World(load_world("a")))
-    away_m = nearest.distances_m([(pose.x_m, pose.y_m) for pose in poses("a")])
-    assert max(away_m) < 0.45 + FARTHEST_SENSOR_M
-
-
 @pytest.mark.parametrize(
     ("world", "position", "away_m"),
     [

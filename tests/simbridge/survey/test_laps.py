@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import random
 from collections.abc import Iterator
 
 import pytest
@@ -10,7 +9,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.simulation import Pose, WallSide
+from hal.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
 from simbridge.survey.wall_rings import WallRings
@@ -109,38 +108,6 @@ def test_wall_progress_of_a_path(
     assert counted(WallProgress(World(world)), *corners) == pytest.approx(laps, abs=tolerance)
 
 
-@pytest.mark.parametrize("name", FIRST_OF_NAMES)
-def test_wall_progress_of_random_ways_is_none(name: str) -> None:
-    world = World(load_world(name))
-    start = world.settings.start_poses[0]
-    at = (start.x_m, start.y_m)
-    reachable = shapely.Polygon(outer_ring(world.settings, at)).buffer(0.15)
-    west_m, south_m, east_m, north_m = reachable.bounds
-    progress, rng, legs = WallProgress(world), random.Random(1), 0
-    while legs < 150:
-        to = (rng.uniform(west_m, east_m), rng.uniform(south_m, north_m))
-        if reachable.contains(shapely.LineString([at, to])):
-            heading_rad = math.atan2(to[1] - at[1], to[0] - at[0])
-            for place in straight(at, to):
-                progress.update(*place, heading_rad)
-            at, legs = to, legs + 1
-            assert -2.0 < progress.laps < 1.0
-
-
-def test_outer_ring_includes_walls_but_no_islands() -> None:
-    wall = board((0.0, 2.5), (1.5, 2.5), 0.1)
-    corner = box((3.0, 0.0), (4.0, 0.0), (4.0, 1.0), (3.0, 1.0))
-    island = box((1.9, 1.4), (2.2, 1.4), (2.0, 1.6), name="island")
-    empty = outer_ring(ROOM)
-    assert empty.length == pytest.approx(4 * (4.0 - 2 * 0.35))
-    assert outer_ring(room(boxes=[island])).equals(empty)
-    way = outer_ring(room(walls=[wall], boxes=[corner, island]))
-    assert not way.is_ccw
-    for place in ((1.5, 2.5), (3.0, 1.0)):
-        assert way.distance(shapely.Point(place)) == pytest.approx(0.35, abs=0.03)
-    assert way.distance(shapely.Point(2.0, 1.5)) > 0.5
-
-
 def test_wall_progress_after_a_moved_wall_is_surveyed_again() -> None:
     world = World(load_world("a"))
     progress, at_wall, position = WallProgress(world), shapely.Point(1.0, 1.9), (0.3, 1.0)
@@ -192,46 +159,6 @@ def test_wall_progress_with_the_wall_on_the_right_is_a_mirror() -> None:
     assert counted(right, *corners) == pytest.approx(-1.0, abs=0.03)
     mirrored: list[Point] = [(4.0 - x_m, y_m) for x_m, y_m in corners]
     assert counted(right, *mirrored) == pytest.approx(counted(left, *corners), abs=0.005)
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_wall_progress_in_a_corridor_follows_its_own_side(side: WallSide) -> None:
-    """Both walls are in reach: up and down again is two ways along the wall of the side, whichever it is."""
-    progress = WallProgress(World(room(walls=[board((0.81, 0.0), (0.81, 3.2))])), side=side)
-    up_m, down_m = (0.3, 0.5) if side == "left" else (0.5, 0.3)
-    once = ((up_m, 1.0), (up_m, 2.8), (down_m, 2.8), (down_m, 1.0))
-    laps = driven(progress, *once)
-    assert min(steps_of(laps)) >= -0.01
-    assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.8, abs=0.8)
-
-
-def test_wall_progress_between_two_rings_is_none() -> None:
-    steps = 0
-    for y_m in (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0):
-        world = room(boxes=[box((0.9, y_m), (1.5, y_m), (1.5, y_m + 0.6), (0.9, y_m + 0.6))])
-        rings, progress = WallRings(world, MIDDLE), WallProgress(World(world))
-        # Through the gap of 0.9 m: turned about half-way, the robot has the other wall on its left.
-        poses = [(0.4, y_m + 0.1 * i, math.pi / 2) for i in range(4)] + [(0.5, y_m + 0.3, -math.pi / 2)]
-        progress.reset(Pose(*poses[0]))
-        place = rings.place(*poses[0], None)
-        for pose in poses[1:]:
-            before, last, place = progress.laps, place, rings.place(*pose, place)
-            progress.update(*pose)
-            if last is not None and place is not None and last.ring != place.ring:
-                steps += 1
-                assert progress.laps == before
-    assert steps == 7
-
-
-@pytest.mark.parametrize("width_m", [0.8, 1.6])
-def test_wall_progress_turning_back_in_a_corridor_ends(width_m: float) -> None:
-    progress = WallProgress(World(room(walls=[board((width_m + 0.01, 0.0), (width_m + 0.01, 3.2))])))
-    right_m = width_m - 0.3
-    once = ((0.3, 1.0), (0.3, 2.8), (right_m, 2.8), (right_m, 1.0), (0.3, 1.0))
-    laps = driven(progress, *once, *(once[1:] * 9))
-    assert min(steps_of(laps)) >= -0.003
-    assert laps[-1] * progress.lap_m <= 2 * 1.8 + 0.8
-    assert laps[-1] == pytest.approx(laps[len(laps) // 5], abs=0.01)
 
 
 @given(

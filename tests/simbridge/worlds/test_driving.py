@@ -57,17 +57,6 @@ def test_a_spin_turns_by_the_effective_track(track_m: float) -> None:
         assert math.dist(rig.robot.pose[:2], (2.0, 2.0)) < 0.04
 
 
-def test_reversing_ramps_down_first(rig: Rig) -> None:
-    rig.run(1.0, SpeedControl(Mode.SPEED_CM, 30, 30))
-    speeds = []
-    for _ in range(60):
-        rig.step(SpeedControl(Mode.SPEED_CM, -30, -30))
-        speeds.append(rig.speed_m_s)
-    assert speeds == sorted(speeds, reverse=True)
-    assert any(0.0 <= speed <= 0.03 for speed in speeds)
-    assert speeds[-1] < -0.15
-
-
 def test_wall_ahead_blocks_the_body_and_is_one_collision(rig: Rig) -> None:
     rig.robot.place(facing_wall(0.3))
     rig.drive(30, 30, 3.0)
@@ -101,18 +90,6 @@ def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int)
             if rig.robot.touching:
                 pressed.append(rig.heard["BUMPERC"][0])
     assert set(pressed) == {bits}
-
-
-def test_side_contact_presses_no_bumper(rig: Rig) -> None:
-    rig.robot.place(Pose(1.0, 4.0 - ROBOT.geometry.outline_width_m / 2 - 0.005, 0.03))
-    bumped = []
-    for _ in range(300):
-        rig.drive(20, 20, 0.01)
-        bumped.append(rig.robot.bumped)
-    assert rig.robot.collisions == 1
-    assert not any(bumped)
-    assert rig.robot.pose.x_m > 1.4
-    assert rig.robot.pose.y_m < 4.0 - ROBOT.geometry.outline_width_m / 2 + 0.005
 
 
 @pytest.mark.parametrize("speed_cm_s", [90])

@@ -9,7 +9,6 @@ import shapely
 
 from hal.settings import SettingsError
 from simbridge.worlds.generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
-from simbridge.worlds.generator.seeded_random import SeededRandom
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, Rig
@@ -61,21 +60,6 @@ def test_streets_are_all_drivable(some: range) -> None:
         for start in world.start_poses:
             assert middles.distance(shapely.Point(start.x_m, start.y_m)) < 1e-9
             assert all(math.dist((start.x_m, start.y_m), junction) > 0.6 for junction in junctions)
-
-
-def test_streets_do_not_cross_squares() -> None:
-    world = next(world for world in map(generated, (f"streets-{i}" for i in range(50))) if has_a_square(world))
-    assert len(world.junctions) >= 9
-    free = world.free_space
-    for street in world.streets:
-        middle = shapely.LineString([street.from_m, street.to_m]).interpolate(0.5, normalized=True)
-        assert free.boundary.distance(middle) < 1.0
-
-
-def has_a_square(world: WorldSettings) -> bool:
-    columns = {name[-2] for name in world.names}
-    rows = {name[-1] for name in world.names}
-    return len(world.names) < len(columns) * len(rows)
 
 
 @pytest.mark.parametrize("some", seeds(range(0, 100, 16), range(1100)))
@@ -135,13 +119,6 @@ def test_generated_worlds_are_equal_on_every_machine() -> None:
 
 def test_generated_worlds_differ_between_seeds() -> None:
     assert len({digest(f"{kind}-{i}") for kind in ("rooms", "flats", "streets", "floors") for i in range(2)}) == 8
-
-
-def test_seeded_random_reaches_its_bounds() -> None:
-    rng = SeededRandom("bounds")
-    lengths = {rng.length_m(0.7, 1.1) for _ in range(2000)}
-    assert (min(lengths), max(lengths), len(lengths)) == (0.7, 1.1, 41)
-    assert {rng.integer(3) for _ in range(100)} == {0, 1, 2}
 
 
 def test_is_drivable_rejects_narrow_gaps() -> None:

@@ -15,7 +15,6 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-from hal.simulation import Pose
 from simbridge.worlds.map_server import world as map_world
 from simbridge.worlds.map_server.occupancy import drivable_cells
 from simbridge.worlds.map_server.settings import MapSettings
@@ -23,7 +22,7 @@ from simbridge.worlds.map_server.tracing import trace
 from simbridge.worlds.map_server.world import MOST_WALLS
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
-from tests.simbridge.rig import ROBOT, Rig, refusal
+from tests.simbridge.rig import ROBOT, refusal
 
 CELL_M = 0.05
 FREE, UNKNOWN, OCCUPIED = 254, 205, 0
@@ -113,25 +112,6 @@ def test_trace_slanted_walls_are_within_a_cell(turn_deg: int) -> None:
     assert len(shapely.get_coordinates(traced)) <= 70
 
 
-def test_trace_keeps_single_cells() -> None:
-    wall = shapely.box(0, 20, 30, 21)
-    speck = shapely.box(35, 5, 36, 6)
-    floor = shapely.box(0, 0, 40, 40).difference(wall | speck)
-    (traced,) = trace(drawn(floor, 40, 40)[::-1] == FREE)
-    assert traced.equals(floor)
-
-
-def test_map_walls_stop_the_robot(tmp_path: Path) -> None:
-    world = load_world(write_map(tmp_path), ROBOT)
-    with Rig(world) as rig:
-        rig.robot.place(Pose(0.6, 1.3, 0.0))
-        rig.run(0.5)
-        # To the L's left side, 1.5 m from the room's left wall.
-        rig.drive(20, 20, 8.0)
-        assert rig.robot.collisions > 0
-        assert rig.robot.pose.x_m == pytest.approx(1.5 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
-
-
 def test_map_starts_are_at_a_left_wall_and_reproducible(tmp_path: Path) -> None:
     path = write_map(tmp_path)
     world = load_world(path, ROBOT)
@@ -165,16 +145,6 @@ def test_map_of_several_rooms_uses_the_roomiest(tmp_path: Path) -> None:
     shades[0:8, 5:295] = FREE
     shades[8:70, 100:110] = FREE
     assert load_world(write_map(tmp_path, shades), ROBOT).size_m == pytest.approx((4.0, 3.0))
-
-
-def test_shipped_map_has_thin_legs_and_three_rays() -> None:
-    world = load_world("maps/flat", ROBOT)
-    assert world.name == "flat"
-    assert world.infrared_rays == 3
-    legs = [each for each in world.polygon_obstacles if shapely.Polygon(each.corners).area == pytest.approx(CELL_M**2)]
-    assert len(legs) == 4
-    # It may start in every room.
-    assert len({(start.x_m > 4.0, start.y_m > 3.2, start.y_m < 1.9) for start in world.start_poses}) >= 5
 
 
 def world_on(folder: Path, **change: object) -> str:

@@ -1,10 +1,8 @@
 """Worlds: the shipped ones, and the checks of their files."""
 
-import math
 from pathlib import Path
 
 import pytest
-import shapely
 import yaml
 
 from config import CONFIG_DIR
@@ -119,38 +117,6 @@ def test_concave_obstacle_lets_the_robot_in() -> None:
         rig.drive(20, 20, 6.0)
         assert rig.robot.collisions > 0
         assert rig.robot.pose.x_m == pytest.approx(3.0 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
-
-
-def test_junctions_are_crossings_of_middle_lines() -> None:
-    world = load_world("manhattan")
-    lines = (0.4, 2.2, 4.0, 5.8)
-    assert world.junctions == [(x, y) for x in lines for y in lines]
-    for street in world.streets:
-        line = shapely.LineString([street.from_m, street.to_m])
-        assert world.free_space.exterior.distance(line) == pytest.approx(street.width_m / 2)  # type: ignore[union-attr]
-        assert min(shape.distance(line) for shape in world.shapes) == pytest.approx(street.width_m / 2)
-    assert load_world("a").junctions == []
-
-
-@pytest.mark.parametrize(
-    ("name", "post", "side", "away_m"),
-    [
-        ("one_object", "post", "left", 0.3),
-        ("two_objects", "west", "left", 0.18),
-        ("two_objects", "east", "right", 0.18),
-    ],
-)
-def test_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
-    world = load_world(name)
-    object_ = next(each for each in world.round_obstacles if each.name == post)
-    abeam = 0
-    for pose in (start.pose for start in world.start_poses):
-        dx, dy = object_.x_m - pose.x_m, object_.y_m - pose.y_m
-        ahead_m = dx * math.cos(pose.heading_rad) + dy * math.sin(pose.heading_rad)
-        left_m = dy * math.cos(pose.heading_rad) - dx * math.sin(pose.heading_rad)
-        beside_m = (left_m if side == "left" else -left_m) - object_.radius_m - ROBOT.geometry.outline_width_m / 2
-        abeam += abs(ahead_m) < 0.002 and abs(beside_m - away_m) < 0.002
-    assert abeam == len(world.start_poses) // len(world.round_obstacles)
 
 
 def test_load_world_loads_every_shipped_world() -> None:
