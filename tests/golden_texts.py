@@ -35,7 +35,6 @@ from tests.texts import (
     startup,
     studies,
     units,
-    verdicts,
     why,
     wire,
 )
@@ -85,8 +84,8 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "features": robot.features,
     },
     "studies": {
-        "targets": verdicts.targets,
-        "results": verdicts.results,
+        "targets": studies.targets,
+        "results": studies.results,
         "reasons against judging": studies.reasons,
         "exams": studies.exams,
         "controls without effect": studies.controls,

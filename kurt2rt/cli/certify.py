@@ -8,22 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from rich.text import Text
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.interpreted_batch import say_if_interpreted
-from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
-    Changes,
-    Jobs,
-    RobotName,
-    TaskOfTheFile,
-    changes_of,
-    results_option,
-)
-from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.json_output import print_json
+from kurt2rt.cli.options import Changes, RobotName, TaskOfTheFile, changes_of, results_option
+from kurt2rt.cli.study_run import JobOptions, job_parts, say_if_interpreted, study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -32,7 +21,7 @@ from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.experiments.certify.outcome import RunOutcome
+    from kurt2rt.experiments.certify.run import RunOutcome
     from kurt2rt.experiments.lockstep.exam import ExamResult
 
 _FOLDER = Path("results/certify")
@@ -41,8 +30,8 @@ _GENERATED = {"wall_following": ("rooms-SEED",)}
 """Generated worlds of a task without --world, besides those of its exam."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(JobOptions):
     """Arguments and options of `kurt2rt study certify`."""
 
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
@@ -94,11 +83,8 @@ class _Options:
     ] = DriveLoop.BATCH
     task: TaskOfTheFile = None
     changes: Changes = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
     out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
     robot_settings: RobotName = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -122,36 +108,25 @@ def certify(options: _Options) -> None:
     interrupted goes on where it was. Tasks that the batch does not know, such
     as routes, are driven on the CAN loop.
     """
-    _certify(options)
-
-
-def _certify(options: _Options) -> None:
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.certify.again import drive_again
-    from kurt2rt.experiments.certify.figures import draw_worst
-    from kurt2rt.experiments.certify.plan import Extent, find_refusal, make_plan, read_certificate
-    from kurt2rt.experiments.certify.report import write_report
     from kurt2rt.experiments.certify.run import BrokenShare, Run
-    from kurt2rt.experiments.certify.summary import summarise, worst_runs
-    from kurt2rt.experiments.certify.tables import all_tables
-    from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.certify.study import Extent, drive_again, find_refusal, make_plan, read_certificate
+    from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise, worst_runs, write_certificate
     from kurt2rt.experiments.study.table import as_rich
 
-    task, results = _task(options), Results(options.out)
+    task = _task(options)
     robot = load_robot_of(options.robot_settings, options.task or task_of_file(options.knowledge))
-    factory = simulations_of(robot)
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
-    parts = JobParts(factory=factory, robot=robot, results=results)
+    parts = job_parts(robot, options.out)
     one = Run(options.first, places[0])
-    factory.require_worlds(one.world)
+    parts["factory"].require_worlds(one.world)
     loop = _loop(options, find_refusal(task, options.knowledge, one, parts))
     broken = BrokenShare(options.dead_sensors, robot.infrared.names)
     extent = Extent(options.first, options.runs, places, loop, broken)
     plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, loop)
     report = options.out / "report.html"
-    with study_run(plan, results, options.jobs, options.on) as bar:
-        certificate = read_certificate(plan, results)
+    with study_run(plan, parts, options) as bar:
+        certificate = read_certificate(plan)
         worst = worst_runs(certificate.outcomes, options.pictures)
         commands = [_exam_command(options, each) for each in worst]
         bar.say("all runs")
@@ -160,9 +135,9 @@ def _certify(options: _Options) -> None:
             bar.begin_next(len(worst) * task.exam.duration_s)
             exams = drive_again(plan, worst, options.jobs, bar.update)
         bar.say("figures and report")
-        pictures = list(draw_worst(exams, commands, factory, options.out))
+        pictures = list(draw_worst(exams, commands, parts["factory"], options.out))
         tables = list(all_tables(certificate, worst))
-        write_report(certificate, tables, pictures, command, report)
+        write_certificate(certificate, tables, pictures, command, report)
     if not options.as_json:
         to_copy = [Text(each, no_wrap=True) for each in commands]
         print_whole(console_of(), *map(as_rich, tables), *to_copy, f"report  {report}")

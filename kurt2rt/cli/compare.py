@@ -6,17 +6,11 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
     DEFAULT_OF_THE_TASK,
     Changes,
-    Jobs,
     RobotName,
     changes_of,
     parse_seeds,
@@ -24,18 +18,16 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.study_run import study_run
-from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
-from kurt2rt.experiments.study.loop_choice import LoopRequest
-from kurt2rt.platform.text_table import print_whole
 
 _AFTER = (10, 20, 40)
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(LoopOptions):
     """Options of `kurt2rt study compare`."""
 
     learner: Annotated[
@@ -60,13 +52,8 @@ class _Options:
         ),
     ] = None
     changes: Changes = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/compare")] = Path("results/compare")
     robot_settings: RobotName = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -91,36 +78,28 @@ def compare(options: _Options) -> None:
     a learner.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.compare.figures import draw_curves
-    from kurt2rt.experiments.compare.plan import make_plan, read_comparison
     from kurt2rt.experiments.compare.pupil import PUPILS, Pupil
-    from kurt2rt.experiments.compare.tables import all_tables
-    from kurt2rt.experiments.study.eligibility import reasons_against_judging
-    from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.results import Results
-    from kurt2rt.experiments.study.table import as_rich
+    from kurt2rt.experiments.compare.study import make_plan
+    from kurt2rt.experiments.compare.tables import all_tables, draw_curves, read_comparison
+    from kurt2rt.experiments.study.targets import reasons_against_judging
 
     names = dict.fromkeys(options.task or ("wall_following",))
     robot = load_robot_of(options.robot_settings, next(iter(names)))
     tasks = [taught_by_named(load_task(name, changes=changes_of(options.changes)), options.teacher) for name in names]
     for name, task in zip(names, tasks, strict=True):
         require_robot_of(task, name, robot)
-    results = Results(options.out)
+    parts = job_parts(robot, options.out)
     plan = make_plan(
         tasks,
         [Pupil.parse(name) for name in options.learner or PUPILS],
         parse_seeds(options.seeds),
         sorted(set(options.after or _AFTER)),
-        JobParts(factory=simulations_of(robot), robot=robot, results=results),
-        loops=requested_loops(options.lessons, options.exams),
+        parts,
+        loops=options.requested_loops(),
     )
-    figure, not_judged = options.out / "compare.png", list(reasons_against_judging(plan.seeds))
-    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
+    figure = options.out / "compare.png"
+    with study_run(plan, parts, options) as bar:
         bar.say("figure")
-        comparison = read_comparison(plan, results)
+        comparison = read_comparison(plan)
         draw_curves(comparison, figure)
-    tables = list(all_tables(comparison))
-    if options.as_json:
-        print_json({"tables": tables_of(tables), "not_judged": not_judged, "figure": figure})
-        return
-    print_whole(console_of(), *map(as_rich, tables), *not_judged, f"figure  {figure}")
+    print_study(all_tables(comparison), reasons_against_judging(plan.seeds), as_json=options.as_json, figure=figure)

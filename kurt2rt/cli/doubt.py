@@ -16,6 +16,7 @@ from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
 from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
+from kurt2rt.experiments.study.jobs import world_of
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
@@ -73,7 +74,7 @@ def doubt(options: _Options) -> None:
     factory = simulations_of(settings)
     worlds = options.world or list(task.exam.worlds)
     seeds = parse_seeds(options.seeds)
-    factory.require_worlds(*(world.replace("SEED", str(seed)) for world in worlds for seed in seeds))
+    factory.require_worlds(*(world_of(world, seed) for world in worlds for seed in seeds))
     responses = tuple(options.response or DoubtResponse)
     work = [
         DoubtJob(
@@ -81,7 +82,7 @@ def doubt(options: _Options) -> None:
             settings,
             task,
             options.taught / f"{task.name}-{seed}.knowledge",
-            DoubtSetup(world.replace("SEED", str(seed)), seed, options.seconds, response, options.set_down),
+            DoubtSetup(world_of(world, seed), seed, options.seconds, response, options.set_down),
         )
         for response in responses
         for seed in seeds

@@ -21,7 +21,7 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
 from kurt2rt.experiments.lockstep.report import exams_as_data, render_exams
-from kurt2rt.experiments.route.lesson import with_route
+from kurt2rt.experiments.route.study import with_route
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.platform.text_table import print_whole

@@ -22,7 +22,7 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.lockstep.drawing import draw_exams
 from kurt2rt.experiments.lockstep.report import label_of, not_judged, verdict_of
-from kurt2rt.experiments.route.lesson import with_route
+from kurt2rt.experiments.route.study import with_route
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 

@@ -12,7 +12,6 @@ from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.lesson_errands import errands, runs_errands
 from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
 from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_options, teaches_route
-from kurt2rt.cli.loop_options import requested_loops
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import study_run
@@ -26,10 +25,8 @@ from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, ru
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.loop_choice import LoopRequest
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
+from kurt2rt.experiments.study.study_plan import LoopRequest
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
@@ -150,13 +147,11 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
     tasks = _taught_tasks(setup.task, options)
-    results = Results(out)
-    parts = JobParts(factory=setup.factory, robot=setup.robot, results=results)
-    loops = requested_loops(options.lessons, options.exams)
-    plan = make_plan(tasks, options.all_seeds, parts, loops=loops)
-    forget_lost_robots(plan, results)
-    with study_run(plan, results, options.jobs, options.on, choice=plan.choice):
-        by_teacher = read_results(plan, results)
+    parts = setup.parts(out)
+    plan = make_plan(tasks, options.all_seeds, parts, loops=options.requested_loops())
+    forget_lost_robots(plan)
+    with study_run(plan, parts, options):
+        by_teacher = read_results(plan)
     _show_seeds(by_teacher, setup.task, options)
 
 

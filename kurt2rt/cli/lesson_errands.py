@@ -9,11 +9,7 @@ from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
-from kurt2rt.experiments.navigation.plan import make_plan, read_outcomes
-from kurt2rt.experiments.navigation.tables import all_tables
-from kurt2rt.experiments.route.plan import basic_task_of
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
@@ -35,27 +31,20 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         KnowledgeError: a knowledge file of the streets cannot be read.
     """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
-    from kurt2rt.experiments.navigation.figures import draw_errands
+    from kurt2rt.experiments.navigation.tables import all_tables, draw_errands
 
     if options.decisions or options.knowledge is not None:
         raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
-    factory, task, out = setup.factory, setup.task, options.out or ERRANDS
-    results = Results(out)
-    plan = make_plan(
-        task,
-        basic_task_of(task),
-        options.all_seeds,
-        JobParts(factory=factory, robot=setup.robot, results=results),
-        basic_folder=options.basic,
-        controls=options.controls,
-    )
-    with study_run(plan, results, options.jobs, options.on) as bar:
+    task, out = setup.task, options.out or ERRANDS
+    parts = setup.parts(out)
+    plan = make_plan(task, options.all_seeds, parts, basic_folder=options.basic, controls=options.controls)
+    with study_run(plan, parts, options) as bar:
         bar.say("pictures")
-        outcomes = read_outcomes(plan, results)
+        outcomes = [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]
         pictures = []
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
-            draw_errands(factory, task.exam.worlds[0], outcome, pictures[-1])
+            draw_errands(setup.factory, task.exam.worlds[0], outcome, pictures[-1])
     tables = list(all_tables(outcomes, navigation_settings(task), task.teaching.profile.name))
     if options.as_json:
         print_json({"tables": tables_of(tables), "pictures": pictures})

@@ -9,23 +9,12 @@ import typer
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.loop_options import ExamsOption, LessonsOption
-from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
-    Changes,
-    Jobs,
-    Plain,
-    RobotName,
-    Seed,
-    parse_seeds,
-    task_option,
-    teacher_option,
-)
+from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, parse_seeds, task_option, teacher_option
+from kurt2rt.cli.study_run import LoopOptions
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
-from kurt2rt.experiments.study.loop_choice import LoopRequest
+from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.results import Results
 
 DEFAULT_TASK = "wall_following"
 LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
@@ -33,8 +22,8 @@ LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("
 _TASK_WORD = typer.Argument(hidden=True, metavar=" ", help="The task, as --task names it.")
 
 
-@dataclass(frozen=True, slots=True)
-class LessonOptions:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LessonOptions(LoopOptions):
     """Options of `kurt2rt lesson`."""
 
     task_word: Annotated[str | None, _TASK_WORD] = None
@@ -55,10 +44,6 @@ class LessonOptions:
             help="Teach and examine many robots, one per seed, e.g. 100-119; prints medians, quartiles and intervals."
         ),
     ] = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[
         Path | None,
         typer.Option(
@@ -89,7 +74,6 @@ class LessonOptions:
             "teachers.",
         ),
     ] = False
-    as_json: AsJson = False
 
     @property
     def all_seeds(self) -> Sequence[int]:
@@ -106,3 +90,7 @@ class LessonSetup:
     task: TaskSettings
     command: str
     """Typed words, as far as they decide the numbers."""
+
+    def parts(self, folder: Path) -> JobParts:
+        """Return what all jobs of a study share; `folder`: of its results."""
+        return JobParts(factory=self.factory, robot=self.robot, results=Results(folder))

@@ -10,17 +10,11 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, print_study, tables_of
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
-from kurt2rt.experiments.route.lesson import TaughtRoute, teach_route, with_route
-from kurt2rt.experiments.route.plan import basic_file, basic_task_of, decisions_of, make_plan
-from kurt2rt.experiments.route.summary import read_study
-from kurt2rt.experiments.route.tables import all_tables, robot_table
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteOutcome, make_plan
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
-from kurt2rt.experiments.study.eligibility import reasons_against_judging
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.experiments.study.targets import reasons_against_judging
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal.loading import copy_knowledge
 from kurt2rt.platform.text_table import print_whole
@@ -51,42 +45,39 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
     """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
     from kurt2rt.experiments.route.figures import draw_route
+    from kurt2rt.experiments.route.tables import robot_table
 
-    given_decisions = tuple(options.decisions or ())
-    if len(given_decisions) > 1 or options.controls:
+    given = tuple(options.decisions or ())
+    if len(given) > 1 or options.controls:
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
-    factory, seed, out = setup.factory, options.seed, options.out or ROUTES
-    task = with_route(setup.task, seed, *given_decisions)
-    worlds = (task.teaching.world, *task.exam.worlds[:1])
-    factory.require_worlds(*worlds)
-    require_course(factory, task, worlds)
-    (decisions,) = decisions_of(task, given_decisions)
-    basic = basic_task_of(task)
-    given = None if options.basic is None else basic_file(options.basic, basic, seed)
+    out = options.out or ROUTES
+    plan = make_plan(setup.task, (options.seed,), given, (TAUGHT,), setup.parts(out), basic_folder=options.basic)
+    (job,), task = plan.of(RouteJob), plan.of(RouteJob)[0].task
     out.mkdir(parents=True, exist_ok=True)
-    stem = f"{task.name}-{decisions}-{seed}"
+    stem = f"{task.name}-{job.decisions}-{job.seed}"
     file = options.knowledge or out / f"{stem}.knowledge"
     if options.knowledge is None:
         archive_existing(file)
 
-    async def run(report: Report) -> TaughtRoute:
+    async def run(report: Report) -> RouteOutcome:
         if not file.exists():
-            streets = given or out / f"{basic.name}-{seed}.knowledge"
-            if given is None:
+            streets = job.basic
+            for basic in plan.of(BasicJob):
+                streets = out / f"{basic.task.name}-{basic.seed}.knowledge"
                 archive_existing(streets)
-                await run_lesson(factory, setup.robot, basic, streets, seed=seed, report=report)
+                await basic.teach(streets, report)
             copy_knowledge(streets, file)
-        return await teach_route(factory, setup.robot, task, TAUGHT, file, seed=seed, report=report)
+        return await job.teach_route(file, report)
 
     with job_bars() as report:
-        outcome = anyio.run(run, report).outcome()
+        outcome = anyio.run(run, report)
     picture = out / f"{stem}.png"
-    draw_route(factory, task.exam.worlds[0], outcome, picture)
+    draw_route(setup.factory, task.exam.worlds[0], outcome, picture)
+    table = robot_table(outcome, task)
     if options.as_json:
-        print_json({"tables": tables_of([robot_table(outcome, task)]), "knowledge": file, "picture": picture})
-        return
-    files = (f"{what}  {path}" for what, path in (("knowledge", file), ("picture", picture)))
-    print_whole(console_of(), as_rich(robot_table(outcome, task)), *files)
+        print_json({"tables": tables_of([table]), "knowledge": file, "picture": picture})
+    else:
+        print_whole(console_of(), as_rich(table), f"knowledge  {file}", f"picture  {picture}")
 
 
 def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
@@ -98,23 +89,17 @@ def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
         KnowledgeError: a knowledge file of the streets cannot be read.
     """
     from kurt2rt.experiments.route.figures import draw_figures
-    from kurt2rt.experiments.route.report import write_report
+    from kurt2rt.experiments.route.tables import all_tables, read_study, write_routes
 
-    factory, task = setup.factory, setup.task
-    results = Results(options.out or ROUTES)
+    parts = setup.parts(options.out or ROUTES)
+    variants = (TAUGHT, *(CONTROLS if options.controls else ()))
     plan = make_plan(
-        task,
-        basic_task_of(task),
-        options.all_seeds,
-        decisions_of(task, options.decisions or ()),
-        (TAUGHT, *(CONTROLS if options.controls else ())),
-        JobParts(factory=factory, robot=setup.robot, results=results),
-        basic_folder=options.basic,
+        setup.task, options.all_seeds, options.decisions or (), variants, parts, basic_folder=options.basic
     )
-    with study_run(plan, results, options.jobs, options.on) as bar:
+    with study_run(plan, parts, options) as bar:
         bar.say("pictures and report")
-        study = read_study(plan, results)
-        pictures = list(draw_figures(study, factory, results.folder))
-        report = results.folder / "report.html"
-        write_report(study, pictures, setup.command, report)
-    print_study(all_tables(study), reasons_against_judging(plan.seeds), report, as_json=options.as_json)
+        study, folder = read_study(plan), parts["results"].folder
+        pictures = list(draw_figures(study, setup.factory, folder))
+        report = folder / "report.html"
+        write_routes(study, pictures, setup.command, report)
+    print_study(all_tables(study), reasons_against_judging(plan.seeds), as_json=options.as_json, report=report)

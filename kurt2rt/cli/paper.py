@@ -2,40 +2,30 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
     DEFAULT_OF_THE_TASK,
-    Jobs,
     parse_seeds,
     results_option,
     seeds_option,
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
-from kurt2rt.experiments.study.loop_choice import LoopRequest
-
-if TYPE_CHECKING:
-    from kurt2rt.experiments.paper.outcome import Reading
 
 _SEEDS, _QUICK_SEEDS = "100-119", "100-101"
 _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(LoopOptions):
     """Options of `kurt2rt paper`."""
 
     quick: Annotated[
@@ -47,15 +37,10 @@ class _Options:
         task_option("Repeat for several. Default: all tasks of config/paper."),
     ] = None
     teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
     ] = True
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -84,42 +69,27 @@ def paper(options: _Options) -> None:
         kurt2rt paper --quick
         kurt2rt paper --task circle --task eight
     """
-    _run_study(options)
-
-
-def _run_study(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
-    from kurt2rt.experiments.paper.extent import QUICK, WHOLE
     from kurt2rt.experiments.paper.figures import draw_figures
-    from kurt2rt.experiments.paper.plan import make_plan
-    from kurt2rt.experiments.paper.report import write_report
-    from kurt2rt.experiments.paper.settings import load_paper
-    from kurt2rt.experiments.paper.summary import read_study
-    from kurt2rt.experiments.paper.tables import all_tables
-    from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.results import Results
+    from kurt2rt.experiments.paper.settings import QUICK, WHOLE, load_paper
+    from kurt2rt.experiments.paper.study import make_plan
+    from kurt2rt.experiments.paper.tables import all_tables, read_study, reasons_not_to_judge, write_paper
 
-    typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
-    robot = load_robot()
-    stage = simulations_of(robot)
-    results = Results(options.out or (_QUICK_FOLDER if options.quick else _FOLDER))
-    readings: tuple[Reading, ...] = ("shipped", "plain") if options.plain else ("shipped",)
-    extent = QUICK if options.quick else WHOLE
+    seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
+    folder = options.out or (_QUICK_FOLDER if options.quick else _FOLDER)
+    parts = job_parts(load_robot(), folder)
     plan = make_plan(
-        load_paper(factory=stage).model_copy(update={"teacher": options.teacher}),
-        extent,
-        parse_seeds(typed_seeds),
-        readings,
-        JobParts(factory=stage, robot=robot, results=results),
+        load_paper(factory=parts["factory"]).model_copy(update={"teacher": options.teacher}),
+        QUICK if options.quick else WHOLE,
+        parse_seeds(seeds),
+        ("shipped", "plain") if options.plain else ("shipped",),
+        parts,
         tasks=options.task or (),
-        loops=requested_loops(options.lessons, options.exams),
+        loops=options.requested_loops(),
     )
-    command = typed_command("paper", options, {"seeds": typed_seeds})
-    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
+    command = typed_command("paper", options, {"seeds": seeds})
+    with study_run(plan, parts, options) as bar:
         bar.say("figures and report")
-        study = read_study(plan, results)
-        pictures = list(draw_figures(study, stage, results.folder))
-        report = results.folder / "report.html"
-        write_report(study, pictures, command, report)
-    print_study(all_tables(study), reasons_not_to_judge(plan), report, as_json=options.as_json)
+        study, report = read_study(plan), folder / "report.html"
+        write_paper(study, list(draw_figures(study, parts["factory"], folder)), command, report)
+    print_study(all_tables(study), reasons_not_to_judge(plan), as_json=options.as_json, report=report)

@@ -2,20 +2,14 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
     Changes,
-    Jobs,
     RobotName,
     changes_of,
     parse_seeds,
@@ -24,23 +18,18 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.study_run import study_run
+from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
+from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.core.teacher_settings import SUPERHUMAN
-from kurt2rt.experiments.study.loop_choice import LoopRequest
-
-if TYPE_CHECKING:
-    from kurt2rt.experiments.phases.plan import PhasesPlan
-    from kurt2rt.experiments.phases.summary import PhasesStudy
-    from kurt2rt.experiments.study.results import Results
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(LoopOptions):
     """Options of `kurt2rt phases`."""
 
     task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
@@ -51,12 +40,7 @@ class _Options:
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
     ] = False
     seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -83,50 +67,20 @@ def phases(options: _Options) -> None:
         kurt2rt phases --task wall_following --seeds 100-119
     """
     # Late imports: the simulator is an extra that `kurt2rt run` on the robot does not need.
-    from kurt2rt.experiments.phases.report import reasons_not_to_judge
-    from kurt2rt.experiments.phases.tables import all_tables
-
-    plan, results = _plan(options)
-    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
-        bar.say("figures and report")
-        study, report = _write_report(plan, results, options)
-    reasons = list(reasons_not_to_judge(plan))
-    print_study(all_tables(study, reasons), reasons, report, as_json=options.as_json)
-
-
-def _plan(options: _Options) -> "tuple[PhasesPlan, Results]":
-    """Return the plan, and the folder of its results. Raises SettingsError."""
-    from kurt2rt.core.task_settings import load_task, taught_by
-    from kurt2rt.core.teacher_settings import load_teacher
-    from kurt2rt.experiments.phases.plan import make_plan
-    from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.results import Results
-
-    profile = load_teacher(options.teacher)
-    robot = load_robot_of(options.robot_settings, options.task)
-    task = taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
-    results = Results(options.out or _FOLDER / (task.name + ("-quick" if options.quick else "")))
-    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
-    loops = requested_loops(options.lessons, options.exams)
-    plan = make_plan(task, parse_seeds(_seeds(options)), parts, quick=options.quick, loops=loops)
-    return plan, results
-
-
-def _write_report(plan: "PhasesPlan", results: "Results", options: _Options) -> "tuple[PhasesStudy, Path]":
-    """Write figures and report; return the study and the report's path. Raises OSError."""
     from kurt2rt.experiments.phases.figures import draw_figures
-    from kurt2rt.experiments.phases.report import write_report
-    from kurt2rt.experiments.phases.summary import read_study
+    from kurt2rt.experiments.phases.study import make_plan
+    from kurt2rt.experiments.phases.tables import all_tables, read_study, reasons_not_to_judge, write_phases
 
-    study = read_study(plan, results)
-    report = results.folder / "report.html"
-    write_report(study, list(draw_figures(study, results.folder)), _command(options), report)
-    return study, report
-
-
-def _seeds(options: _Options) -> str:
-    return options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
-
-
-def _command(options: _Options) -> str:
-    return typed_command("phases", options, {"task": options.task, "seeds": _seeds(options)})
+    seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
+    robot = load_robot_of(options.robot_settings, options.task)
+    task = taught_by_named(load_task(options.task, changes=changes_of(options.changes)), options.teacher)
+    folder = options.out or _FOLDER / (task.name + ("-quick" if options.quick else ""))
+    parts = job_parts(robot, folder)
+    plan = make_plan(task, parse_seeds(seeds), parts, quick=options.quick, loops=options.requested_loops())
+    command = typed_command("phases", options, {"task": options.task, "seeds": seeds})
+    with study_run(plan, parts, options) as bar:
+        bar.say("figures and report")
+        study, report = read_study(plan), folder / "report.html"
+        write_phases(study, list(draw_figures(study, folder)), command, report)
+    reasons = list(reasons_not_to_judge(plan))
+    print_study(all_tables(study, reasons), reasons, as_json=options.as_json, report=report)

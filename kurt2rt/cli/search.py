@@ -6,15 +6,12 @@ from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption, open_executor
-from kurt2rt.cli.interpreted_batch import say_if_interpreted
-from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, search_argument
+from kurt2rt.cli.json_output import print_json
+from kurt2rt.cli.options import Changes, changes_of, results_option, search_argument
 from kurt2rt.cli.progress import one_bar
-from kurt2rt.cli.study_run import says_how_to_go_on
+from kurt2rt.cli.study_run import JobOptions, job_parts, open_executor, say_if_interpreted, says_how_to_go_on
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.platform.text_table import print_whole
@@ -22,8 +19,8 @@ from kurt2rt.platform.text_table import print_whole
 _FOLDER = Path("results/search")
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(JobOptions):
     """Arguments and options of `kurt2rt study search`."""
 
     search: Annotated[str, search_argument()]
@@ -32,10 +29,7 @@ class _Options:
         typer.Option(min=1, metavar="N", help="Number of trials. Default: that of the file.", show_default=False),
     ] = None
     changes: Changes = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
     out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the search's name")] = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -65,23 +59,18 @@ def search(options: _Options) -> None:
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
-    from kurt2rt.experiments.search.figures import draw_trials
-    from kurt2rt.experiments.search.found import write_found
     from kurt2rt.experiments.search.journal import TrialJournal
     from kurt2rt.experiments.search.plan import make_plan
-    from kurt2rt.experiments.search.report import write_report
     from kurt2rt.experiments.search.settings import load_search
-    from kurt2rt.experiments.search.tables import all_tables, verdict_text
+    from kurt2rt.experiments.search.tables import all_tables, draw_trials, verdict_text, write_found, write_search
     from kurt2rt.experiments.search.trials import run_trials, trials_time_s
     from kurt2rt.experiments.study.bus_witness import require_no_difference
-    from kurt2rt.experiments.study.jobs import JobParts
-    from kurt2rt.experiments.study.results import Results
     from kurt2rt.experiments.study.table import as_rich
 
-    settings, robot = load_search(options.search), load_robot()
+    settings = load_search(options.search)
     trials = options.trials or settings.trials
-    results = Results(options.out or _FOLDER / settings.name)
-    parts = JobParts(factory=simulations_of(robot), robot=robot, results=results)
+    parts = job_parts(load_robot(), options.out or _FOLDER / settings.name)
+    results = parts["results"]
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
     command = typed_command("study search", options)
     require_unchecked(plan, trials)
@@ -107,7 +96,7 @@ def search(options: _Options) -> None:
         picture = draw_trials(plan, journal.trials[:trials], plan.folder / "trials.png")
         found, report = plan.folder / "found.yaml", plan.folder / "report.html"
         write_found(plan, check, command, found)
-        write_report(plan, check, tables, [picture], command, report)
+        write_search(plan, check, tables, [picture], command, report)
     if options.as_json:
         better = None if check.found is None else check.found.label
         told = {"tables": tables_of(tables), "better": better, "verdict": verdict_text(plan, check)}

@@ -1,18 +1,109 @@
-"""Run of a study with its record, its executor and its progress bar, as all commands of studies do it."""
+"""Options, run and end of a study, with one meaning in all of its commands."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import Console
 
-from kurt2rt.cli.executor_option import open_executor
-from kurt2rt.cli.loop_options import say_choice
+from hal.robot_kind import simulations_of
+from hal.robot_settings import RobotSettings
+from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
 from kurt2rt.cli.progress import OneBar, one_bar
 from kurt2rt.experiments.study.bus_witness import require_no_difference
-from kurt2rt.experiments.study.loop_choice import NO_CHOICE, LoopChoice
-from kurt2rt.experiments.study.plan import StudyPlan, missing_time_s, run_missing
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.runner import Executor, missing_time_s, open_processes, run_missing
+from kurt2rt.experiments.study.study_plan import AboutT, LoopChoice, LoopRequest, RequestedLoops, StudyPlan
+
+OnOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--on",
+        metavar="FILE",
+        help="Run the jobs on the workers of the cluster of this file (kurt2rt study worker --new makes one).",
+        show_default=False,
+    ),
+]
+_MEANING = (
+    "batch: compiled loops with equal results (extra fast); 1 % of the robots, at least three, are driven on the bus "
+    "too and must agree. A task that the batch does not know is driven on the bus. auto: batch if it is installed and "
+    "the study is long enough."
+)
+LessonsOption = Annotated[
+    LoopRequest, typer.Option(help=f"What drives the lessons of phases 1 and 2. {_MEANING}", show_default=True)
+]
+ExamsOption = Annotated[LoopRequest, typer.Option(help="What drives the exams, as --lessons.", show_default=True)]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobOptions:
+    """Options of all studies: who runs the jobs, and how the results are told."""
+
+    jobs: Jobs = ALL_PROCESSORS
+    on: OnOption = None
+    as_json: AsJson = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopOptions(JobOptions):
+    """Options of studies whose lessons and exams may be driven in a batch, which changes no result."""
+
+    lessons: LessonsOption = LoopRequest.AUTO
+    exams: ExamsOption = LoopRequest.AUTO
+
+    def requested_loops(self) -> RequestedLoops:
+        """Return the requests of both options; say on standard error that an explicit batch is not compiled."""
+        # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
+        from simbridge.batch.compiled import IS_COMPILED
+
+        if LoopRequest.BATCH in (self.lessons, self.exams):
+            say_if_interpreted()
+        return RequestedLoops(self.lessons, self.exams, compiled=IS_COMPILED)
+
+
+def job_parts(robot: RobotSettings, folder: Path) -> JobParts:
+    """Return the simulation, the robot and the results that all jobs of a study share; `folder`: of the results."""
+    return JobParts(factory=simulations_of(robot), robot=robot, results=Results(folder))
+
+
+def say_if_interpreted() -> None:
+    """Say on standard error that numba is missing, if it is, and what that means."""
+    from simbridge.batch.compiled import IS_COMPILED
+
+    if not IS_COMPILED:
+        typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
+
+
+def _say_choice(choice: LoopChoice) -> None:
+    """Say on standard error how many jobs a batch drives, how many have a witness, and what the batch does not know."""
+    for refusal in choice.refusals:
+        typer.echo(refusal, err=True)
+    if choice.loops:
+        jobs = f"{len(choice.loops)} job{'' if len(choice.loops) == 1 else 's'}"
+        typer.echo(f"the study has {jobs} in the batch, {len(choice.witnessed)} of them on the CAN bus too", err=True)
+
+
+@contextmanager
+def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
+    """Yield the executor of --on; without it, one with processes of this machine.
+
+    `jobs`: number of these processes. Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it
+    answers.
+    """
+    if cluster is None:
+        with open_processes(jobs) as local:
+            yield local
+        return
+    # Not at the top: Dask is an extra, and takes a second.
+    from kurt2rt.experiments.study.cluster import open_cluster
+
+    with open_cluster(cluster) as executor:
+        yield executor
 
 
 @contextmanager
@@ -34,22 +125,13 @@ def says_how_to_go_on(results: Results) -> Iterator[None]:
 
 
 @contextmanager
-def study_run(
-    plan: StudyPlan,
-    results: Results,
-    jobs: int,
-    on: Path | None,
-    *,
-    choice: LoopChoice = NO_CHOICE,
-) -> Iterator[OneBar]:
+def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> Iterator[OneBar]:
     """Run the jobs of a study that have no result; the context holds the folder while tables and figures are made.
 
     Args:
         plan: of the study.
-        results: folder of its results.
-        jobs: number of processes.
-        on: value of --on.
-        choice: loops of the plan's jobs, which is said if any job is run.
+        parts: with the folder of its results.
+        options: of the command.
 
     Yields:
         The progress bar.
@@ -57,15 +139,16 @@ def study_run(
     Raises:
         StudyError: another run writes to the folder, or it has results of other settings.
         BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
-        ClusterError: `on` is no file of a cluster, or no scheduler of it answers.
+        ClusterError: --on is no file of a cluster, or no scheduler of it answers.
     """
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 
-    with says_how_to_go_on(results), open_executor(on, jobs) as executor, results.held():
-        require_no_difference(results, {job.made_of.source for wave in plan.waves for job in wave})
-        missing_s = missing_time_s(plan, results)
+    results = parts["results"]
+    with says_how_to_go_on(results), open_executor(options.on, options.jobs) as executor, results.held():
+        require_no_difference(results, {job.made_of.source for job in plan.jobs})
+        missing_s = missing_time_s(plan.waves, results)
         if missing_s:
-            say_choice(choice)
+            _say_choice(plan.choice)
         with one_bar(missing_s) as bar:
-            run_missing(plan, results, executor, bar.update)
+            run_missing(plan.waves, results, executor, bar.update)
             yield bar

@@ -26,21 +26,21 @@ def console_of() -> Console:
 
 
 def print_study(
-    tables: "Iterable[Table]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
+    tables: "Iterable[Table]", reasons_not_to_judge: Iterable[str], *, as_json: bool = False, **files: Path
 ) -> None:
-    """Print the tables of a study, the reasons not to judge it, and the path of the report.
+    """Print the tables of a study, the reasons not to judge it, and the paths of the files that it leaves.
 
-    `as_json`: as one JSON document.
+    `as_json`: as one JSON document. `files`: by what they are, such as report.
     """
     if as_json:
-        print_json({"tables": tables_of(tables), "not_judged": list(reasons_not_to_judge), "report": report})
+        print_json({"tables": tables_of(tables), "not_judged": list(reasons_not_to_judge), **files})
         return
     # Not at the top: the simulator is an extra, and this module is imported without it.
     from kurt2rt.experiments.study.table import as_rich
 
     console = console_of()
     print_whole(console, *map(as_rich, tables), *(f"Not judged: {reason}" for reason in reasons_not_to_judge))
-    print_whole(console, f"report  {report}")
+    print_whole(console, *(f"{what}  {path}" for what, path in files.items()))
 
 
 def tables_of(tables: "Iterable[Table]") -> list[dict[str, Any]]:

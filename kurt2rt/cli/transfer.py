@@ -1,21 +1,14 @@
 """`kurt2rt study transfer`."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.executor_option import OnOption
-from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.loop_options import ExamsOption, LessonsOption, requested_loops
 from kurt2rt.cli.options import (
-    ALL_PROCESSORS,
     Changes,
-    Jobs,
     RobotName,
     changes_of,
     parse_seeds,
@@ -23,27 +16,18 @@ from kurt2rt.cli.options import (
     task_option,
     teacher_option,
 )
-from kurt2rt.cli.study_run import study_run
-from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import load_task_and_robot
-from kurt2rt.core.task_settings import taught_by
-from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.study.eligibility import reasons_against_judging
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.loop_choice import LoopRequest
-from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.experiments.transfer.plan import AFTER, NewWorlds, make_plan, read_study
-from kurt2rt.experiments.transfer.tables import all_tables
-from kurt2rt.experiments.transfer.variants import CONTROLS, taught_on_by
-from kurt2rt.platform.text_table import print_whole
+from kurt2rt.core.task_settings import taught_by_named
+from kurt2rt.experiments.transfer.study import AFTER, CONTROLS, NewWorlds, make_plan, taught_on_by
 
 _WORLDS = {"streets": "streets-SEED"}
 """New world of a task without --world; rooms-SEED for other tasks."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(LoopOptions):
     """Options of `kurt2rt study transfer`."""
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
@@ -93,13 +77,8 @@ class _Options:
         ),
     ] = False
     changes: Changes = None
-    jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
     robot_settings: RobotName = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -122,36 +101,23 @@ def transfer(options: _Options) -> None:
     interrupted goes on where it was.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.transfer.figures import draw_curves
+    from kurt2rt.experiments.study.targets import reasons_against_judging
+    from kurt2rt.experiments.transfer.tables import all_tables, draw_curves, read_study
 
     shipped, robot = load_task_and_robot(options.task, options.robot_settings, changes=changes_of(options.changes))
-    task = taught_by(shipped, load_teacher(options.teacher))
-    results = Results(options.out)
+    parts = job_parts(robot, options.out)
+    places = options.world or [_WORLDS.get(shipped.name, "rooms-SEED")]
     plan = make_plan(
-        task,
-        NewWorlds(_places(task.name, options.world), _after(options.after), options.seconds),
+        taught_by_named(shipped, options.teacher),
+        NewWorlds(tuple(places), tuple(sorted(set(options.after or AFTER))), options.seconds),
         parse_seeds(options.seeds),
         (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
-        JobParts(factory=simulations_of(robot), robot=robot, results=results),
-        loops=requested_loops(options.lessons, options.exams),
+        parts,
+        loops=options.requested_loops(),
     )
     figure = options.out / "transfer.png"
-    with study_run(plan, results, options.jobs, options.on, choice=plan.choice) as bar:
+    with study_run(plan, parts, options) as bar:
         bar.say("figure")
-        study = read_study(plan, results)
+        study = read_study(plan)
         draw_curves(study, figure)
-    tables = list(all_tables(study))
-    if options.as_json:
-        not_judged = list(reasons_against_judging(plan.seeds))
-        print_json({"tables": tables_of(tables), "not_judged": not_judged, "figure": figure})
-        return
-    print_whole(console_of(), *map(as_rich, tables), f"figure  {figure}")
-
-
-def _places(task: str, worlds: Sequence[str] | None) -> tuple[str, ...]:
-    return tuple(worlds or (_WORLDS.get(task, "rooms-SEED"),))
-
-
-def _after(presses: Sequence[int] | None) -> tuple[int, ...]:
-    """Return the numbers of presses of --after, each once and ascending, or those of the study."""
-    return tuple(sorted(set(presses or AFTER)))
+    print_study(all_tables(study), reasons_against_judging(plan.seeds), as_json=options.as_json, figure=figure)

@@ -49,7 +49,7 @@ def worker(options: _Options) -> None:
         print(f"cluster  {options.new}: copy it to each machine, and keep it to yourself", file=sys.stdout)
         print(f"scheduler  {scheduler_command(options.new, options.at)}", file=sys.stdout)
     elif options.to is not None and options.new is None:
-        from kurt2rt.experiments.study.cluster_worker import serve
+        from kurt2rt.experiments.study.cluster import serve
 
         anyio.run(serve, options.to, lambda address: print(f"worker  {address}", flush=True, file=sys.stdout))
     else:

@@ -18,15 +18,14 @@ import pytest
 from distributed import Scheduler, Security
 from distributed.comm import CommClosedError, connect
 
-from kurt2rt.cli.executor_option import open_executor
-from kurt2rt.experiments.study.cluster import require_witness
+from kurt2rt.cli.study_run import open_executor
+from kurt2rt.experiments.study.cluster import require_witness, serve
 from kurt2rt.experiments.study.cluster_file import (
     ClusterError,
     make_cluster_file,
     read_cluster_file,
     scheduler_command,
 )
-from kurt2rt.experiments.study.cluster_worker import serve
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError
 from kurt2rt.experiments.study.results import Results
 from tests.cli.helpers import ROOT, CommandLine

@@ -7,7 +7,7 @@ import pytest
 from kurt2rt.core.task_settings import load_task
 from tests.cli.helpers import CommandLine, unknown_name
 from tests.experiments.helpers import teach
-from tests.experiments.route.test_summary import short
+from tests.experiments.route.test_study import short
 
 SHORT = ("--set", "teaching.corrections_s=1.5", "--set", "exam.duration_s=1", "--set", "course.starts=1")
 

@@ -25,11 +25,10 @@ from tests.experiments.helpers import short_task
 from tests.experiments.navigation.test_goals import settings
 from tests.experiments.navigation.test_tables import GOOD
 from tests.experiments.navigation.test_tables import robot as errands_robot
-from tests.experiments.paper import outcomes as paper
+from tests.experiments.paper import test_tables as paper
 from tests.experiments.phases.outcomes import study as phases_study
 from tests.experiments.results import curriculum_result, exam_result, robot_of_seed
-from tests.experiments.route.outcomes import drive as route_drive
-from tests.experiments.route.outcomes import outcome as route_outcome
+from tests.experiments.route.test_tables import outcome as route_outcome
 from tests.experiments.route.test_tables import study as route_study
 from tests.runs.replay.stored_runs import STORED
 from tests.service.health.reports import ILL
@@ -59,9 +58,7 @@ REPORTS: dict[str, Print] = {
         render_seeds([robot_of_seed(100, 80, exam_result("a"), exam_result("manhattan"))], short_task())
     ),
     "lesson errands": printing(*map(as_rich, navigation_tables([errands_robot(100, GOOD)], settings()))),
-    "lesson route": printing(
-        *map(as_rich, route_tables(route_study([route_outcome(100, route_drive()), route_outcome(101, route_drive())])))
-    ),
+    "lesson route": printing(*map(as_rich, route_tables(route_study([route_outcome(100), route_outcome(101)])))),
     "phases": printing(*map(as_rich, phases_tables(phases_study(), ["Too few."]))),
     "paper": printing(
         *(

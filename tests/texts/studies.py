@@ -3,12 +3,42 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
+from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.lockstep.report import verdict_of
+from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
+from kurt2rt.experiments.paper.tables import paper_targets_table
 from kurt2rt.experiments.phases.steps import ASKS
-from kurt2rt.experiments.phases.training_tables import words_of_controls
-from kurt2rt.experiments.study.eligibility import reasons_against_judging
+from kurt2rt.experiments.phases.tables import phases_targets_table, words_of_controls
+from kurt2rt.experiments.route.tables import all_tables as route_tables
+from kurt2rt.experiments.study.targets import reasons_against_judging
+from kurt2rt.experiments.transfer.tables import all_tables as transfer_tables
+from tests.experiments.navigation import test_tables as navigation
+from tests.experiments.navigation.test_goals import settings
+from tests.experiments.paper import test_tables as paper
 from tests.experiments.phases.outcomes import exam, stage, study, teaching
 from tests.experiments.results import exam_result, world_result
+from tests.experiments.route import test_tables as route
+from tests.experiments.transfer import test_tables as transfer
+
+
+def targets() -> Iterator[tuple[str, str]]:
+    """Yield name, requirement, measured value and result of each target."""
+    found = {"junctions": 100.0, "junctions right": 95.0}
+    streets = paper.summary_of("streets", [paper.robot(1, 92, paper.drive("manhattan", findings=found))])
+    walls = paper.summary_of("wall_following", [paper.robot(1, 92, paper.drive("a"), paper.drive("b", judged=False))])
+    for label, table in (
+        ("paper", paper_targets_table([streets, walls], "targets")),
+        ("phases", phases_targets_table(study(2), [])),
+        ("route", next(route_tables(route.study([route.outcome(seed) for seed in range(100, 120)])))),
+        ("errands", next(navigation_tables([navigation.robot(1, navigation.GOOD)], settings()))),
+        ("transfer", next(transfer_tables(transfer.robots(*[transfer.RIGHT_AT_ONCE] * 20)))),
+    ):
+        yield from ((f"{label} {number}", " | ".join(row)) for number, row in enumerate(table.rows, 1))
+
+
+def results() -> Iterator[tuple[str, str]]:
+    """Yield the texts of verdicts on exams."""
+    yield from ((f"exam {verdict}", EXAM_VERDICT_TEXTS[verdict]) for verdict in ExamVerdict)
 
 
 def reasons() -> Iterator[tuple[str, str]]:
@@ -33,6 +63,6 @@ def exams() -> Iterator[tuple[str, str]]:
 
 def controls() -> Iterator[tuple[str, str]]:
     """Yield the sentences on controls without effect."""
-    silent = [stage(ASKS, exam(progress=7.0), taught=teaching().model_copy(update={"asks": 0})) for _ in range(2)]
+    silent = [stage(ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
     for label, made in (("all equal", study(2)), ("no questions", study(2, asks_only=silent))):
         yield label, " ".join(words_of_controls(made))

@@ -14,8 +14,7 @@ from hal.simulation import Position, SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.certify.outcome import RunOutcome
-from kurt2rt.experiments.certify.run import Run
+from kurt2rt.experiments.certify.run import Run, RunOutcome
 from kurt2rt.experiments.lockstep.batch_guide import BatchGuide
 from kurt2rt.experiments.lockstep.batch_mind import (
     build_drive_settings,

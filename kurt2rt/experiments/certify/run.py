@@ -1,13 +1,12 @@
-"""Runs of a certificate: each draws its world and faults from its own number, the seed of robot and start."""
+"""Runs of a certificate and their outcomes: each draws its world and faults from its number, the seed of the robot."""
 
 import random
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from hal.settings import Settings
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
-
-SEED = "SEED"
-"""Part of a world's name that stands for the run's number."""
+from kurt2rt.experiments.study.jobs import world_of
 
 
 class BrokenShare(NamedTuple):
@@ -35,7 +34,7 @@ class Run(NamedTuple):
     @property
     def world(self) -> str:
         """Name of the world."""
-        return self.place.replace(SEED, str(self.number))
+        return world_of(self.place, self.number)
 
 
 def draw_runs(first: int, count: int, places: Sequence[str], broken: BrokenShare = ALL_WORK) -> list[Run]:
@@ -51,3 +50,39 @@ def _draw_break(number: int, broken: BrokenShare) -> str:
     if chance.random() >= broken.share:
         return ""
     return f"{chance.choice(broken.sensors)}={chance.choice(list(FaultKind))}"
+
+
+class RunOutcome(Settings):
+    """Counts of one run; ticks are counted from 1."""
+
+    number: int
+    world: str
+    broken: str = ""
+    """Sensor that broke and the way in which, such as s15=low; empty: all worked."""
+    ticks: int
+    """Ticks until the end, or until the robot was stuck or stopped."""
+    unknown_ticks: int
+    """Ticks in which it stood in an unknown situation."""
+    questions: int
+    """Times that it began to stand there."""
+    first_question: int
+    """Tick of the first question; 0: none."""
+    collisions: int
+    first_collision: int
+    """Tick of the first collision; 0: none."""
+    stuck: bool
+    """True if it stayed in place for too long without being stopped; this ends the run."""
+    stopped: str = ""
+    """Watch that stopped it until a teacher comes: for a broken sensor, or the guard's; empty without a stop."""
+    travelled_m: float
+    end: tuple[float, float, float]
+    """Pose after the last tick: x, y in m, heading in rad."""
+
+    @property
+    def clean(self) -> bool:
+        """True without a collision, a question, a stop and being stuck."""
+        return not (self.collisions or self.questions or self.stopped or self.stuck)
+
+    def differing(self, other: "RunOutcome") -> list[str]:
+        """Return the names of the fields that differ."""
+        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]

@@ -1,14 +1,133 @@
-"""Tables of a certificate: probabilities and rates with their 95 % intervals, and the worst runs."""
+"""Summary, tables, pictures and report of a certificate: probabilities and rates with their 95 % intervals."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
 
-from kurt2rt.experiments.certify.outcome import RunOutcome
-from kurt2rt.experiments.certify.plan import Certificate
-from kurt2rt.experiments.certify.summary import PlaceSummary, Share, summarise
-from kurt2rt.experiments.lockstep.report import label_of
-from kurt2rt.experiments.study.intervals import Rate
-from kurt2rt.experiments.study.table import Table
+from matplotlib.figure import Figure
+
+from hal.simulation import SimulationFactory
+from kurt2rt.experiments.certify.run import RunOutcome
+from kurt2rt.experiments.certify.study import Certificate
+from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.report import label_of, wilson_interval
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of
+from kurt2rt.experiments.study.report import Section, write_report
+from kurt2rt.experiments.study.table import Table, collisions_text, table_of, to_text
+
+ALL = "all"
+"""Name of the summary of all places, with working sensors."""
+BROKEN = "a sensor breaks"
+"""Name of the summary of all runs with a broken sensor."""
+_MOST_GROUPS = 200
+"""Groups of runs that an interval of clustered events is bootstrapped over; each run by itself needs 1 GB."""
+_CARRIED_M = 0.2
+"""Greater distance of two points of a trail, 0.1 s apart: the robot was repositioned."""
+
+
+class Share(NamedTuple):
+    """Share of the runs with an event, 0 to 1, and its 95 % interval (Wilson)."""
+
+    events: int
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceSummary:
+    """Runs in the worlds of one place."""
+
+    place: str
+    runs: int
+    hours: float
+    """Robot time until the runs ended."""
+    collided: Share
+    stuck: Share
+    asked: Share
+    stopped: Share
+    """Stopped by a watch, such as that of a sensor that looks broken."""
+    clean: Share
+    """None of these."""
+    collisions_per_hour: Rate
+    first_questions_per_hour: Rate
+    """Rate of a robot that has not asked yet."""
+    questions_per_hour: Rate
+    unknown_share: float
+    """Ratio of the time in unknown situations, 0 to 1."""
+    m_per_minute: float
+
+
+def summarise(certificate: Certificate) -> Iterator[PlaceSummary]:
+    """Yield the summary of each place that was drawn and, if there are several places, of all runs.
+
+    Runs with a broken sensor have a summary of their own.
+    """
+    plan = certificate.plan
+    period_s, extent = plan.jobs[0].robot.cycle_s, plan.about.extent
+    pairs = list(zip(plan.about.runs, certificate.outcomes, strict=True))
+    working = [(run.place, outcome) for run, outcome in pairs if not run.broken]
+    broken = [outcome for run, outcome in pairs if run.broken]
+    for place in extent.places:
+        if runs := [outcome for where, outcome in working if where == place]:
+            yield summarise_runs(place, runs, period_s)
+    if len(extent.places) > 1 and working:
+        yield summarise_runs(ALL, [outcome for _, outcome in working], period_s)
+    if broken:
+        yield summarise_runs(BROKEN, broken, period_s)
+
+
+def summarise_runs(place: str, runs: Sequence[RunOutcome], period_s: float) -> PlaceSummary:
+    """Return the summary of runs in one place; `period_s`: of a tick, in s."""
+
+    def share(happened: Callable[[RunOutcome], bool]) -> Share:
+        count = sum(map(happened, runs))
+        return Share(count, count / len(runs), *wilson_interval(count, len(runs)))
+
+    hours = [each.ticks * period_s / 3600 for each in runs]
+    ticks = sum(each.ticks for each in runs)
+    asked = share(lambda run: run.questions > 0)
+    until_asked = sum((each.first_question or each.ticks) * period_s / 3600 for each in runs)
+    fewest, most = poisson_interval(asked.events)
+    return PlaceSummary(
+        place=place,
+        runs=len(runs),
+        hours=sum(hours),
+        collided=share(lambda run: run.collisions > 0),
+        stuck=share(lambda run: run.stuck),
+        asked=asked,
+        stopped=share(lambda run: bool(run.stopped)),
+        clean=share(lambda run: run.clean),
+        collisions_per_hour=_clustered([each.collisions for each in runs], hours),
+        first_questions_per_hour=Rate(asked.events / until_asked, fewest / until_asked, most / until_asked),
+        questions_per_hour=_clustered([each.questions for each in runs], hours),
+        unknown_share=sum(each.unknown_ticks for each in runs) / ticks,
+        m_per_minute=sum(each.travelled_m for each in runs) / (ticks * period_s / 60),
+    )
+
+
+def worst_runs(outcomes: Sequence[RunOutcome], count: int) -> list[RunOutcome]:
+    """Return so many runs at most: those with most collisions, then those stopped, stuck or asking soonest.
+
+    Runs without any of these are left out.
+    """
+
+    def badness(run: RunOutcome) -> tuple[float, ...]:
+        ended = bool(run.stopped) or run.stuck
+        return -run.collisions, not ended, run.ticks, run.first_question or math.inf, run.number
+
+    return sorted((each for each in outcomes if not each.clean), key=badness)[:count]
+
+
+def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
+    """Return events in an hour; runs are independent, and so are groups of them."""
+    size = math.ceil(len(counts) / _MOST_GROUPS)
+    starts = range(0, len(counts), size)
+    return rate_of([sum(counts[i : i + size]) for i in starts], [sum(hours[i : i + size]) for i in starts])
 
 
 def all_tables(certificate: Certificate, worst: Sequence[RunOutcome]) -> Iterator[Table]:
@@ -22,18 +141,17 @@ def all_tables(certificate: Certificate, worst: Sequence[RunOutcome]) -> Iterato
 
 def probability_table(certificate: Certificate, summaries: Sequence[PlaceSummary]) -> Table:
     """Return the probability of each event within one run, by place."""
-    task = certificate.plan.task
-    return Table(
+    task = certificate.plan.about.task
+    return table_of(
         f"Probability within {task.exam.duration_s:g} s of {task.name}",
-        ("world", "runs", "a collision", "stuck", "a question", "stopped by a watch", "none of these"),
-        tuple(
-            (
-                label_of(each.place),
-                str(each.runs),
-                *map(_format_share, (each.collided, each.stuck, each.asked, each.stopped, each.clean)),
-            )
-            for each in summaries
-        ),
+        summaries,
+        ("world", lambda each: label_of(each.place)),
+        ("runs", lambda each: each.runs),
+        ("a collision", lambda each: _format_share(each.collided)),
+        ("stuck", lambda each: _format_share(each.stuck)),
+        ("a question", lambda each: _format_share(each.asked)),
+        ("stopped by a watch", lambda each: _format_share(each.stopped)),
+        ("none of these", lambda each: _format_share(each.clean)),
         note="With 95 % intervals (Wilson). Each run is another robot: gains and turns of its sensors, their noise, "
         "the slip of its wheels, start and world follow from the run's number. A run ends where the robot is stuck or "
         f"stopped. {_format_witnesses(certificate)}",
@@ -42,19 +160,16 @@ def probability_table(certificate: Certificate, summaries: Sequence[PlaceSummary
 
 def rate_table(summaries: Sequence[PlaceSummary]) -> Table:
     """Return events in an hour, the share of time in unknown situations, and the speed, by place."""
-    return Table(
+    return table_of(
         "In an hour of driving",
-        ("world", "hours", "collisions", "first question", "all questions", "time in the unknown", "m in a minute"),
-        tuple(
-            (
-                label_of(each.place),
-                f"{each.hours:.1f}",
-                *map(_format_rate, (each.collisions_per_hour, each.first_questions_per_hour, each.questions_per_hour)),
-                f"{each.unknown_share:.3%}",
-                f"{each.m_per_minute:.1f}",
-            )
-            for each in summaries
-        ),
+        summaries,
+        ("world", lambda each: label_of(each.place)),
+        ("hours", lambda each: f"{each.hours:.1f}"),
+        ("collisions", lambda each: _format_rate(each.collisions_per_hour)),
+        ("first question", lambda each: _format_rate(each.first_questions_per_hour)),
+        ("all questions", lambda each: _format_rate(each.questions_per_hour)),
+        ("time in the unknown", lambda each: f"{each.unknown_share:.3%}"),
+        ("m in a minute", lambda each: f"{each.m_per_minute:.1f}"),
         note="With 95 % intervals: Poisson's exact one, and for events that come in clusters the wider of it and a "
         "bootstrap. No teacher answers: a robot that asks stands until its noise lets it drive on. First question: "
         "questions in an hour of a robot that has not asked yet.",
@@ -63,28 +178,22 @@ def rate_table(summaries: Sequence[PlaceSummary]) -> Table:
 
 def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
     """Return one row for each of the worst runs."""
-    period_s = certificate.plan.blocks[0].robot.cycle_s
+    period_s = certificate.plan.jobs[0].robot.cycle_s
 
     def format_tick(tick: int) -> str:
         return f"{tick * period_s:.1f}" if tick else ""
 
-    return Table(
+    return table_of(
         "Worst runs",
-        (
-            *("run", "world", "broken sensor"),
-            *("collisions", "first after s", "first question after s", "stuck after s", "stopped"),
-        ),
-        tuple(
-            (
-                str(each.number),
-                label_of(each.world),
-                each.broken,
-                str(each.collisions),
-                *map(format_tick, (each.first_collision, each.first_question, each.ticks if each.stuck else 0)),
-                each.stopped,
-            )
-            for each in worst
-        ),
+        worst,
+        ("run", lambda each: each.number),
+        ("world", lambda each: label_of(each.world)),
+        ("broken sensor", lambda each: each.broken),
+        ("collisions", lambda each: each.collisions),
+        ("first after s", lambda each: format_tick(each.first_collision)),
+        ("first question after s", lambda each: format_tick(each.first_question)),
+        ("stuck after s", lambda each: format_tick(each.ticks if each.stuck else 0)),
+        ("stopped", lambda each: each.stopped),
         words=3,
         note="Most collisions first. The number of a run is its seed.",
     )
@@ -102,8 +211,81 @@ def _format_witnesses(certificate: Certificate) -> str:
 def _format_rate(rate: Rate) -> str:
     if math.isinf(rate.high):
         return f"{rate.value:.2f}"
-    return f"{rate.value:.2f} ({rate.low:.2f} to {rate.high:.2f})"
+    return f"{rate.value:.2f} ({to_text(rate[1:], '.2f')})"
 
 
 def _format_share(share: Share) -> str:
-    return f"{share.value:.2%} ({share.low:.2%} to {share.high:.2%})"
+    return f"{share.value:.2%} ({to_text(share[2:], '.2%')})"
+
+
+def draw_worst(
+    exams: Sequence[ExamResult], commands: Sequence[str], factory: SimulationFactory, folder: Path
+) -> Iterator[SavedFigure]:
+    """Draw each run into the folder and yield it: run-NUMBER.png.
+
+    `commands`: by which a user drives each run again. Raises OSError.
+    """
+    for exam, command in zip(exams, commands, strict=True):
+        path = folder / f"run-{exam.seed}.png"
+        draw_run(exam, factory, path)
+        yield SavedFigure(path, f"Run {exam.seed}: {_format_run(exam)}", command)
+
+
+def draw_run(exam: ExamResult, factory: SimulationFactory, path: Path) -> None:
+    """Draw the drive of one run, its questions and its collisions, as a PNG to `path`. Raises OSError."""
+    figure = Figure(figsize=(5.6, 6.0), layout="constrained")
+    axes = figure.subplots()
+    factory.draw(axes, exam.world)
+    draw_trail(axes, exam.trail, "the robot", carried_m=_CARRIED_M)
+    marks = (
+        (exam.trail[:1], "o", START, "start"),
+        (exam.unknown_positions, "o", ASKED, "situation unknown"),
+        (exam.collision_positions, "x", COLLIDED, "collision"),
+    )
+    for places, marker, colour, label in marks:
+        if places:
+            axes.plot(*columns(places), marker, color=colour, markersize=6, zorder=5, label=label)
+    axes.set_title(f"Run {exam.seed} in world {label_of(exam.world)}")
+    legend_below(axes, columns=4)
+    save(figure, path)
+
+
+def _format_run(exam: ExamResult) -> str:
+    """Return a run in a line, such as `world A, 2 collisions, stuck after 81 s`."""
+    collisions = collisions_text(exam.collisions)
+    end = exam.alarm or ("stuck" if exam.stuck else "")
+    asked = f"{len(exam.unknown_positions)} times in the unknown" if exam.unknown_positions else ""
+    parts = (f"world {label_of(exam.world)}", collisions, asked, f"{end} after {exam.duration_s:.0f} s" if end else "")
+    return ", ".join(part for part in parts if part)
+
+
+def write_certificate(
+    certificate: Certificate, tables: Sequence[Table], pictures: Sequence[SavedFigure], command: str, path: Path
+) -> None:
+    """Write the report of a certificate as an HTML page to `path`. Raises OSError.
+
+    `command`: typed words, without those that belong to the machine alone.
+    """
+    task, _, runs = certificate.plan.about
+    told = (
+        f"A taught robot drove {task.exam.duration_s:g} s in simulation, without a teacher, once for each number from "
+        f"{runs[0].number} to {runs[-1].number}. A number makes the robot with the spread of its sensors, its noise "
+        "and slip, its start and its world. The simulated robot stands in for a real one: slopes, carpets, people and "
+        "sunlight are not in it."
+    )
+    again = (
+        "Each was driven again on the CAN loop, with the same outcome. The line below a picture is the command that "
+        "shows it again."
+    )
+    write_report(
+        path,
+        f"KURT2: certificate of a robot that was taught {task.name}",
+        (
+            Section("", (told,), tables),
+            *([Section("Worst runs", (again,), pictures=pictures)] if pictures else ()),
+            Section("How this was made"),
+        ),
+        command=command,
+        footer="{versions}. Source of what drives and simulates: {source}. The same command with the same versions "
+        "gives the same numbers on the same kind of machine.",
+    )

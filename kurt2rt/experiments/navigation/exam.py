@@ -3,12 +3,14 @@
 import math
 import random
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import length_m
+from hal.settings import Settings
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
@@ -18,14 +20,63 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen
-from kurt2rt.experiments.navigation.guided_tour import TRAIL_STRIDE, rounded_places
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsRun, Strategy
+from kurt2rt.experiments.navigation.guided_tour import TRAIL_STRIDE
 from kurt2rt.experiments.navigation.tour_guide import HOME
+from kurt2rt.experiments.study.drive_row import Place, rounded_places
 from kurt2rt.runtime import Runtime
 
 _EXAMINER = "examiner"
 _ASTRAY = 2.0
 """Distance at which a drive without a plan has failed, as a multiple of the shortest."""
+
+Strategy = Literal["planning", "chance", "first taught"]
+"""Strategy of the drive: a plan; as controls, random taught ways, or always the way taught first."""
+
+
+class ErrandDone(Settings):
+    """Outcome of one drive to a goal."""
+
+    goal: str
+    why_not: str
+    """Empty where it came there."""
+    seconds: float
+    way_m: float
+    shortest_m: float
+    """Shortest distance from start to end; of a missed goal, to the middle of its street."""
+    junctions: int
+    """Number of junctions on the shortest way."""
+    demonstrated: float | None
+    """The shortest way that it was led there in one piece, as a multiple of the shortest one; None: never."""
+    surprises: int
+    """Number of places that differed from the plan."""
+    collisions: int
+
+    @property
+    def reached(self) -> bool:
+        """True if the robot reached the goal without a collision."""
+        return not self.why_not and not self.collisions
+
+    @property
+    def detour(self) -> float:
+        """Ratio of the travelled and the shortest distance, both in m."""
+        return self.way_m / max(self.shortest_m, 0.1)
+
+
+class ErrandsRun(Settings):
+    """Outcome of all drives to goals by one strategy."""
+
+    how: Strategy
+    errands: tuple[ErrandDone, ...]
+    trail: tuple[Place, ...]
+
+    def good(self, detour_at_most: float) -> int:
+        """Return the number of goals reached at this ratio of distances or less."""
+        return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
+
+    @property
+    def reached(self) -> tuple[ErrandDone, ...]:
+        """Goals that were reached, however long the way."""
+        return tuple(each for each in self.errands if each.reached)
 
 
 class RandomChooser:

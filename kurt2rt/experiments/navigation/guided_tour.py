@@ -1,7 +1,7 @@
 """Guided tour: a robot that knows the streets is led through a town, in lockstep."""
 
 import random
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from behaviors.metrics.errands import Errands, ErrandsSettings
@@ -18,8 +18,8 @@ from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
-from kurt2rt.experiments.navigation.outcome import Place
 from kurt2rt.experiments.navigation.tour_guide import TourGuide
+from kurt2rt.experiments.study.drive_row import Place, rounded_places
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
@@ -59,11 +59,6 @@ def navigation_settings(task: TaskSettings) -> ErrandsSettings:
     raise SettingsError(
         "to run errands it needs the course errands, and a mid level of places", where=f"task {task.name}"
     )
-
-
-def rounded_places(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...]:
-    """Return positions in m, rounded to the millimetre."""
-    return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)
 
 
 def street_tracker(plan: WorldPlan, task: TaskSettings) -> Errands:

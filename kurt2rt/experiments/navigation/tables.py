@@ -1,26 +1,32 @@
-"""The tables of the results."""
+"""Tables and figure of the navigation study."""
 
 import statistics
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from math import ceil
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from matplotlib.figure import Figure
 
 from behaviors.metrics.errands import ErrandsSettings
+from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.report import wilson_interval
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
-from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
-from kurt2rt.experiments.study.eligibility import reasons_against_judging
-from kurt2rt.experiments.study.table import Table
+from kurt2rt.experiments.lockstep.trails import draw_trail
+from kurt2rt.experiments.navigation.exam import ErrandDone, ErrandsRun, Strategy
+from kurt2rt.experiments.navigation.study import CONTROLS, PLANNING, ErrandsOutcome
+from kurt2rt.experiments.navigation.tour_guide import HOME
+from kurt2rt.experiments.study.figures import START, save
+from kurt2rt.experiments.study.table import Table, collisions_text, of_text, table_of, to_text
+from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 
 SHARE = 18 / 20
 """Required ratio of goals reached by a way that is short enough, and of robots that reach this ratio."""
-
 _TITLES: dict[Strategy, str] = {
     "planning": "by a plan",
     "chance": "control: any way taught, by chance",
     "first taught": "control: always the way taught first",
 }
+_LED = "#b0b0b0"
+_BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
 
 
 def all_tables(
@@ -30,133 +36,127 @@ def all_tables(
 
     `course`: settings of the errands. `teacher`: name of the scripted teacher.
     """
-    yield targets_table(outcomes, course)
-    runs = runs_table(outcomes, course)
-    yield replace(runs, note=f"{runs.note} Taught by the scripted teacher {teacher}.")
+    reasons = list(reasons_against_judging([each.seed for each in outcomes]))
+    found = [((), verdict) for verdict in verdicts(_runs(outcomes, "planning"), course)]
+    yield targets_table(found, reasons, title="Errands: what was asked")
+    yield runs_table(outcomes, course, teacher)
     yield robots_table(outcomes, course)
 
 
-def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of requirements and measured values, over all robots. `course`: settings of the errands."""
-    runs = _runs(outcomes, "planning")
-    goals = sum(len(run.errands) for run in runs)
-    good = sum(run.good(course.detour_at_most) for run in runs)
-    enough = sum(_is_enough(run, course) for run in runs)
-    needed, robots = ceil(SHARE * goals - 1e-9), ceil(SHARE * len(runs) - 1e-9)
-    reached = [each for run in runs for each in run.reached]
-    mean = statistics.fmean(each.detour for each in reached) if reached else float("inf")
-    rows = (
-        (
-            f"goals reached, way at most {course.detour_at_most:g} times the shortest",
-            f"{needed} of {goals}",
-            f"{good} of {goals}",
-            good >= needed,
-        ),
-        (
-            "robots that reach so 18 of 20 of their goals",
-            f"{robots} of {len(runs)}",
-            f"{enough} of {len(runs)}",
-            enough >= robots,
-        ),
-        (
-            "way to goals that were reached, mean",
-            f"at most {course.detour_at_most:g} times the shortest",
-            f"{mean:.2f}",
-            mean <= course.detour_at_most,
-        ),
-    )
-    reasons = list(reasons_against_judging([each.seed for each in outcomes]))
-    told = tuple((what, asked, came, "not judged" if reasons else _word(met)) for what, asked, came, met in rows)
-    return Table(
-        "Errands: what was asked",
-        ("what", "asked", "came", "verdict"),
-        told,
-        words=4,
-        note=" ".join(["Not judged.", *reasons]) if reasons else "",
-    )
+def verdicts(runs: Sequence[ErrandsRun], course: ErrandsSettings) -> Iterator[Verdict]:
+    """Yield the verdicts on the drives of all robots by a plan. `course`: settings of the errands."""
+    most, goals = course.detour_at_most, sum(len(run.errands) for run in runs)
+    good, needed = sum(run.good(most) for run in runs), needed_of(SHARE, goals)
+    what = f"goals reached, way at most {most:g} times the shortest"
+    yield Verdict(what, of_text(needed, goals), of_text(good, goals), good >= needed)
+    robots = needed_of(SHARE, len(runs))
+    enough = sum(bool(run.errands) and run.good(most) >= needed_of(SHARE, len(run.errands)) for run in runs)
+    asked, came = of_text(robots, len(runs)), of_text(enough, len(runs))
+    yield Verdict("robots that reach so 18 of 20 of their goals", asked, came, enough >= robots)
+    mean = _mean(each.detour for run in runs for each in run.reached)
+    asked = f"at most {most:g} times the shortest"
+    yield Verdict("way to goals that were reached, mean", asked, f"{mean:.2f}", mean <= most)
 
 
-def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of the drives by planning and of the controls. `course`: settings of the errands."""
-    rows = []
-    for how in (*PLANNING, *CONTROLS):
-        runs = _runs(outcomes, how)
-        errands = [each for run in runs for each in run.errands]
-        if not errands:
-            continue
-        good = sum(run.good(course.detour_at_most) for run in runs)
-        low, high = wilson_interval(good, len(errands))
-        detours = [each.detour for run in runs for each in run.reached]
-        rows.append(
-            (
-                _TITLES[how],
-                f"{good} of {len(errands)}",
-                f"{low:.0%} to {high:.0%}",
-                str(len(detours)),
-                f"{statistics.fmean(detours):.2f}" if detours else "",
-                f"{max(detours):.2f}" if detours else "",
-                str(sum(each.surprises for each in errands)),
-                str(sum(each.collisions for each in errands)),
-            )
-        )
-    replayed = [each for run in _runs(outcomes, "planning") for each in run.errands]
-    never = sum(each.demonstrated is None for each in replayed)
-    led = [each.demonstrated for each in replayed if each.demonstrated is not None]
-    shown = f"mean {statistics.fmean(led):.1f}, least {min(led):.2f} times the shortest" if led else "none"
-    return Table(
+def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teacher: str) -> Table:
+    """Return the table of the drives by planning and of the controls.
+
+    `course`: settings of the errands. `teacher`: name of the scripted teacher.
+    """
+
+    def errands(how: Strategy) -> list[ErrandDone]:
+        return [each for run in _runs(outcomes, how) for each in run.errands]
+
+    def good(how: Strategy) -> int:
+        return sum(run.good(course.detour_at_most) for run in _runs(outcomes, how))
+
+    def detours(how: Strategy) -> list[float]:
+        return [each.detour for each in errands(how) if each.reached]
+
+    led = [each.demonstrated for each in errands("planning") if each.demonstrated is not None]
+    shown = f"mean {_mean(led):.1f}, least {min(led):.2f} times the shortest" if led else "none"
+    return table_of(
         "Goals that were never demonstrated as a whole",
-        ("how", "reached in time", "95 %", "reached", "way / shortest", "most", "surprises", "collisions"),
-        tuple(rows),
-        words=1,
+        [how for how in (*PLANNING, *CONTROLS) if errands(how)],
+        ("how", lambda how: _TITLES[how]),
+        ("reached in time", lambda how: of_text(good(how), len(errands(how)))),
+        ("95 %", lambda how: to_text(wilson_interval(good(how), len(errands(how))), ".0%")),
+        ("reached", lambda how: len(detours(how))),
+        ("way / shortest", lambda how: f"{_mean(detours(how)):.2f}" if detours(how) else ""),
+        ("most", lambda how: f"{max(detours(how)):.2f}" if detours(how) else ""),
+        ("surprises", lambda how: sum(each.surprises for each in errands(how))),
+        ("collisions", lambda how: sum(each.collisions for each in errands(how))),
         note=f"Reached in time: without touching anything, by a way of at most {course.detour_at_most:g} times the "
-        f"shortest. Who repeats the shortest piece of the lesson that leads from start to goal: {shown}; for {never} "
-        "goals there is no such piece.",
+        f"shortest. Who repeats the shortest piece of the lesson that leads from start to goal: {shown}; for "
+        f"{len(errands('planning')) - len(led)} goals there is no such piece. Taught by the scripted teacher "
+        f"{teacher}.",
     )
 
 
 def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """Return the table of single robots, a row for each. `course`: settings of the errands."""
-    rows = []
-    for each in outcomes:
-        run = each.run_of("planning")
-        assert run is not None
-        why = ", ".join(f"{failed.goal}: {_why(failed.why_not, failed.collisions)}" for failed in _failed(run))
-        rows.append(
-            (
-                str(each.seed),
-                f"{each.teaching_s:.0f}",
-                f"{each.ways} of {each.ways_in_all}",
-                str(each.mid_rlas),
-                str(each.mid_asks),
-                str(each.missed_junctions),
-                str(each.rescues),
-                f"{run.good(course.detour_at_most)} of {len(run.errands)}",
-                why or "none",
-            )
+
+    def missed(each: ErrandsOutcome) -> str:
+        (run,) = _runs([each], "planning")
+        failed = (done for done in run.errands if not done.reached)
+        return (
+            ", ".join(f"{done.goal}: {done.why_not or collisions_text(done.collisions)}" for done in failed) or "none"
         )
-    return Table(
+
+    def reached(each: ErrandsOutcome) -> str:
+        (run,) = _runs([each], "planning")
+        return of_text(run.good(course.detour_at_most), len(run.errands))
+
+    return table_of(
         "Each robot",
-        ("robot", "led, s", "ways", "mid-level RLAs", "asks", "missed", "rescues", "reached", "not reached"),
-        tuple(rows),
-        words=1,
+        outcomes,
+        ("robot", lambda each: each.seed),
+        ("led, s", lambda each: f"{each.teaching_s:.0f}"),
+        ("ways", lambda each: of_text(each.ways, each.ways_in_all)),
+        ("mid-level RLAs", lambda each: each.mid_rlas),
+        ("asks", lambda each: each.mid_asks),
+        ("missed", lambda each: each.missed_junctions),
+        ("rescues", lambda each: each.rescues),
+        ("reached", reached),
+        ("not reached", missed),
     )
-
-
-def _why(why_not: str, collisions: int) -> str:
-    return why_not or f"{collisions} collision{'' if collisions == 1 else 's'}"
-
-
-def _failed(run: ErrandsRun) -> Iterator[ErrandDone]:
-    return (each for each in run.errands if not each.reached)
 
 
 def _runs(outcomes: Sequence[ErrandsOutcome], how: Strategy) -> list[ErrandsRun]:
     return [run for each in outcomes if (run := each.run_of(how)) is not None]
 
 
-def _is_enough(run: ErrandsRun, course: ErrandsSettings) -> bool:
-    return len(run.errands) > 0 and run.good(course.detour_at_most) >= SHARE * len(run.errands) - 1e-9
+def _mean(values: Iterable[float]) -> float:
+    """Return the mean; infinite without values."""
+    given = list(values)
+    return statistics.fmean(given) if given else float("inf")
 
 
-def _word(met: bool) -> str:
-    return "met" if met else "missed"
+def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
+    """Draw the tour and the drives of one robot in a world, and write the picture to `path`. Raises OSError."""
+    figure = Figure(figsize=(7.2, 8.0), layout="constrained")
+    axes = figure.subplots()
+    factory.draw(axes, world)
+    label = f"led about, {outcome.teaching_s:.0f} s"
+    axes.plot([x for x, _ in outcome.led], [y for _, y in outcome.led], color=_LED, lw=0.8, zorder=2, label=label)
+    run = outcome.run_of("planning")
+    assert run is not None
+    draw_trail(axes, run.trail, f"errands without a teacher, {len(run.errands)} goals", carried_m=0.8, width=0.9)
+    meant = {each.goal: each.reached for each in run.errands}
+    for name, (x_m, y_m) in outcome.named.items():
+        if name == HOME:
+            axes.plot([x_m], [y_m], "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label=HOME)
+        else:
+            weight = "bold" if name in meant else "normal"
+            number = name.rsplit(" ", 1)[-1]
+            axes.annotate(
+                number, (x_m, y_m), ha="center", va="center", fontsize="x-small", weight=weight, zorder=7, bbox=_BOX
+            )
+    reached = len(run.reached)
+    axes.set_title(
+        f"robot {outcome.seed}: {reached} of {len(run.errands)} goals reached\n"
+        f"{outcome.ways} of {outcome.ways_in_all} ways taught in {outcome.teaching_s:.0f} s",
+        fontsize="medium",
+    )
+    figure.legend(loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    save(figure, path)

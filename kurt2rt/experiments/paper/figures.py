@@ -15,18 +15,20 @@ from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.lockstep.report import label_of
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
-from kurt2rt.experiments.paper.outcome import DriveOutcome
-from kurt2rt.experiments.paper.summary import GrowthStudy, PaperStudy, PaperSummary
-from kurt2rt.experiments.study.figure import SavedFigure
-from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
+from kurt2rt.experiments.paper.tables import GrowthStudy, PaperStudy
+from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.table import collisions_text
 
 _LIFTED_M = 0.5
 """A robot that is so far from where it was a moment ago was set down elsewhere."""
 _COLUMNS = 3
+_MOST_UNSEEN = 1
+"""Generated worlds in the picture of a task."""
 _VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
 
 
-def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> None:
+def draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
     """Draw the trail of a drive round the two columns, with its start, as Fig. 7 of the paper does.
 
     Writes a PNG to `path`. Raises OSError.
@@ -38,7 +40,7 @@ def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> N
     save(figure, path)
 
 
-def draw_drives(factory: SimulationFactory, drives: Sequence[DriveOutcome], path: Path) -> None:
+def draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Path) -> None:
     """Draw a panel for each drive: trail, start, unknown situations and collisions.
 
     Writes a PNG to `path`. Raises OSError.
@@ -58,15 +60,13 @@ def draw_drives(factory: SimulationFactory, drives: Sequence[DriveOutcome], path
     save(figure, path)
 
 
-def _format_drive(drive: DriveOutcome) -> str:
-    collisions = f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
-    verdict = _VERDICT_TEXTS[drive.verdict]
-    early = drive.alarm or ("stuck" if drive.stuck else "")
-    end = f", {early} after {drive.duration_s:.0f} s" if early else ""
-    return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}{end}"
+def _format_drive(drive: DriveRow) -> str:
+    end = f", {drive.early_end}" if drive.early_end else ""
+    progress = f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions_text(drive.collisions)}"
+    return f"{progress}\n{_VERDICT_TEXTS[drive.verdict]}{end}"
 
 
-def _draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveOutcome) -> None:
+def _draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveRow) -> None:
     factory.draw(axes, drive.world)
     draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_LIFTED_M, width=0.9)
     if drive.trail:
@@ -91,10 +91,8 @@ def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) 
     figure = Figure(figsize=(5.6 * len(studies), 4.8), layout="constrained")
     panels = figure.subplots(1, len(studies), squeeze=False, sharey=True)[0]
     for axes, study in zip(panels, studies, strict=True):
-        radii = study.radii
-        colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(radii)))
-        for radius, colour in zip(radii, colours, strict=True):
-            curves = study.curves(radius)
+        colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(study.curves)))
+        for (radius, curves), colour in zip(study.curves.items(), colours, strict=True):
             last_s = min(map(len, curves))
             low, median, high = np.percentile([curve[:last_s] for curve in curves], (25, 50, 75), axis=0)
             time_s = np.arange(1, last_s + 1)
@@ -142,26 +140,22 @@ def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -
     save(figure, path)
 
 
-_MOST_UNSEEN = 1
-"""Generated worlds in the picture of a task."""
-
-
 def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each figure into the folder and yield it: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
 
     Figures of tasks that are not in the study are left out. Raises OSError.
     """
-    paper = study.plan.paper
+    paper = study.plan.about.paper
     shipped = study.of("shipped")
     if study.growth:
         path = folder / "fig2.png"
-        planned = study.plan.growth[0]
-        draw_growth(study.growth, planned.task.paper, path)
-        robots = len({each.seed for each in study.growth[0].outcomes})
+        task = next(each.of.task for each in study.experiments if each.of.task.name == study.growth[0].task)
+        draw_growth(study.growth, task.paper, path)
+        robots = max(map(len, study.growth[0].curves.values()))
         yield SavedFigure(
             path,
             "Fig. 2: RLAs against teaching time for several R",
-            f"{planned.task.name}, phase 1 only. Median (line) and quartiles (band) of {robots} robots for each R. The "
+            f"{task.name}, phase 1 only. Median (line) and quartiles (band) of {robots} robots for each R. The "
             "star is the only number in the paper's text, for both phases; the paper does not tell its R.",
         )
     path = folder / "fig4.png"
@@ -171,34 +165,28 @@ def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) ->
     path = folder / "fig6.png"
     draw_worlds(factory, paper.worlds, path)
     yield SavedFigure(path, "Fig. 6: the test worlds", "World A is the one that is taught in.")
-    for summary in shipped:
-        outcome = summary.outcomes[0]
-        if summary.settings.task == paper.eight:
+    for each in shipped:
+        robot = each.outcomes[0]
+        drive = robot.drives[0]
+        if each.of.settings.task == paper.eight:
             path = folder / "fig7.png"
-            draw_eight(factory, outcome.drives[0], path)
+            draw_eight(factory, drive, path)
             yield SavedFigure(
                 path,
                 "Fig. 7: the eight round two columns",
-                f"The exam of the robot of seed {outcome.seed} without its teacher: "
-                f"{_format_summary(outcome.drives[0])}. It is the first of the seeds, and was not chosen.",
+                f"The exam of the robot of seed {robot.seed} without its teacher: {drive.progress:.1f} {drive.unit} in "
+                f"{drive.duration_s:.0f} s, {drive.collisions} collisions. It is the first of the seeds, and was not "
+                "chosen.",
             )
-    for summary in shipped:
-        outcome = summary.outcomes[0]
-        path = folder / f"drive-{summary.task.name}.png"
-        draw_drives(factory, _of_picture(summary), path)
+    for each in shipped:
+        robot = each.outcomes[0]
+        path = folder / f"drive-{each.of.task.name}.png"
+        own = [drive for drive in robot.drives if drive.world in each.of.task.exam.worlds]
+        others = [drive for drive in robot.drives if drive not in own]
+        draw_drives(factory, [*own, *others[:_MOST_UNSEEN]], path)
         yield SavedFigure(
             path,
-            summary.settings.title,
-            f"Exams of the robot of seed {outcome.seed}, the first one, after {outcome.teaching_s:g} s of teaching, "
-            f"with {outcome.rlas} RLAs.",
+            each.of.settings.title,
+            f"Exams of the robot of seed {robot.seed}, the first one, after {robot.lesson.teaching_s:g} s of teaching, "
+            f"with {robot.lesson.rlas} RLAs.",
         )
-
-
-def _of_picture(summary: PaperSummary) -> list[DriveOutcome]:
-    drives = summary.outcomes[0].drives
-    own = [each for each in drives if each.world in summary.task.exam.worlds]
-    return own + [each for each in drives if each not in own][:_MOST_UNSEEN]
-
-
-def _format_summary(drive: DriveOutcome) -> str:
-    return f"{drive.progress:.1f} {drive.unit} in {drive.duration_s:.0f} s, {drive.collisions} collisions"

@@ -9,9 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.lockstep.report import label_of, wilson_interval
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
-from kurt2rt.experiments.phases.outcome import StageOutcome
 from kurt2rt.experiments.phases.steps import (
     BRANCHES,
     INTACT,
@@ -22,9 +21,9 @@ from kurt2rt.experiments.phases.steps import (
     PHASE_5,
     TITLES,
 )
-from kurt2rt.experiments.phases.summary import MEASURES, Measure, PhasesStudy, worlds_of
-from kurt2rt.experiments.study.figure import SavedFigure
-from kurt2rt.experiments.study.figure_style import save
+from kurt2rt.experiments.phases.tables import MEASURES, PhasesStudy, drives_of, passed_of
+from kurt2rt.experiments.study.drive_row import collisions_in_10_min
+from kurt2rt.experiments.study.figures import SavedFigure, save
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
 _TEACHING = (PHASE_2, PHASE_3, PHASE_4, PHASE_5)
@@ -75,22 +74,22 @@ def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
     success, collisions = figure.subplots(1, 2, sharey=True)
     places = np.arange(len(names))[::-1]
     # Not every stage is examined in every world: a world has its own colour and place all the same.
-    every = list(dict.fromkeys(world.world for name in names for world in worlds_of(study.stages[name])))
+    exams = {name: drives_of(study.stages[name]) for name in names}
+    every, most = list(dict.fromkeys(world for name in names for world in exams[name])), 1.0
     for stage, place in zip(names, places, strict=True):
-        for world in worlds_of(study.stages[stage]):
-            number = every.index(world.world)
+        for world, drives in exams[stage].items():
+            number, passed, rate = every.index(world), passed_of(drives), collisions_in_10_min(drives)
             at = place + 0.14 * ((len(every) - 1) / 2 - number)
             colour = _WORLD_COLOURS[number % len(_WORLD_COLOURS)]
-            label = f"world {world.label}" if stage == names[0] else None
-            _bar(success, at, world.share, world.interval, colour, label)
-            rate = world.collisions
+            label = f"world {label_of(world)}" if stage == names[0] else None
+            _bar(success, at, passed / len(drives), wilson_interval(passed, len(drives)), colour, label)
             _bar(collisions, at, rate.value, (rate.low, rate.high), colour, None)
+            most = max(most, rate.value)
     success.set_yticks(places, [TITLES[name] for name in names])
     success.set_xlim(-0.03, 1.03)
     success.set_xlabel("share of the robots that succeed")
     collisions.set_xlabel("collisions in 10 min")
-    most = max(world.collisions.value for name in names for world in worlds_of(study.stages[name]))
-    collisions.set_xlim(-0.03 * max(most, 1.0), 1.5 * max(most, 1.0))
+    collisions.set_xlim(-0.03 * most, 1.5 * most)
     for axes in (success, collisions):
         axes.grid(alpha=0.25)
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
@@ -109,13 +108,13 @@ def _draw_load(study: PhasesStudy, path: Path) -> None:
     begins = 0.0
     highest = 1.0
     for name in _TEACHING:
-        taught = [stage.teaching for stage in study.stages[name] if stage.teaching is not None]
-        minutes = len(taught[0].load)
-        lasts = taught[0].duration_s / 60.0
+        taught = study.taught(name)
+        minutes = len(taught[0].workload)
+        lasts = taught[0].teaching_s / 60.0
         ends = np.minimum(np.arange(1, minutes + 1), lasts)
         width = np.diff(ends, prepend=0.0)
         for kind in SAID:
-            said = np.mean([[getattr(minute, kind) for minute in each.load] for each in taught], axis=0) / width
+            said = np.mean([[getattr(minute, kind) for minute in each.workload] for each in taught], axis=0) / width
             highest = max(highest, float(said.max()))
             axes.stairs(
                 said,
@@ -141,7 +140,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
     """Median and quartiles against time, with the bound of trust."""
     figure = Figure(figsize=(7.5, 4.4), layout="constrained")
     axes = figure.subplots()
-    curves = [stage.teaching.agreement for stage in study.stages[PHASE_4] if stage.teaching is not None]
+    curves = [each.agreement for each in study.taught(PHASE_4)]
     shares = np.array([[np.nan if share is None else share for share in curve] for curve in curves], dtype=np.float64)
     times = _AGREEMENT_EVERY_MIN * np.arange(1, shares.shape[1] + 1)
     heard = ~np.isnan(shares).all(axis=0)
@@ -149,7 +148,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
         low, median, high = np.nanpercentile(shares[:, heard], (25, 50, 75), axis=0)
         axes.fill_between(times[heard], low, high, alpha=0.2, color="#1f6fb2", linewidth=0)
         axes.plot(times[heard], median, color="#1f6fb2", linewidth=1.8, label="agreement")
-    bound = load_critic(study.plan.task.critic).agreement.bound
+    bound = load_critic(study.plan.about.task.critic).agreement.bound
     axes.axhline(bound, color="#d1495b", linestyle="--", label=f"trusted from {bound:g}")
     axes.set_ylim(0.0, 1.0)
     axes.set_xlabel("phase 4, min")
@@ -161,17 +160,17 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
 
 def _draw_intact(study: PhasesStudy, path: Path) -> None:
     """Each robot before and after, by each measure but success."""
-    before, after = study.stages[PHASE_2], study.stages[INTACT]
-    shown = [measure for measure in MEASURES[1:] if any(measure.of(exam) is not None for exam in before[0].exams)]
+    before, after = drives_of(study.stages[PHASE_2]), drives_of(study.stages[INTACT])
+    first = next(iter(before.values()))[0]
+    shown = [measure for measure in MEASURES[1:] if measure.of(first) is not None]
     figure = Figure(figsize=(3.6 * len(shown), 4.2), layout="constrained")
     panels = figure.subplots(1, len(shown), squeeze=False)[0]
-    worlds = [exam.world for exam in after[0].exams]
     for axes, measure in zip(panels, shown, strict=True):
-        for number, world in enumerate(worlds):
-            pairs = [(_of(measure, one, world), _of(measure, other, world)) for one, other in _both(before, after)]
+        for number, world in enumerate(after):
+            pairs = [[measure.of(drive) for drive in both] for both in zip(before[world], after[world], strict=True)]
             colour = mpl.colors.to_rgba(_WORLD_COLOURS[number % len(_WORLD_COLOURS)], 0.6)
             label = f"world {label_of(world)}" if measure is shown[0] else None
-            axes.plot(*zip(*pairs, strict=True), "o", color=colour, markersize=5, label=label)
+            axes.plot(*np.array(pairs, dtype=np.float64).T, "o", color=colour, markersize=5, label=label)
         low, high = (bound(*axes.get_xlim(), *axes.get_ylim()) for bound in (min, max))
         axes.plot([low, high], [low, high], color="#999999", linewidth=0.8, zorder=0)
         axes.set_title(measure.name, fontsize="medium")
@@ -180,12 +179,3 @@ def _draw_intact(study: PhasesStudy, path: Path) -> None:
     panels[0].set_ylabel("after")
     figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
     save(figure, path)
-
-
-def _both(before: Sequence[StageOutcome], after: Sequence[StageOutcome]) -> list[tuple[StageOutcome, StageOutcome]]:
-    return list(zip(before, after, strict=True))
-
-
-def _of(measure: Measure, stage: StageOutcome, world: str) -> float:
-    value = measure.of(next(exam for exam in stage.exams if exam.world == world))
-    return float("nan") if value is None else value

@@ -11,10 +11,12 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
-from kurt2rt.experiments.route.outcome import LAYERS, Place, RouteOutcome
-from kurt2rt.experiments.route.summary import RouteStudy
-from kurt2rt.experiments.study.figure import SavedFigure
-from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
+from kurt2rt.experiments.route.route_monitor import LAYERS
+from kurt2rt.experiments.route.study import RouteOutcome
+from kurt2rt.experiments.route.tables import RouteStudy
+from kurt2rt.experiments.study.drive_row import Place
+from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.table import collisions_text
 
 _ROUTE = "#e8a33d"
 _MARKS = {"symbols": "v", "mid": "s", "basic": "o"}
@@ -25,11 +27,10 @@ _BESIDE_M = 0.13
 
 def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each length and variant into the folder and yield it: route-<variant>-<decisions>.png. Raises OSError."""
-    world = study.plan.task.exam.worlds[0]
-    for summary in study.summaries:
-        variant, decisions = summary.experiment.variant, summary.experiment.decisions
+    world = study.plan.about.task.exam.worlds[0]
+    for (variant, decisions), outcomes in study.routes:
         path = folder / f"route-{variant.name}-{decisions}.png"
-        draw_routes(factory, world, summary.outcomes, path)
+        draw_routes(factory, world, outcomes, path)
         yield SavedFigure(
             path,
             f"Routes of {decisions} decisions: {variant.title}",
@@ -81,7 +82,7 @@ def _draw(axes: Axes, factory: SimulationFactory, world: str, outcome: RouteOutc
     draw_trail(axes, drive.trail, f"the drive, {drive.duration_s:.0f} s", carried_m=0.5, width=0.8)
     axes.plot(*columns([outcome.start]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
     for layer in LAYERS:
-        wrong = [(each.x_m, each.y_m) for each in drive.wrong if each.layer == layer]
+        wrong = [(each.x_m, each.y_m) for each in outcome.wrong if each.layer == layer]
         if wrong:
             label = f"wrong: {layer} ({len(wrong)})"
             axes.plot(*columns(wrong), _MARKS[layer], color=ASKED, markersize=7, zorder=5, label=label)
@@ -108,9 +109,9 @@ def _beside(here: Place, there: Place) -> tuple[Place, Place]:
 
 def _told(outcome: RouteOutcome) -> str:
     drive = outcome.drive
-    verdict = "without an error" if drive.without_error else "with errors"
-    collisions = f", {drive.collisions} collision{'' if drive.collisions == 1 else 's'}" if drive.collisions else ""
+    collisions = f", {collisions_text(drive.collisions)}" if drive.collisions else ""
     return (
         f"robot {outcome.seed}: {drive.right} of {drive.junctions} decisions right{collisions}\n"
-        f"{drive.duration_s:.0f} s {verdict}, {outcome.mid_rlas} mid-level RLAs"
+        f"{drive.duration_s:.0f} s {'without an error' if drive.passed else 'with errors'}, "
+        f"{outcome.mid_rlas} mid-level RLAs"
     )

@@ -1,16 +1,32 @@
 """Watches a drive along a route, and says of each wrong decision which layer failed."""
 
 from collections import deque
+from typing import Literal
 
 from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, Passage
 from behaviors.metrics.task_metric import TaskMetric
+from hal.settings import Settings
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.route.outcome import Layer, Wrong
 
+Layer = Literal["symbols", "mid", "basic"]
+"""Layer that failed: `symbols`, noticed junctions differ from the real ones; `mid`, a wrong choice from right symbols;
+`basic`, a right choice that was not driven."""
+LAYERS: tuple[Layer, ...] = ("symbols", "mid", "basic")
 _HISTORY = 12
 """So many junctions back what was noticed is compared with what was; older ones are in no history (VI.B.2)."""
+
+
+class Wrong(Settings):
+    """One junction at which the robot did not do what is right."""
+
+    at_s: float
+    leg: int
+    """Index of the junction on the route, from 0."""
+    layer: Layer
+    x_m: float
+    y_m: float
 
 
 class RouteMonitor:

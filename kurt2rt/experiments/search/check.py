@@ -8,16 +8,15 @@ from optuna.trial import FrozenTrial
 from pydantic import ValidationError
 
 from hal.settings import Settings
-from kurt2rt.experiments.search.jobs import SHIPPED, SearchJob, label_of
 from kurt2rt.experiments.search.journal import TrialJournal, finished
-from kurt2rt.experiments.search.plan import SearchPlan
+from kurt2rt.experiments.search.plan import SHIPPED, SearchJob, SearchPlan, label_of
 from kurt2rt.experiments.search.score import RobotScore, effort, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.study.intervals import RateDifference, difference_of
-from kurt2rt.experiments.study.plan import Executor, JobWave, missing_time_s, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.runner import Executor, missing_time_s, run_missing
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.platform.durable_files import write_durably
 
@@ -107,7 +106,7 @@ def best_trials(trials: Sequence[FrozenTrial], count: int, shipped: Values) -> l
 def check_time_s(plan: SearchPlan) -> float:
     """Return the robot time of the whole check, in s."""
     sets = plan.check.best + 1
-    return sets * sum(job.robot_time_s for job in plan.jobs.check(plan.space.shipped, SHIPPED, plan.check))
+    return sets * sum(job.robot_time_s for job in plan.check_jobs(plan.space.shipped, SHIPPED))
 
 
 def run_check(
@@ -127,21 +126,21 @@ def run_check(
         StudyError: a process was killed, or results of other settings are in the folder.
         Exception: any error of a job.
     """
-    results = plan.jobs.parts["results"]
+    results = plan.parts["results"]
     sets = {SHIPPED: plan.space.shipped, **{label_of(each): journal.values(each) for each in record.candidates}}
-    jobs = {label: plan.jobs.check(values, label, plan.check) for label, values in sets.items()}
+    jobs = {label: plan.check_jobs(values, label) for label, values in sets.items()}
     checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
     whole_s = sum(job.robot_time_s for job in checked_jobs)
-    done_s = whole_s - missing_time_s(JobWave(checked_jobs), results)
-    wave = JobWave((*checked_jobs, *plan.jobs.witnesses_of_check(checked_jobs)))
+    done_s = whole_s - missing_time_s([checked_jobs], results)
+    wave = (*checked_jobs, *plan.witnesses_of_check(checked_jobs))
 
     def update(told: PoolProgress) -> None:
         on_progress(told._replace(done_s=min(whole_s, done_s + told.done_s)))
 
-    run_missing(wave, results, executor, update)
+    run_missing([wave], results, executor, update)
 
     def scores(of_label: Sequence[SearchJob]) -> tuple[RobotScore, ...]:
-        return tuple(job.score(results) for job in of_label)
+        return tuple(job.score() for job in of_label)
 
     shipped, objective = scores(jobs[SHIPPED]), plan.search.objective
     checked = tuple(

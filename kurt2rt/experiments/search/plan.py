@@ -1,19 +1,42 @@
-"""Plan of a search: its task and space, the maker of its jobs, and the files that it leaves."""
+"""Plan of a search: its task and space, and the jobs of its trials and of the check, one robot each."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
-from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
-from kurt2rt.experiments.search.job_maker import JobMaker
-from kurt2rt.experiments.search.settings import CheckSettings, SearchSettings
-from kurt2rt.experiments.search.space import TaskSpace
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, DriveLoops, choose_witnesses
+from kurt2rt.experiments.search.score import RobotScore, robot_score
+from kurt2rt.experiments.search.settings import CheckSettings, Robots, SearchSettings
+from kurt2rt.experiments.search.space import TaskSpace, Values
+from kurt2rt.experiments.study.bus_witness import BusWitnessJob
+from kurt2rt.experiments.study.jobs import JobParts, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
+from kurt2rt.experiments.study.seeds import CurriculumJob, SeedOutcome, curriculum_time_s
+
+SHIPPED = "shipped"
+"""Label of the shipped settings."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SearchJob(CurriculumJob):
+    """Training run and exams of one robot with the settings of a trial; the knowledge is not stored."""
+
+    keeps_knowledge: ClassVar[bool] = False
+    label: str
+    """Trial by its number, or `SHIPPED`."""
+
+    def score(self) -> RobotScore:
+        """Return the score of the stored result. Raises StudyError if it is missing or damaged."""
+        return robot_score(self.results.read(self, SeedOutcome))
+
+
+def label_of(trial: int) -> str:
+    """Return the label of a trial's jobs."""
+    return f"{trial:04d}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +45,8 @@ class SearchPlan:
 
     search: SearchSettings
     space: TaskSpace
-    jobs: JobMaker
+    parts: JobParts
+    fingerprints: Fingerprints
     made_of: Provenance
     """Provenance of the trials: the shipped settings, the search, its worlds, and the program."""
 
@@ -34,7 +58,52 @@ class SearchPlan:
     @property
     def folder(self) -> Path:
         """Folder of the results."""
-        return self.jobs.parts["results"].folder
+        return self.parts["results"].folder
+
+    def trial_jobs(self, values: Values, trial: int) -> tuple[SearchJob, ...]:
+        """Return the jobs of a trial, in the order in which its robots are taught."""
+        return self._jobs("trials", label_of(trial), values, self.search.search)
+
+    def check_jobs(self, values: Values, label: str) -> tuple[SearchJob, ...]:
+        """Return the jobs of the check of one set of settings."""
+        return self._jobs("check", label, values, self.check)
+
+    def witnesses_of_trials(self, jobs: Sequence[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        """Return the witnesses of these jobs: of 1 % of all trials, and of three of the first, which has all robots."""
+        seeds, of_trials = self.search.search.seeds.seeds, [label_of(trial) for trial in range(self.search.trials)]
+        chosen = {
+            name
+            for labels in (of_trials[:1], of_trials)
+            for name in choose_witnesses([f"{label}, seed {seed}" for label in labels for seed in seeds], "trials")
+        }
+        return self._witnesses(job for job in jobs if f"{job.label}, seed {job.seed}" in chosen)
+
+    def witnesses_of_check(self, jobs: Sequence[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        """Return the witnesses of the check, whose jobs these are."""
+        chosen = choose_witnesses([job.stem for job in jobs], "check")
+        return self._witnesses(job for job in jobs if job.stem in chosen)
+
+    def _witnesses(self, jobs: Iterable[SearchJob]) -> tuple[BusWitnessJob, ...]:
+        return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.loops.in_batch)))
+
+    def _jobs(self, part: str, label: str, values: Values, robots: Robots) -> tuple[SearchJob, ...]:
+        jobs, task = [], self.space.task(values)
+        for seed in robots.seeds.seeds:
+            worlds = robots.worlds_of(seed)
+            own = task.model_copy(update={"exam": task.exam.model_copy(update={"worlds": worlds})})
+            job = SearchJob(
+                **self.parts,
+                task=own,
+                seed=seed,
+                made_of=self.fingerprints.of(own, (task.teaching.world, *worlds)),
+                name=f"{part} {label}, seed {seed}",
+                stem=f"{part}/{label}/{task.name}-{seed}",
+                robot_time_s=curriculum_time_s(own),
+                loops=DriveLoops(self.search.lessons, self.search.exams),
+                label=label,
+            )
+            jobs.append(job)
+        return tuple(jobs)
 
 
 def make_plan(
@@ -54,21 +123,17 @@ def make_plan(
         hal.settings.SettingsError: a key, the task or a world does not fit.
         BatchRefusedError: a batch does not know the task.
     """
-    factory = parts["factory"]
     space = TaskSpace(search, changes, load_teacher(search.teacher))
     task = space.task(space.shipped)
     robots = [(each, seed) for each in (search.search, search.check) for seed in each.seeds.seeds]
     exams = [(world, seed) for each, seed in robots for world in each.worlds_of(seed)]
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
-    factory.require_worlds(*worlds)
-    require_course(factory, task, worlds)
+    require_places(parts["factory"], task, worlds)
     if search.lessons is DriveLoop.BATCH:
         require_known_lesson(parts["robot"], task)
     if search.exams is DriveLoop.BATCH:
         require_known_exams(parts["robot"], task)
-    fingerprints = Fingerprints(factory, parts["robot"], ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(parts["factory"], parts["robot"])
     # More trials, and another number of them checked, leave each trial as it is.
     decides = search.model_dump_json(exclude={"trials": True, "check": {"best"}})
-    return SearchPlan(
-        search, space, JobMaker(search, space, parts, fingerprints), fingerprints.of(task, worlds, decides)
-    )
+    return SearchPlan(search, space, parts, fingerprints, fingerprints.of(task, worlds, decides))

@@ -9,9 +9,8 @@ from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.task_settings import Name
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.study.jobs import SEED, world_of
 
-SEED = "SEED"
-"""Part of a world's name that stands for the robot's seed."""
 Objective = Literal["passed_then_presses", "passed_then_presses_and_collisions", "passed_then_rlas"]
 Count = Annotated[int, Field(ge=1, le=10_000)]
 
@@ -42,7 +41,7 @@ class Robots(Settings):
 
     def worlds_of(self, seed: int) -> tuple[str, ...]:
         """Return the worlds of one robot's exams."""
-        return tuple(world.replace(SEED, str(seed)) for world in self.worlds)
+        return tuple(world_of(world, seed) for world in self.worlds)
 
 
 class CheckSettings(Robots):

@@ -1,19 +1,31 @@
-"""Tables of a search: the best trials, and the check."""
+"""Tables, figure, file of the found settings and report of a search."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from statistics import fmean
+from typing import Any
 
-from kurt2rt.experiments.search.check import CheckResult, best_trials
-from kurt2rt.experiments.search.jobs import SHIPPED, label_of
+import yaml
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from optuna.trial import FrozenTrial
+
+from kurt2rt.experiments.search.check import CheckedSettings, CheckResult, best_trials
 from kurt2rt.experiments.search.journal import TrialJournal, finished
-from kurt2rt.experiments.search.plan import SearchPlan
+from kurt2rt.experiments.search.plan import SHIPPED, SearchPlan, label_of
 from kurt2rt.experiments.search.score import PRESSES_OF_A_COLLISION, RobotScore, effort
-from kurt2rt.experiments.search.settings import Objective
+from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.space import Values
+from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import RateDifference
-from kurt2rt.experiments.study.table import Table
+from kurt2rt.experiments.study.report import Section, spans, write_report
+from kurt2rt.experiments.study.table import Table, of_text, table_of, to_text
+from kurt2rt.platform.durable_files import write_durably
 
 _SHOWN = 5
+_DIGITS = 4
+_TRIAL, _SHIPPED, _BEST, _PRUNED = "#1f6fb2", "#d1495b", "#2e8540", "#9a9a9a"
+_COLUMNS = 3
 _EFFORT: Mapping[Objective, str] = {
     "passed_then_presses": "presses",
     "passed_then_presses_and_collisions": f"presses and {PRESSES_OF_A_COLLISION} times collisions",
@@ -44,8 +56,7 @@ def _trials_table(plan: SearchPlan, journal: TrialJournal, count: int) -> Table:
     shown = [*best_trials(trials, _SHOWN, plan.space.shipped), trials[0]]
     rows = []
     for trial in shown:
-        jobs = plan.jobs.trial(trial.params, trial.number)
-        robots = [job.score(plan.jobs.parts["results"]) for job in jobs]
+        robots = [job.score() for job in plan.trial_jobs(trial.params, trial.number)]
         name = SHIPPED if trial.params == plan.space.shipped else label_of(trial.number)
         rows.append((name, *_cells(robots, search.objective), *_values(trial.params, keys)))
     pruned = len(trials) - len(finished(trials))
@@ -78,7 +89,7 @@ def _check_table(plan: SearchPlan, check: CheckResult) -> Table:
 def _cells(robots: Sequence[RobotScore], objective: Objective) -> tuple[str, str]:
     passed, exams = sum(each.passed for each in robots), sum(each.exams for each in robots)
     of_robot = fmean(effort(each, objective) for each in robots)
-    return f"{passed} of {exams}", f"{of_robot:.1f}"
+    return of_text(passed, exams), f"{of_robot:.1f}"
 
 
 def _values(values: Values, keys: Sequence[str]) -> tuple[str, ...]:
@@ -86,5 +97,143 @@ def _values(values: Values, keys: Sequence[str]) -> tuple[str, ...]:
 
 
 def _difference(difference: RateDifference, factor: float = 1.0) -> str:
-    value, low, high = (factor * each for each in difference)
-    return f"{value:+.1f} ({low:+.1f} to {high:+.1f})"
+    value, *ends = (factor * each for each in difference)
+    return f"{value:+.1f} ({to_text(ends, '+.1f')})"
+
+
+def draw_trials(plan: SearchPlan, trials: list[FrozenTrial], path: Path) -> SavedFigure:
+    """Draw the scores by number and by each key as a PNG to `path`. Raises OSError."""
+    panels = 1 + len(plan.search.space)
+    rows = -(-panels // _COLUMNS)
+    figure = Figure(figsize=(4.4 * _COLUMNS, 3.4 * rows), layout="constrained")
+    axes: list[Axes] = figure.subplots(rows, _COLUMNS, squeeze=False, sharey=True).flatten().tolist()
+    _draw_order(axes[0], trials)
+    for each, dimension in zip(axes[1:], plan.search.space, strict=False):
+        _draw_scores(each, [trial.params[dimension.key] for trial in trials], trials)
+        each.set_xlabel(dimension.key)
+        if dimension.log:
+            each.set_xscale("log")
+    for unused in axes[panels:]:
+        unused.remove()
+    for first in axes[:panels:_COLUMNS]:
+        first.set_ylabel("score")
+    save(figure, path)
+    return SavedFigure(
+        path,
+        "Trials",
+        "Each point is a trial, the first one the shipped settings. The score is the share of exams passed, and less "
+        "than half an exam more for little effort. A cross was pruned: its score is that of its first robots.",
+    )
+
+
+def _draw_order(axes: Axes, trials: list[FrozenTrial]) -> None:
+    _draw_scores(axes, [float(trial.number) for trial in trials], trials)
+    done = finished(trials)
+    best = [max(trial.value or 0.0 for trial in done[: place + 1]) for place in range(len(done))]
+    axes.step([trial.number for trial in done], best, where="post", color=_BEST, label="best so far")
+    axes.set_xlabel("trial")
+    axes.legend(fontsize="small", frameon=False)
+
+
+def _draw_scores(axes: Axes, places: list[float], trials: list[FrozenTrial]) -> None:
+    done = {trial.number for trial in finished(trials)}
+    for place, trial in zip(places, trials, strict=True):
+        score = trial.intermediate_values[trial.last_step or 0]  # of all robots, or of those before it was pruned
+        colour = _PRUNED if trial.number not in done else _TRIAL if trial.number else _SHIPPED
+        axes.scatter(place, score, color=colour, marker="o" if trial.number in done else "x", s=22)
+    axes.grid(alpha=0.3)
+
+
+def write_found(plan: SearchPlan, check: CheckResult, command: str, path: Path) -> None:
+    """Write the changed keys of the task, each checked trial, and the verdict as YAML to `path`. Raises OSError."""
+    search, found = plan.search, check.found
+    content = {
+        "study": search.name,
+        "command": command,
+        "date": check.record.date,
+        "source": plan.made_of.source,
+        "versions": plan.made_of.versions,
+        "task": search.task,
+        "teacher": search.teacher,
+        "objective": search.objective,
+        "trials": check.record.trials,
+        "search": _robots_told(search.search),
+        "check": _robots_told(plan.check),
+        "shipped": {"values": dict(plan.space.shipped), **_counts(check.shipped, search.objective)},
+        "checked": [_checked(each, check) for each in check.checked],
+        "verdict": verdict_text(plan, check),
+        # Keys as --set takes them; empty if the shipped settings stay.
+        "changes": {} if found is None else plan.space.changes(found.values),
+    }
+    write_durably(path, yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=120))
+
+
+def _robots_told(robots: Robots) -> dict[str, Any]:
+    seeds = robots.seeds.seeds
+    return {"seeds": f"{seeds[0]}-{seeds[-1]}", "worlds": list(robots.worlds)}
+
+
+def _checked(each: CheckedSettings, check: CheckResult) -> dict[str, Any]:
+    return {
+        "trial": each.label,
+        "values": dict(each.values),
+        **_counts(each.robots, check.objective),
+        "passed_share_difference": _interval(each.passed),
+        "effort_difference": _interval(each.effort),
+        "is_better": each.is_better,
+    }
+
+
+def _counts(robots: tuple[RobotScore, ...], objective: Objective) -> dict[str, Any]:
+    return {
+        "passed": sum(each.passed for each in robots),
+        "exams": sum(each.exams for each in robots),
+        "effort": [effort(each, objective) for each in robots],
+    }
+
+
+def _interval(difference: RateDifference) -> dict[str, float]:
+    return {name: round(value, _DIGITS) for name, value in difference._asdict().items()}
+
+
+def write_search(
+    plan: SearchPlan,
+    check: CheckResult,
+    tables: Sequence[Table],
+    pictures: Sequence[SavedFigure],
+    command: str,
+    path: Path,
+) -> None:
+    """Write tables, figure, space and provenance as an HTML page to `path`. Raises OSError.
+
+    `command`: typed words, without those that belong to the machine alone.
+    """
+    search = plan.search
+    space = table_of(
+        "Space",
+        search.space,
+        ("key", lambda each: each.key),
+        ("low", lambda each: f"{each.low:g}"),
+        ("high", lambda each: f"{each.high:g}"),
+        ("logarithmic", lambda each: "yes" if each.log else "no"),
+        ("shipped", lambda each: f"{plan.space.shipped[each.key]:g}"),
+        words=2,
+    )
+    told = (
+        f"Each trial teaches the robots of seeds {spans(search.search.seeds.seeds)} with settings of its own, by the "
+        f"scripted teacher {search.teacher}, and examines them without it. A trial that cannot beat the median of the "
+        "trials before it ends early. The best trials and the shipped settings are then compared once on the robots of "
+        f"seeds {spans(plan.check.seeds.seeds)}, which chose nothing."
+    )
+    write_report(
+        path,
+        f"KURT2: search for settings of {search.task}",
+        (
+            Section("", (verdict_text(plan, check), told), (*tables, space)),
+            Section("Figure", pictures=pictures),
+            Section("How this was made"),
+        ),
+        command=command,
+        footer=f"Checked on {check.record.date}. {{versions}}. Source: {{source}}. The same command with the same "
+        "versions has the same trials.",
+    )

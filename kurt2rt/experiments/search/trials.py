@@ -4,17 +4,16 @@ from collections.abc import Callable, Sequence
 
 from optuna.trial import TrialState
 
-from kurt2rt.experiments.search.jobs import SearchJob
 from kurt2rt.experiments.search.journal import TrialJournal
-from kurt2rt.experiments.search.plan import SearchPlan
+from kurt2rt.experiments.search.plan import SearchJob, SearchPlan
 from kurt2rt.experiments.search.score import RobotScore, highest_score, score_of
-from kurt2rt.experiments.study.plan import Executor, JobWave, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.runner import Executor, run_missing
 
 
 def trials_time_s(plan: SearchPlan, trials: int) -> float:
     """Return the robot time of all trials if none is pruned, in s."""
-    return trials * sum(job.robot_time_s for job in plan.jobs.trial(plan.space.shipped, 0))
+    return trials * sum(job.robot_time_s for job in plan.trial_jobs(plan.space.shipped, 0))
 
 
 def run_trials(
@@ -52,8 +51,8 @@ def run_trials(
         running = [number for number in numbers if journal.trials[number].state is TrialState.RUNNING]
 
         def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
-            whole = JobWave((*wave, *plan.jobs.witnesses_of_trials(wave)))
-            run_missing(whole, plan.jobs.parts["results"], executor, on_wave)
+            whole = (*wave, *plan.witnesses_of_trials(wave))
+            run_missing([whole], plan.parts["results"], executor, on_wave)
 
         _run_together(plan, journal, running, to_beat, run, update)
 
@@ -67,12 +66,12 @@ def _run_together(
     on_progress: Callable[[PoolProgress], None],
 ) -> None:
     """Run some trials, robot by robot, and prune those that cannot have a higher score than `to_beat`."""
-    jobs = {number: plan.jobs.trial(journal.values(number), number) for number in numbers}
-    results, robots, before_s = plan.jobs.parts["results"], plan.search.search.seeds.count, 0.0
+    jobs = {number: plan.trial_jobs(journal.values(number), number) for number in numbers}
+    robots, before_s = plan.search.search.seeds.count, 0.0
     exams = robots * len(plan.search.search.worlds)
 
     def scores(number: int, count: int) -> list[RobotScore]:
-        return [job.score(results) for job in jobs[number][:count]]
+        return [job.score() for job in jobs[number][:count]]
 
     for step in range(robots):
         wave = tuple(jobs[number][step] for number in numbers)

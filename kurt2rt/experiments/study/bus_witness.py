@@ -8,12 +8,10 @@ from typing import Any, ClassVar, Self
 
 from pydantic import ValidationError
 
-from hal.settings import Settings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, BatchDiffersError
-from kurt2rt.experiments.study.jobs import StudyJob
+from kurt2rt.experiments.study.jobs import Outcome, StudyJob
 from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.loading import read_knowledge
 
@@ -22,11 +20,9 @@ _WITNESSES = "witnesses"
 """Folder, within that of the results, of comparisons of the batch with the CAN bus."""
 
 
-class BusWitnessOutcome(Settings):
+class BusWitnessOutcome(Outcome):
     """Comparison of one robot in the batch and on the CAN bus."""
 
-    made_of: Provenance
-    seed: int
     job: str
     """Name of the job that was compared."""
     differing: tuple[str, ...]
@@ -45,31 +41,20 @@ class BusWitnessJob(StudyJob):
 
     @classmethod
     def witness_of(cls, job: StudyJob) -> Self:
-        """Return the witness of a job."""
+        """Return the witness of a job. It takes the longest of all jobs, and so a difference shows early."""
         return cls(
             factory=job.factory,
             robot=job.robot,
+            results=job.results,
             task=job.task,
             seed=job.seed,
             made_of=job.made_of,
-            results=job.results,
+            name=f"{job.name}, witness on the CAN bus",
+            stem=f"{_WITNESSES}/{job.stem}",
+            robot_time_s=2 * job.robot_time_s,
+            wave=job.wave,
             of=job,
         )
-
-    @property
-    def name(self) -> str:
-        """Name in progress displays."""
-        return f"{self.of.name}, witness on the CAN bus"
-
-    @property
-    def stem(self) -> str:
-        """Path of the result, without the top folder and the ending."""
-        return f"{_WITNESSES}/{self.of.stem}"
-
-    @property
-    def robot_time_s(self) -> float:
-        """Simulated time of both drives, in s. It is the longest of all jobs, and so a difference shows early."""
-        return 2 * self.of.robot_time_s
 
     async def measure(self, knowledge: Path, report: Report) -> BusWitnessOutcome:
         """Do the job twice and return the comparison; files next to `knowledge` are taught into.

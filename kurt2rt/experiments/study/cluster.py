@@ -1,4 +1,4 @@
-"""Executor of jobs on other machines: Dask workers run parcels, and only this machine writes results."""
+"""Executor of jobs on other machines: Dask workers run parcels, and only the executor's machine writes results."""
 
 import logging
 import time
@@ -6,15 +6,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from distributed import CancelledError, Client, Future, as_completed
+from distributed import CancelledError, Client, Future, Worker, as_completed
 from distributed.scheduler import KilledWorker
 
 from kurt2rt.experiments.lockstep.drive_loop import choose_witnesses
 from kurt2rt.experiments.study.cluster_file import ClusterError, no_scheduler, read_cluster_file
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
-from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.runner import StoredJob
 
 _AHEAD = 2
 """Parcels on their way for each worker, so that none waits for its next one."""
@@ -146,3 +146,28 @@ def _files_of(future: Future, job: StoredJob) -> dict[str, bytes]:
         error.add_note(job.name)
         raise
     return files
+
+
+async def serve(file: Path, on_ready: Callable[[str], None]) -> None:
+    """Be a worker: run jobs, one at a time in this process, until the scheduler is gone.
+
+    Args:
+        file: of the cluster.
+        on_ready: gets the worker's address.
+
+    Raises ClusterError if that is no file of a cluster, or no scheduler with its certificate answers.
+    """
+    address, security = read_cluster_file(file)
+    logging.getLogger("distributed").setLevel(logging.WARNING)
+    try:
+        async with Worker(
+            address, nthreads=1, protocol="tls", security=security, death_timeout=_TIMEOUT_S, dashboard=False
+        ) as worker:
+            worker.http_server.stop()  # Dask's pages about a worker, which any program could read
+            on_ready(worker.address)
+            try:
+                await worker.finished()
+            finally:  # closing breaks off a heartbeat, which Dask logs as an error with a traceback
+                logging.getLogger("distributed.worker").setLevel(logging.CRITICAL)
+    except (OSError, TimeoutError) as error:
+        raise no_scheduler(file, address) from error

@@ -1,6 +1,7 @@
-"""Bases of the jobs of a study: drives in simulated time with a stored result, or training and exams of one robot."""
+"""Job of a study: drives of one robot in simulated time, with a stored result."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, TypedDict
@@ -10,11 +11,15 @@ import anyio
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from hal.simulation import SimulationFactory
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoops
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
+from kurt2rt.experiments.lockstep.seed_result import LessonCounts
 from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.progress_sum import ProgressSum
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
 
@@ -27,63 +32,53 @@ class JobParts(TypedDict):
     results: Results
 
 
+class Outcome(Settings):
+    """Stored outcome of a job."""
+
+    made_of: Provenance
+    seed: int
+
+
+class TaughtOutcome(Outcome):
+    """Stored outcome of a robot that was taught."""
+
+    lesson: LessonCounts
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationJob(ABC):
-    """Job in simulated time with a stored result, in a process of its own; it stores no knowledge."""
+class StudyJob(ABC):
+    """Drives of one robot, in a process of their own, which leave a file of results and one of knowledge."""
 
     outcome: ClassVar[type[Settings]]
     """Schema of the result."""
     replaces_others: ClassVar[bool] = False
+    keeps_knowledge: ClassVar[bool] = True
     gives_lesson: ClassVar[bool] = False
     """True if the job gives the task's own lesson to a robot without knowledge, as a batch can."""
     gives_exams: ClassVar[bool] = False
     """True if the job examines robots that were taught its task, as a batch can."""
     factory: SimulationFactory
     robot: RobotSettings
-    task: TaskSettings
-    made_of: Provenance
     results: Results
+    task: TaskSettings
+    seed: int
+    made_of: Provenance
+    name: str
+    """Name in progress displays."""
+    stem: str
+    """Path of result and knowledge, without the top folder and the ending."""
+    robot_time_s: float
+    """Simulated time in s, at most."""
     loops: DriveLoops = ON_BUS
     """Loops that drive, which change no result."""
-
-    @property
-    @abstractmethod
-    def name(self) -> str:
-        """Name in progress displays."""
-
-    @property
-    @abstractmethod
-    def file(self) -> str:
-        """Path of the result within the folder of results."""
-
-    @property
-    @abstractmethod
-    def robot_time_s(self) -> float:
-        """Simulated time in s, at most."""
-
-    @property
-    def knowledge_name(self) -> str | None:
-        """Path of the stored knowledge within the folder of results; None: the job stores none."""
-        return None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StudyJob(SimulationJob):
-    """Training and exams of one robot."""
-
-    keeps_knowledge: ClassVar[bool] = True
-    seed: int
-
-    @property
-    @abstractmethod
-    def stem(self) -> str:
-        """Path of result and knowledge, without the top folder and the ending."""
+    wave: int = 0
+    """The job needs results of earlier waves only."""
 
     @abstractmethod
     async def measure(self, knowledge: Path, report: Report) -> Settings:
         """Train and examine the robot and return the outcome; `knowledge` is the file to teach into.
 
-        Raises KnowledgeError, SettingsError, LessonLostError.
+        Raises KnowledgeError, SettingsError, LessonLostError, BatchRefusedError, BatchDiffersError.
         """
 
     @property
@@ -102,6 +97,19 @@ class StudyJob(SimulationJob):
         assert self.knowledge_name is not None
         return self.results.folder / self.knowledge_name
 
+    async def teach(
+        self, knowledge: Path, report: Report, task: TaskSettings | None = None, plan: LessonPlan | None = None
+    ) -> tuple[TrainingResult, list[TeachingEvent]]:
+        """Teach the robot into the file `knowledge`; return the result and all events that the file then holds.
+
+        `task`: None: the job's. `plan`: None: the task's own lesson, by the loop of lessons. Raises the errors of
+        `curriculum.run_lesson`.
+        """
+        loop = self.loops.lesson if plan is None else DriveLoop.BUS
+        return await run_lesson(
+            self.factory, self.robot, task or self.task, knowledge, seed=self.seed, report=report, plan=plan, loop=loop
+        )
+
     def run(self, on_progress: Progress) -> None:
         """Run the job in an event loop of its own, and store result and knowledge; `on_progress` gets robot time in s.
 
@@ -115,3 +123,38 @@ class StudyJob(SimulationJob):
             if self.knowledge_name is not None:
                 self.results.keep(folder / "knowledge", self.knowledge_name)
         self.results.write(self, outcome)
+
+
+class ProgressSum:
+    """Sum of the robot time of successive drives."""
+
+    def __init__(self, tell: Progress) -> None:
+        self._tell = tell
+        self._before_s = 0.0
+        self._now_s = 0.0
+
+    def report(self, what: str, done_s: float, whole_s: float) -> None:  # noqa: ARG002 - as curriculum.Report
+        """Report the sum after `done_s`, in s, of a drive; a smaller `done_s` than before begins the next drive.
+
+        `what` and `whole_s` are not used.
+        """
+        if done_s < self._now_s:
+            self._before_s += self._now_s
+        self._now_s = done_s
+        self._tell(self._before_s + done_s)
+
+
+SEED = "SEED"
+"""Part of a world's name that stands for a robot's seed."""
+
+
+def world_of(place: str, seed: int) -> str:
+    """Return the name of one robot's world, with its seed where `place` has SEED."""
+    return place.replace(SEED, str(seed))
+
+
+def require_places(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
+    """Check that all worlds can be built, and that the task can be driven there. Raises hal.settings.SettingsError."""
+    needed = tuple(dict.fromkeys(worlds))
+    factory.require_worlds(*needed)
+    require_course(factory, task, needed)

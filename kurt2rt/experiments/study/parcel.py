@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 from threadpoolctl import threadpool_limits
 
 from hal.errors import UserError
-from kurt2rt.experiments.study.plan import StoredJob
 from kurt2rt.experiments.study.provenance import program_hash, versions
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.runner import StoredJob
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.durable_files import fsync_file, write_durably
 

@@ -79,7 +79,7 @@ class Fingerprints:
         self,
         factory: SimulationFactory,
         robot: RobotSettings,
-        leave_out: Collection[str] = ("paper", "plain"),
+        leave_out: Collection[str] = ("paper", "plain", "phases"),
     ) -> None:
         """`leave_out`: parts of a task that change nothing in these experiments.
 

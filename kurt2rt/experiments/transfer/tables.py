@@ -1,118 +1,208 @@
-"""Tables of the transfer study."""
+"""Tables and figure of the transfer study."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from kurt2rt.experiments.lockstep.report import wilson_interval
-from kurt2rt.experiments.study.drive import Drive
-from kurt2rt.experiments.study.eligibility import reasons_against_judging
-from kurt2rt.experiments.study.table import Table
-from kurt2rt.experiments.study.targets_table import targets_table
-from kurt2rt.experiments.transfer.plan import TransferStudy, TransferSummary
-from kurt2rt.experiments.transfer.verdicts import median_of, verdicts
+from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.figures import save
+from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
+from kurt2rt.experiments.study.table import Table, collisions_text, of_text, table_of
+from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
+from kurt2rt.experiments.transfer.study import (
+    TAUGHT_ON,
+    HomeJob,
+    HomeOutcome,
+    Transfer,
+    TransferJob,
+    TransferOutcome,
+    Variant,
+)
+
+RIGHT_SHARE = 18 / 20
+"""Share of the robots that are to be right in the new world."""
+MOST_PRESSES = 10
+"""Presses until right that half of the robots may need at most."""
+_COLOURS = ("#1f6fb2", "#d1495b", "#7a7a7a")
+"""Colours of the variants, in the order of the study."""
+_APART = 0.15
+"""Distance in presses between the intervals of two variants, so that they do not hide each other."""
+There = Group[tuple[str, Variant], TransferOutcome]
+"""Robots in one kind of new world, taught there by one variant."""
+
+
+@dataclass(frozen=True, slots=True)
+class TransferStudy:
+    """Plan and outcomes of the study."""
+
+    plan: StudyPlan[Transfer]
+    home: tuple[HomeOutcome, ...]
+    """One per robot, in the order of the seeds."""
+    there: tuple[There, ...]
+
+
+def read_study(plan: StudyPlan[Transfer]) -> TransferStudy:
+    """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
+    return TransferStudy(
+        plan,
+        tuple(job.results.read(job, HomeOutcome) for job in plan.of(HomeJob)),
+        read_groups(plan.of(TransferJob), lambda job: (job.place, job.variant), TransferOutcome),
+    )
 
 
 def all_tables(study: TransferStudy) -> Iterator[Table]:
     """Yield all tables: what was asked, the curve, the teaching, and each robot."""
-    found = [((each.experiment.place,), verdict) for each in study.summaries for verdict in verdicts(each, study)]
+    found = [((each.of[0],), verdict) for each in study.there for verdict in verdicts(each, study)]
     yield targets_table(found, list(reasons_against_judging(study.plan.seeds)), headings=("new world",))
     yield curve_table(study)
     yield teaching_table(study)
-    for each in study.summaries:
-        if each.studied:
+    for each in study.there:
+        if is_studied(each):
             yield robots_table(each, study)
+
+
+def is_studied(group: There) -> bool:
+    """Return whether these robots are no control."""
+    return group.of[1].name == TAUGHT_ON.name
+
+
+def judged_of(group: There) -> tuple[TransferOutcome, ...]:
+    """Return the outcomes whose exams in the new world have verdicts."""
+    return tuple(each for each in group.outcomes if each.judged)
+
+
+def right_after(group: There, presses: int) -> int:
+    """Return the number of robots that pass the exam in the new world after so many presses."""
+    return sum(
+        point.drive.passed for each in judged_of(group) for point in each.checkpoints if point.presses == presses
+    )
+
+
+def right_by(group: There, presses: int) -> int:
+    """Return the number of robots that pass an exam in the new world after so many presses or fewer."""
+    return sum(each.presses_until_right <= presses for each in judged_of(group))
+
+
+def verdicts(group: There, study: TransferStudy) -> Iterator[Verdict]:
+    """Yield the verdicts on robots with the knowledge of home; none for controls, or if no exam has a verdict."""
+    judged, robots = judged_of(group), len(group.outcomes)
+    if not is_studied(group) or not judged:
+        return
+    presses = study.plan.about.after[-1]
+    right, needed = right_by(group, presses), needed_of(RIGHT_SHARE, len(judged))
+    yield Verdict(
+        f"right there after at most {presses} presses",
+        f"at least {of_text(needed, len(judged))}",
+        of_text(right, len(judged)),
+        right >= needed,
+    )
+    until = median_of([each.presses_until_right for each in judged])
+    shown = f"{until:g}" if math.isfinite(until) else f"more than {presses}"
+    yield Verdict("presses until right, median", f"at most {MOST_PRESSES}", shown, until <= MOST_PRESSES)
+    after = sum(each.home_when_right.passed for each in group.outcomes)
+    before = sum(each.drive.passed for each in study.home)
+    came = f"{of_text(after, robots)} (before: {before})"
+    yield Verdict("right at home as soon as right there", of_text(robots, robots), came, after == robots)
 
 
 def curve_table(study: TransferStudy) -> Table:
     """Return the curve: robots that are right in the new world, by presses there, with 95 % intervals."""
+    after = study.plan.about.after
     rows = []
-    for each in study.summaries:
-        judged, (place, how) = len(each.judged), _heading(each)
-        policy = f"{sum(robot.policy.passed for robot in each.outcomes)} of {len(each.outcomes)}"
-        rows.append((place, how, policy, *(_of(each.right_after(presses), judged) for presses in study.plan.after)))
-        rows.append((place, f"{how}, until right", "", *(_of(each.right_by(n), judged) for n in study.plan.after)))
+    for each in study.there:
+        judged, (place, variant) = len(judged_of(each)), each.of
+        policy = of_text(sum(robot.policy.passed for robot in each.outcomes), len(each.outcomes))
+        shares = [of_text(right_after(each, n), judged, interval=True) for n in after]
+        until_right = [of_text(right_by(each, n), judged, interval=True) for n in after]
+        rows.append((place, variant.title, policy, *shares))
+        rows.append((place, f"{variant.title}, until right", "", *until_right))
     return Table(
         "Robots that are right in the new world, by presses there",
-        ("new world", "taught how", "policy", *(f"after {presses}" for presses in study.plan.after)),
+        ("new world", "taught how", "policy", *(f"after {presses}" for presses in after)),
         tuple(rows),
         words=2,
-        note=f"Exams of {study.plan.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. Until right: "
-        "as if teaching ended with the first exam that was passed; the best of several exams flatters. A robot that "
-        "gave cause for fewer presses has all that it was taught. Policy: own drives of the teacher's policy without "
-        "collision or standstill, with enough junctions right; a robot whose policy does not pass there is not judged "
-        "and not counted.",
+        note=f"Exams of {study.plan.about.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. Until "
+        "right: as if teaching ended with the first exam that was passed; the best of several exams flatters. A robot "
+        "that gave cause for fewer presses has all that it was taught. Policy: own drives of the teacher's policy "
+        "without collision or standstill, with enough junctions right; a robot whose policy does not pass there is not "
+        "judged and not counted.",
     )
 
 
 def teaching_table(study: TransferStudy) -> Table:
     """Return the table of presses and seconds until right, and of the exams at home before and after."""
-    rows = []
-    before = sum(each.drive.passed for each in study.home)
-    for each in study.summaries:
-        judged = each.judged
-        until = [robot.presses_until_right for robot in judged]
-        rows.append(
-            (
-                *_heading(each),
-                _median(until, study.plan.after[-1]),
-                _median([robot.seconds_until_right for robot in judged], None),
-                f"{median_of([float(robot.presses) for robot in each.outcomes]):g}",
-                f"{median_of([float(robot.asks) for robot in each.outcomes]):g}",
-                str(sum(robot.collisions for robot in each.outcomes)),
-                f"{before} of {len(study.home)}" if each.experiment.variant.knows_home else "",
-                f"{sum(robot.home_when_right.passed for robot in each.outcomes)} of {len(each.outcomes)}",
-                f"{sum(robot.home.passed for robot in each.outcomes)} of {len(each.outcomes)}",
-            )
-        )
-    task = study.plan.task
-    presses = median_of([float(each.presses) for each in study.home])
-    return Table(
+    (task, after), before = study.plan.about, sum(each.drive.passed for each in study.home)
+
+    def until(group: There, name: str, form: str, never: str) -> str:
+        values = [getattr(robot, name) for robot in judged_of(group)]
+        return "" if not values else f"{median_of(values):{form}}" if math.isfinite(median_of(values)) else never
+
+    def median_text(robots: Sequence[HomeOutcome | TransferOutcome], name: str) -> str:
+        return f"{median_of([float(getattr(robot.lesson, name)) for robot in robots]):g}"
+
+    return table_of(
         "Presses until right, and home",
+        study.there,
+        ("new world", lambda each: each.of[0]),
+        ("taught how", lambda each: each.of[1].title),
+        ("presses until right", lambda each: until(each, "presses_until_right", "g", f"more than {after[-1]}")),
+        ("seconds until right", lambda each: until(each, "seconds_until_right", ".0f", "never")),
+        ("presses", lambda each: median_text(each.outcomes, "presses")),
+        ("asks", lambda each: median_text(each.outcomes, "asks")),
+        ("collisions meanwhile", lambda each: sum(robot.lesson.collisions for robot in each.outcomes)),
         (
-            *("new world", "taught how", "presses until right", "seconds until right", "presses", "asks"),
-            *("collisions meanwhile", f"right in {task.teaching.world} before", "when right there", "at the end"),
+            f"right in {task.teaching.world} before",
+            lambda each: of_text(before, len(study.home)) if each.of[1].knows_home else "",
         ),
-        tuple(rows),
+        (
+            "when right there",
+            lambda each: of_text(sum(robot.home_when_right.passed for robot in each.outcomes), len(each.outcomes)),
+        ),
+        ("at the end", lambda each: of_text(sum(robot.home.passed for robot in each.outcomes), len(each.outcomes))),
         words=2,
         note=f"Medians of {len(study.plan.seeds)} robots; collisions of all. Presses until right: the fewest of those "
         f"examined after which the exam was passed. Taught at home, in {task.teaching.world}, by the scripted teacher "
-        f"{task.teaching.profile.name}, in {task.teaching.duration_s:.0f} s and {presses:g} presses (median).",
+        f"{task.teaching.profile.name}, in {task.teaching.duration_s:.0f} s and {median_text(study.home, 'presses')} "
+        "presses (median).",
     )
 
 
-def robots_table(summary: TransferSummary, study: TransferStudy) -> Table:
+def robots_table(group: There, study: TransferStudy) -> Table:
     """Return the table of single robots in one new world, a row for each."""
     rows = [
         (
             str(robot.seed),
-            robot.world,
-            f"{robot.presses}",
-            f"{robot.asks}",
+            robot.lesson.world,
+            str(robot.lesson.presses),
+            str(robot.lesson.asks),
             drive_text(robot.policy),
             *(drive_text(point.drive) for point in robot.checkpoints),
-            drive_text(before.drive),
-            drive_text(robot.home_when_right),
-            drive_text(robot.home),
+            *map(drive_text, (before.drive, robot.home_when_right, robot.home)),
         )
-        for robot, before in zip(summary.outcomes, study.home, strict=True)
+        for robot, before in zip(group.outcomes, study.home, strict=True)
     ]
-    after = (f"after {presses}" for presses in study.plan.after)
+    after = (f"after {presses}" for presses in study.plan.about.after)
     return Table(
-        f"Each robot: {summary.experiment.place}",
+        f"Each robot: {group.of[0]}",
         ("robot", "new world", "presses", "asks", "policy", *after, "home before", "when right there", "at the end"),
         tuple(rows),
         words=2,
     )
 
 
-def drive_text(drive: Drive) -> str:
+def drive_text(drive: DriveRow) -> str:
     """Return one drive in few words: right, or why it is not."""
     if drive.passed:
         return "right"
     if not drive.judged:
         return "not judged"
     if drive.collisions:
-        return f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
+        return collisions_text(drive.collisions)
     if drive.alarm:
         return drive.alarm
     if drive.stuck:
@@ -120,21 +210,51 @@ def drive_text(drive: Drive) -> str:
     return f"{drive.right_share:.0%} of junctions right" if 0.0 < drive.right_share < 1.0 else "slow"
 
 
-def _heading(summary: TransferSummary) -> tuple[str, str]:
-    return summary.experiment.place, summary.experiment.variant.title
+def median_of(values: list[float]) -> float:
+    """Return the median of counts or times in s, which may be infinite; of two middle values their mean."""
+    ordered = sorted(values)
+    low, high = ordered[(len(ordered) - 1) // 2], ordered[len(ordered) // 2]
+    return low if low == high else (low + high) / 2
 
 
-def _of(count: int, of: int) -> str:
-    if not of:
-        return "none judged"
-    return "{} of {} ({:.0%} to {:.0%})".format(count, of, *wilson_interval(count, of))
+def draw_curves(study: TransferStudy, path: Path) -> None:
+    """Draw the curves, a panel for each new world and a line for each variant, as a PNG to `path`. Raises OSError."""
+    places = list(dict.fromkeys(each.of[0] for each in study.there))
+    figure = Figure(figsize=(5.4 * len(places), 5.0), layout="constrained")
+    panels = figure.subplots(1, len(places), squeeze=False, sharey=True).flatten().tolist()
+    for axes, place in zip(panels, places, strict=True):
+        for number, group in enumerate(each for each in study.there if each.of[0] == place):
+            _draw(axes, study.plan.about.after, group, number)
+        axes.set_title(f"new world: {Path(place).stem}", fontsize="medium")
+        axes.set_xlabel("presses in the new world (dotted: taught until right)")
+        axes.set_ylim(-0.03, 1.03)
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
+    panels[0].set_ylabel("share of robots that are right there")
+    save(figure, path)
 
 
-def _median(values: list[float], most: int | None) -> str:
-    """Return the median as text; `most`: the last number of presses, which an infinite median is more than."""
-    if not values:
-        return ""
-    median = median_of(values)
-    if math.isfinite(median):
-        return f"{median:.0f}" if most is None else f"{median:g}"
-    return "never" if most is None else f"more than {most}"
+def _draw(axes: Axes, after: tuple[int, ...], group: There, number: int) -> None:
+    judged = len(judged_of(group))
+    if not judged:
+        return
+    colour = _COLOURS[number % len(_COLOURS)]
+    axes.plot(after, [right_by(group, n) / judged for n in after], color=colour, linestyle=":", linewidth=1.2)
+    counts = [right_after(group, presses) for presses in after]
+    shares = [count / judged for count in counts]
+    low, high = zip(*(wilson_interval(count, judged) for count in counts), strict=True)
+    axes.errorbar(
+        [presses + _APART * number for presses in after],
+        shares,
+        yerr=(
+            [s - at for s, at in zip(shares, low, strict=True)],
+            [at - s for s, at in zip(shares, high, strict=True)],
+        ),
+        color=colour,
+        marker="o",
+        markersize=4,
+        capsize=2,
+        linewidth=1.4,
+        elinewidth=0.8,
+        label=f"{group.of[1].title} (n = {judged})",
+    )

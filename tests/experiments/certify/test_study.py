@@ -9,23 +9,28 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.certify.again import drive_again
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus
-from kurt2rt.experiments.certify.figures import draw_worst
-from kurt2rt.experiments.certify.jobs import WitnessJob
-from kurt2rt.experiments.certify.plan import Certificate, CertifyPlan, Extent, make_plan, read_certificate
 from kurt2rt.experiments.certify.run import BrokenShare, Run, draw_runs
-from kurt2rt.experiments.certify.summary import summarise, worst_runs
-from kurt2rt.experiments.certify.tables import all_tables
+from kurt2rt.experiments.certify.study import (
+    BlockJob,
+    Certificate,
+    Certified,
+    Extent,
+    WitnessJob,
+    drive_again,
+    make_plan,
+    read_certificate,
+)
+from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise, worst_runs
 from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop
-from kurt2rt.experiments.study.jobs import JobParts
+from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.parcel import pack, run_parcel
-from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teach
-from tests.experiments.study.here import HERE
+from tests.experiments.study.here import carry_out, parts_in
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
@@ -36,21 +41,18 @@ def ignore(_done_s: float) -> None:
     """Take no progress."""
 
 
-def plan_in(folder: Path, taught: Taught, extent: Extent = EXTENT, task: TaskSettings | None = None) -> CertifyPlan:
+def plan_in(
+    folder: Path, taught: Taught, extent: Extent = EXTENT, task: TaskSettings | None = None
+) -> StudyPlan[Certified]:
     """Return a plan with results in a folder."""
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    return make_plan(task or short_task(exam_s=SECONDS), taught.knowledge, extent, parts)
+    return make_plan(task or short_task(exam_s=SECONDS), taught.knowledge, extent, parts_in(folder))
 
 
 @pytest.fixture(scope="module")
 def made(taught: Taught, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Certificate]:
     """Return the folder of a certificate, and the certificate."""
     folder = tmp_path_factory.mktemp("certify")
-    plan, results = plan_in(folder, taught), Results(folder)
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-        assert results.missing([*plan.witnesses, *plan.blocks]) == []
-    return folder, read_certificate(plan, results)
+    return folder, read_certificate(carry_out(plan_in(folder, taught), folder))
 
 
 @pytest.mark.parametrize("run", [Run(1, "b"), Run(2, "rooms-SEED"), Run(3, "a"), Run(20_005, "c")])
@@ -95,12 +97,12 @@ def test_certificate_has_all_runs_and_equal_witnesses(made: tuple[Path, Certific
 
 def test_worker_on_another_machine_gives_the_same_files(made: tuple[Path, Certificate], tmp_path: Path) -> None:
     folder, certificate = made
-    for job in (certificate.plan.blocks[0], certificate.plan.witnesses[0]):
+    for job in (certificate.plan.of(BlockJob)[0], certificate.plan.of(WitnessJob)[0]):
         # Also knowledge within the folder of results travels.
-        moved = replace(job, knowledge=tmp_path / "own.knowledge", results=Results(tmp_path))
-        moved.knowledge.write_bytes(job.knowledge.read_bytes())
+        moved = replace(job, taught=tmp_path / "own.knowledge", results=Results(tmp_path))
+        moved.taught.write_bytes(job.taught.read_bytes())
         assert run_parcel(pack(moved, moved.results, ())) == {job.file: (folder / job.file).read_bytes()}
-        moved.knowledge.unlink()
+        moved.taught.unlink()
         with pytest.raises(KnowledgeError):
             run_parcel(pack(moved, moved.results, ()))
 
@@ -123,6 +125,10 @@ def test_tables_have_a_row_for_each_place_and_for_all(made: tuple[Path, Certific
     assert "3 runs were driven on the CAN loop too, with equal results." in probabilities.note
 
 
+def moved_to(folder: Path, plan: StudyPlan[Certified]) -> tuple[StudyJob, ...]:
+    return tuple(replace(job, results=Results(folder)) for job in plan.jobs)
+
+
 def test_witness_with_another_outcome_refuses_all(made: tuple[Path, Certificate], tmp_path: Path) -> None:
     folder, certificate = made
     for path in folder.rglob("*.json"):
@@ -133,7 +139,7 @@ def test_witness_with_another_outcome_refuses_all(made: tuple[Path, Certificate]
             each["collisions"] += 1
         copy.write_text(json.dumps(stored), encoding="utf-8")
     with pytest.raises(BatchDiffersError, match=r"run 2000\d in world .* differ in collisions"):
-        read_certificate(certificate.plan, Results(tmp_path))
+        read_certificate(replace(certificate.plan, jobs=moved_to(tmp_path, certificate.plan)))
 
 
 def test_witness_job_stores_no_run_that_differs(
@@ -149,17 +155,14 @@ def test_witness_job_stores_no_run_that_differs(
 
     monkeypatch.setattr(WitnessJob, "drive_in_batch", wrong)
     with pytest.raises(BatchDiffersError, match="travelled_m"):
-        plan.witnesses[0].run(ignore)
+        plan.of(WitnessJob)[0].run(ignore)
     assert list(tmp_path.rglob("*.json")) == []
 
 
 def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate], taught: Taught) -> None:
     folder, certificate = made
     plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=DriveLoop.BUS))
-    results = Results(folder / "bus")
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    on_bus = read_certificate(plan, results)
+    on_bus = read_certificate(carry_out(plan, folder / "bus"))
     assert on_bus.outcomes == certificate.outcomes[:2]
     assert (on_bus.compared, on_bus.on_bus) == (0, frozenset({20_000, 20_001}))
     assert "All runs were driven on the CAN loop." in next(all_tables(on_bus, [])).note
@@ -167,10 +170,7 @@ def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate],
 
 def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_path: Path) -> None:
     extent = EXTENT._replace(runs=3, places=("a",), broken=BrokenShare(1.0, ("s3",)))
-    plan, results = plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), Results(tmp_path)
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    certificate = read_certificate(plan, results)
+    certificate = read_certificate(carry_out(plan_in(tmp_path, taught, extent, short_task(exam_s=6.0)), tmp_path))
     assert [summary.place for summary in summarise(certificate)] == ["a sensor breaks"]
     assert all(each.broken.startswith("s3=") for each in certificate.outcomes)
     stopped = [each for each in certificate.outcomes if each.stopped]
@@ -184,8 +184,9 @@ def test_witnesses_are_a_share_of_the_runs_without_a_break(
     taught: Taught, tmp_path: Path, runs: int, witnesses: int
 ) -> None:
     plan = plan_in(tmp_path, taught, EXTENT._replace(first=0, runs=runs, broken=BrokenShare(0.2, ("s3",))))
-    assert len(plan.witnesses) == witnesses
-    assert {job.witness for job in plan.witnesses} <= {run for run in plan.runs if not run.broken}
+    chosen = {job.witness for job in plan.of(WitnessJob)}
+    assert len(chosen) == witnesses
+    assert chosen <= {run for run in plan.about.runs if not run.broken}
 
 
 def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path) -> None:
@@ -193,9 +194,8 @@ def test_plan_refuses_knowledge_without_a_lesson(taught: Taught, tmp_path: Path)
 
     empty = tmp_path / "empty.knowledge"
     open_knowledge(empty, ROBOT, taught.task).close()
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(tmp_path))
     with pytest.raises(SettingsError, match="holds no lesson"):
-        make_plan(short_task(), empty, EXTENT, parts)
+        make_plan(short_task(), empty, EXTENT, parts_in(tmp_path))
 
 
 @pytest.mark.deep

@@ -1,11 +1,23 @@
-"""Probabilities and rates of a certificate, from outcomes by hand."""
+"""Runs of a certificate follow from their numbers; probabilities and rates, from outcomes by hand."""
 
 import pytest
 
-from kurt2rt.experiments.certify.summary import summarise_runs, worst_runs
+from kurt2rt.experiments.certify.run import BrokenShare, RunOutcome, draw_runs
+from kurt2rt.experiments.certify.tables import summarise_runs, worst_runs
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
 from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.study.intervals import poisson_interval
-from tests.experiments.certify.outcomes import outcome
+
+PLACES = ("a", "b", "rooms-SEED")
+
+
+def outcome(number: int, **more: object) -> RunOutcome:
+    """Return a run of 60 s in world A without any event, but for `more`."""
+    counts = ("unknown_ticks", "questions", "first_question", "collisions", "first_collision")
+    fields = {"number": number, "world": "a", "ticks": 6000, **dict.fromkeys(counts, 0)}
+    ended = {"stuck": False, "travelled_m": 12.0, "end": (0.0, 0.0, 0.0)}
+    return RunOutcome.model_validate({**fields, **ended, **more})
+
 
 ASKS = outcome(3, questions=4, first_question=3000, unknown_ticks=600)
 STUCK = outcome(4, stuck=True, ticks=3000)
@@ -47,3 +59,19 @@ def test_worst_runs_are_ordered_and_leave_out_clean_ones() -> None:
     assert [each.number for each in worst_runs([*RUNS, worse], 10)] == [9, 5, 4, 3]
     assert worst_runs(RUNS, 1) == [COLLIDES]
     assert worst_runs(RUNS[:2], 5) == []
+
+
+def test_run_follows_from_its_number() -> None:
+    runs = draw_runs(0, 3000, PLACES)
+    assert {run.world for run in runs if run.number == 17} < {"a", "b", "rooms-17"}
+    assert runs[10:30] == draw_runs(10, 20, PLACES)
+    assert all(abs([run.place for run in runs].count(place) - 1000) < 100 for place in PLACES)
+
+
+def test_share_of_the_runs_has_another_broken_sensor_each() -> None:
+    sensors = ("s1", "s2", "s3")
+    runs = draw_runs(0, 1000, PLACES, BrokenShare(0.2, sensors))
+    broken = [run.broken for run in runs if run.broken]
+    assert 160 < len(broken) < 240
+    assert set(broken) == {f"{sensor}={fault}" for sensor in sensors for fault in FaultKind}
+    assert [run._replace(broken="") for run in runs] == draw_runs(0, 1000, PLACES)

@@ -1,7 +1,7 @@
 """A comparison on the simulated robot: the same robots, teacher and exams for all pupils."""
 
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import anyio
@@ -18,22 +18,20 @@ from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.compare.jobs import PupilJob, PupilOutcome
 from kurt2rt.experiments.compare.lesson import LessonSetup, PupilLesson, teach_on_bus
-from kurt2rt.experiments.compare.plan import Comparison, ComparisonPlan, make_plan, read_comparison
 from kurt2rt.experiments.compare.pupil import PUPILS, SHIPPED, Pupil
+from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome, make_plan
+from kurt2rt.experiments.compare.tables import Comparison, read_comparison
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
 from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
-from kurt2rt.experiments.study.results import Results
-from tests.experiments.compare.outcomes import AFTER, plan_for
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.study.here import HERE
+from tests.experiments.study.here import carry_out, parts_in
 
+AFTER = (2, 5)
 IN_BATCH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
 
 
@@ -52,51 +50,45 @@ class Breaking(RlaLearner):
 BREAKING = f"{__name__}:Breaking"
 
 
-@dataclass(frozen=True)
-class Done:
-    results: Results
-    comparison: Comparison
-
-    def outcome(self, name: str) -> PupilOutcome:
-        (row,) = (row for row in self.comparison.rows if row.entry.pupil.name == name)
-        return row.outcomes[0]
+def plan_for(folder: Path, *pupils: Pupil) -> StudyPlan[Compared]:
+    """Return a plan of short lessons and exams in world A."""
+    return make_plan([short_task(exam_s=6.0)], pupils, (3902,), AFTER, parts_in(folder))
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
-    results = Results(tmp_path_factory.mktemp("comparison"))
-    plan = plan_for(results, (3902,), Pupil("rla-door"), Pupil("weighted-vote"), Pupil(BREAKING))
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    return Done(results, read_comparison(plan, results))
+def done(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
+    folder = tmp_path_factory.mktemp("comparison")
+    plan = plan_for(folder, Pupil("rla-door"), Pupil("weighted-vote"), Pupil(BREAKING))
+    return read_comparison(carry_out(plan, folder))
 
 
-def test_shipped_rla_system_is_the_first_row(done: Done) -> None:
-    assert [row.entry.pupil.name for row in done.comparison.rows][:2] == [SHIPPED, "rla-door"]
-    assert missing_time_s(done.comparison.plan, done.results) == 0.0
+def outcome_of(done: Comparison, name: str) -> PupilOutcome:
+    (row,) = (row for row in done.rows if row.of[1].name == name)
+    return row.outcomes[0]
 
 
-def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Done) -> None:
-    for row in done.comparison.rows:
+def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Comparison) -> None:
+    assert [row.of[1].name for row in done.rows][:2] == [SHIPPED, "rla-door"]
+    for row in done.rows:
         (outcome,) = row.outcomes
         assert [each.presses for each in outcome.checkpoints[:-1]] == list(AFTER)
-        assert outcome.presses == outcome.checkpoints[-1].presses
-        assert outcome.failure or outcome.presses > AFTER[-1]
+        assert outcome.lesson.presses == outcome.checkpoints[-1].presses
+        assert outcome.failure or outcome.lesson.presses > AFTER[-1]
         seconds = [each.teaching_s for each in outcome.checkpoints]
         assert seconds == sorted(seconds)
         assert seconds[-1] == 15.0
         assert all(len(each.drives) == 1 for each in outcome.checkpoints)
 
 
-def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Done) -> None:
-    failed = done.outcome(BREAKING)
+def test_failure_of_a_learner_is_told_and_fails_the_exam(done: Comparison) -> None:
+    failed = outcome_of(done, BREAKING)
     assert failed.failure == f"{BREAKING}: RuntimeError: four are too many"
     assert [each.passed for each in failed.checkpoints][-1] is False
-    assert done.outcome("weighted-vote").failure == ""
+    assert outcome_of(done, "weighted-vote").failure == ""
 
 
 def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
-    plan = plan_for(Results(tmp_path), (3902,), Pupil("k-nn"), Pupil("k-nn", 0.5))
+    plan = plan_for(tmp_path, Pupil("k-nn"), Pupil("k-nn", 0.5))
     assert len({job.made_of for job in plan.jobs}) == 3
     assert [job.stem for job in plan.jobs] == [
         "rla/wall_following-3902",
@@ -165,9 +157,7 @@ def test_pupil_of_another_text_is_refused(text: str) -> None:
 
 def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 3903) -> PupilOutcome:
     """Require one outcome of the batch and the CAN bus, and return it."""
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    plan: ComparisonPlan = make_plan([task], [pupil], (seed,), AFTER, parts)
-    job: PupilJob = plan.jobs[-1]
+    job: PupilJob = make_plan([task], [pupil], (seed,), AFTER, parts_in(folder)).of(PupilJob)[-1]
     batch, bus = (
         anyio.run(replace(job, loops=loops).measure, folder / "knowledge", lambda *_: None)
         for loops in (IN_BATCH, ON_BUS)
@@ -178,7 +168,7 @@ def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 39
 
 @pytest.mark.parametrize("name", ["weighted-vote", pytest.param(SHIPPED, marks=pytest.mark.deep)])
 def test_pupil_is_equal_in_batch_and_on_the_bus(name: str, tmp_path: Path) -> None:
-    assert require_equal(tmp_path, Pupil(name), taught_by_named(short_task(exam_s=6.0), "ordinary")).presses > 2
+    assert require_equal(tmp_path, Pupil(name), taught_by_named(short_task(exam_s=6.0), "ordinary")).lesson.presses > 2
 
 
 def test_pupil_that_fails_is_driven_on_the_bus(tmp_path: Path) -> None:

@@ -3,9 +3,13 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.experiments.compare.figures import draw_curves
+from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
+from kurt2rt.experiments.compare.study import Checkpoint, PupilOutcome
 from kurt2rt.experiments.compare.tables import (
+    Comparison,
+    Row,
     all_tables,
+    draw_curves,
     effort_table,
     holm,
     mcnemar_p,
@@ -13,8 +17,31 @@ from kurt2rt.experiments.compare.tables import (
     pairs_of,
     success_table,
 )
-from kurt2rt.experiments.study.results import Results
-from tests.experiments.compare.outcomes import comparison_of, robot
+from tests.experiments.compare.test_compare import AFTER, plan_for
+from tests.experiments.rows import MADE_OF, lesson
+from tests.experiments.transfer.test_tables import DRIVES
+
+
+def robot(seed: int, *there: str, failure: str = "", collisions: int = 0, presses: int = 8) -> PupilOutcome:
+    """Return a robot whose exams after AFTER presses and at the end went like `there`, or the end alone."""
+    return PupilOutcome(
+        made_of=MADE_OF,
+        seed=seed,
+        lesson=lesson(seed, presses=presses, asks=5, corrections=3, collisions=collisions, rescues=0),
+        failure=failure,
+        checkpoints=tuple(
+            Checkpoint(presses=after, teaching_s=after, drives=(DRIVES[what],))
+            for after, what in zip((*AFTER, presses)[-len(there) :], there, strict=True)
+        ),
+    )
+
+
+def comparison_of(*outcomes: tuple[PupilOutcome, ...]) -> Comparison:
+    """Return the comparison of the RLA system as shipped and of 1-NN, with the outcomes of each."""
+    pupils = (Pupil(SHIPPED), Pupil("1-nn"))
+    rows = (Row(("wall_following", pupil), own) for pupil, own in zip(pupils, outcomes, strict=True))
+    return Comparison(plan_for(Path("never-made"), Pupil("1-nn")), tuple(rows))
+
 
 OURS = (robot(1, "stuck", "right", "right"), robot(2, "stuck", "stuck", "right"), robot(3, *["not judged"] * 3))
 THEIRS = (
@@ -24,8 +51,8 @@ THEIRS = (
 )
 
 
-def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
-    table = success_table(comparison_of(Results(tmp_path), OURS, THEIRS))
+def test_success_counts_judged_robots_by_presses() -> None:
+    table = success_table(comparison_of(OURS, THEIRS))
     assert table.columns == ("task", "learner", "after 2", "after 5", "at the end")
     ours, theirs = table.rows
     assert ours[:2] == ("wall_following", "RLA, as shipped")
@@ -35,33 +62,33 @@ def test_success_counts_judged_robots_by_presses(tmp_path: Path) -> None:
 
 def test_robots_without_a_verdict_have_no_share(tmp_path: Path) -> None:
     none = tuple(robot(seed, *["not judged"] * 3) for seed in (1, 2))
-    comparison = comparison_of(Results(tmp_path), none, none)
+    comparison = comparison_of(none, none)
     assert success_table(comparison).rows[0][2:] == ("none judged",) * 3
     draw_curves(comparison, tmp_path / "empty.png")
 
 
-def test_pairs_and_presses_are_compared_robot_by_robot(tmp_path: Path) -> None:
-    (row,) = paired_table(comparison_of(Results(tmp_path), OURS, THEIRS)).rows
+def test_pairs_and_presses_are_compared_robot_by_robot() -> None:
+    (row,) = paired_table(comparison_of(OURS, THEIRS)).rows
     assert row[:6] == ("wall_following", "1-NN without R", "2", "0", "0.500", "0.500")
     assert row[6] == "2.0 (-0.5 to 4.5)"  # 3, 1 and 2 fewer; Student's t of two degrees of freedom is 4.303
-    (alone,) = paired_table(comparison_of(Results(tmp_path), OURS[:1], THEIRS[:1])).rows
+    (alone,) = paired_table(comparison_of(OURS[:1], THEIRS[:1])).rows
     assert alone[-1] == "-"
 
 
-def test_effort_has_medians_and_sums(tmp_path: Path) -> None:
-    ours, theirs = effort_table(comparison_of(Results(tmp_path), OURS, THEIRS)).rows
+def test_effort_has_medians_and_sums() -> None:
+    ours, theirs = effort_table(comparison_of(OURS, THEIRS)).rows
     assert ours[2:] == ("8", "5", "3", "0", "0", "0")
     assert theirs[2:] == ("6", "5", "3", "3", "0", "0")
 
 
-def test_failures_have_a_table_only_if_there_are_any(tmp_path: Path) -> None:
-    *_, failures = all_tables(comparison_of(Results(tmp_path), OURS, THEIRS))
+def test_failures_have_a_table_only_if_there_are_any() -> None:
+    *_, failures = all_tables(comparison_of(OURS, THEIRS))
     assert failures.rows == (("wall_following", "1-NN without R", "2", "1-nn: ValueError: empty"),)
-    assert len(list(all_tables(comparison_of(Results(tmp_path), OURS, OURS)))) == 3
+    assert len(list(all_tables(comparison_of(OURS, OURS)))) == 3
 
 
 def test_figure_is_drawn(tmp_path: Path) -> None:
-    draw_curves(comparison_of(Results(tmp_path), OURS, THEIRS), tmp_path / "compare.png")
+    draw_curves(comparison_of(OURS, THEIRS), tmp_path / "compare.png")
     assert imread(tmp_path / "compare.png").shape[1] > 500
 
 

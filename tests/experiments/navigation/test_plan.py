@@ -1,26 +1,27 @@
 """Navigation study on the simulated robot: streets, goals, tables and figures."""
 
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
+import anyio
 import pytest
 from matplotlib.image import imread
 
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.navigation.figures import draw_errands
-from kurt2rt.experiments.navigation.guided_tour import navigation_settings
-from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
-from kurt2rt.experiments.navigation.plan import NavigationPlan, make_plan, read_outcomes
-from kurt2rt.experiments.navigation.tables import all_tables
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
+from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.navigation import study as module
+from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings
+from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan
+from kurt2rt.experiments.navigation.tables import all_tables, draw_errands
 from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE
-from tests.experiments.study.here import HERE
+from tests.experiments.study.here import carry_out, parts_in
 
 
 def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
@@ -28,31 +29,19 @@ def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
     return task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": exam_s})})
 
 
-def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> NavigationPlan:
-    errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
-    return make_plan(
-        errands,
-        streets,
-        (1,),
-        JobParts(factory=STAGE, robot=ROBOT, results=results),
-        controls=True,
-    )
-
-
 @dataclass(frozen=True)
 class Done:
-    results: Results
-    plan: NavigationPlan
+    plan: StudyPlan[TaskSettings]
+    job: NavigationJob
     outcome: ErrandsOutcome
 
 
 def carried_out(folder: Path, streets_s: float, errands_s: float, exam_s: float) -> Done:
-    results = Results(folder)
-    plan = a_programme(results, streets_s, errands_s, exam_s)
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    (outcome,) = read_outcomes(plan, results)
-    return Done(results, plan, outcome)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(module, "basic_task_of", lambda _task: short("streets", streets_s, 6.0))
+        plan = make_plan(short("errands", errands_s, exam_s), (1,), parts_in(folder), controls=True)
+    (job,) = carry_out(plan, folder).of(NavigationJob)
+    return Done(plan, job, Results(folder).read(job, ErrandsOutcome))
 
 
 @pytest.fixture(scope="module")
@@ -61,17 +50,12 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
 
 
 def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
-    (job,) = done.plan.jobs
-    with Journal.read_only(job.knowledge) as journal:
+    with Journal.read_only(done.job.knowledge) as journal:
         events = journal.events()
         assert MID in journal.binding.levels
     assert next(event.name for event in events if isinstance(event, SituationNamed)) == "home"
     ways = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == MID]
     assert len(ways) == done.outcome.mid_rlas >= 1
-
-
-def test_run_missing_skips_finished_jobs(done: Done) -> None:
-    assert missing_time_s(done.plan, done.results) == 0.0
 
 
 def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
@@ -80,7 +64,7 @@ def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
 
 
 def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
-    tables = list(all_tables([done.outcome], navigation_settings(done.plan.task), "ordinary"))
+    tables = list(all_tables([done.outcome], navigation_settings(done.plan.about), "ordinary"))
     assert len(tables) == 3
     assert "ordinary" in tables[1].note
     picture = tmp_path / "robot.png"
@@ -100,3 +84,17 @@ def test_navigation_reaches_goals_without_demonstration(tmp_path: Path) -> None:
     assert len(planned.errands) == 20
     assert planned.good(2.0) >= 16
     assert planned.good(1.3) > by_chance.good(1.3) + 8
+
+
+def test_guided_tour_counts_the_holds_of_a_person_as_corrections(tmp_path: Path) -> None:
+    task = taught_by_named(load_task("errands", changes={"teaching.corrections_s": "30"}), "ordinary")
+
+    async def lead() -> int:
+        with (
+            lessons_kept(tmp_path / "town.knowledge", ROBOT, task) as keeping,
+            closing(STAGE.open("manhattan", 1, "errands")) as simulation,
+        ):
+            led = await guided_tour(simulation, ROBOT, task, keeping.training, seed=1, on_progress=lambda _done_s: None)
+            return led.corrections
+
+    assert anyio.run(lead) > 0

@@ -2,9 +2,11 @@
 
 import re
 
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
-from kurt2rt.experiments.navigation.tables import robots_table, runs_table, targets_table
+from kurt2rt.experiments.navigation.exam import ErrandDone, ErrandsRun, Strategy
+from kurt2rt.experiments.navigation.study import ErrandsOutcome
+from kurt2rt.experiments.navigation.tables import all_tables, robots_table, runs_table
 from tests.experiments.navigation.test_goals import settings
+from tests.experiments.rows import MADE_OF
 
 
 def errand(
@@ -29,6 +31,7 @@ def run(*errands: ErrandDone, how: Strategy = "planning") -> ErrandsRun:
 
 def robot(seed: int, *runs: ErrandsRun) -> ErrandsOutcome:
     return ErrandsOutcome(
+        made_of=MADE_OF,
         seed=seed,
         teaching_s=1165.0,
         ways=100,
@@ -58,7 +61,7 @@ def test_goal_counts_if_short_and_without_collision() -> None:
 def test_robots_that_nobody_has_seen_before_are_judged() -> None:
     outcomes = [robot(seed, GOOD) for seed in range(100, 118)]
     outcomes += [robot(seed, run(*[errand()] * 17, *[errand(why_not="no way")] * 3)) for seed in (118, 119)]
-    table = targets_table(outcomes, settings())
+    table = next(all_tables(outcomes, settings()))
     assert [row[3] for row in table.rows] == ["met"] * 3
     assert [row[1:3] for row in table.rows[:2]] == [("360 of 400", "394 of 400"), ("18 of 20", "18 of 20")]
     assert "1.3" in table.rows[2][1]
@@ -66,16 +69,18 @@ def test_robots_that_nobody_has_seen_before_are_judged() -> None:
 
 
 def test_robots_that_settings_were_chosen_on_are_not() -> None:
-    table = targets_table([robot(1, GOOD)], settings())
+    table = next(all_tables([robot(1, GOOD)], settings()))
     assert {row[3] for row in table.rows} == {"not judged"}
     assert "20" in table.note
 
 
 def test_runs_table_lists_controls_and_demonstrations() -> None:
     by_chance = run(errand(why_not="astray"), errand(1.2), how="chance")
-    table = runs_table([robot(1, run(errand(demonstrated=None), errand(demonstrated=2.0)), by_chance)], settings())
+    planned = run(errand(demonstrated=None), errand(demonstrated=2.0))
+    table = runs_table([robot(1, planned, by_chance)], settings(), "slow")
     assert [row[1] for row in table.rows] == ["2 of 2", "1 of 2"]
     assert re.findall(r"\d[\d.]*", table.note.split(":")[-1]) == ["2.0", "2.00", "1"]
+    assert "slow" in table.note
 
 
 def test_each_robot_tells_what_it_did_not_reach_and_why() -> None:

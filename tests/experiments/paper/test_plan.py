@@ -1,6 +1,8 @@
 """Plan of the paper study."""
 
+import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,13 +13,13 @@ from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
-from kurt2rt.experiments.paper.outcome import Reading
-from kurt2rt.experiments.paper.plan import PaperPlan, make_plan, unseen_of
-from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results, StudyError
-from tests.experiments.helpers import ROBOT, STAGE
+from kurt2rt.experiments.paper.settings import QUICK, WHOLE, ExperimentSettings, Extent, PaperSettings, load_paper
+from kurt2rt.experiments.paper.study import GrowthJob, PaperExtent, Reading, TaughtJob, make_plan, unseen_of
+from kurt2rt.experiments.paper.tables import reasons_not_to_judge
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from tests.experiments.helpers import STAGE
+from tests.experiments.study.here import parts_in
 
 ISSUE = {  # RLAs at most, success at least by world, of generated worlds
     "fleeing": (67, {"a": 0.9, "b": 0.8, "c": 0.8}, None),
@@ -34,15 +36,12 @@ def planned(
     seeds: tuple[int, ...] = (100, 101, 102),
     readings: tuple[Reading, ...] = ("shipped",),
     paper: PaperSettings | None = None,
-) -> PaperPlan:
-    return make_plan(
-        paper or load_paper(),
-        extent,
-        seeds,
-        readings,
-        JobParts(factory=STAGE, robot=ROBOT, results=Results(Path("never-made"))),
-        tasks=tasks,
-    )
+) -> StudyPlan[PaperExtent]:
+    return make_plan(paper or load_paper(), extent, seeds, readings, parts_in(), tasks=tasks)
+
+
+def first_of(plan: StudyPlan[PaperExtent]) -> TaughtJob:
+    return plan.of(TaughtJob)[0]
 
 
 def changed_task(folder: Path, **keys: Any) -> str:
@@ -69,7 +68,7 @@ def test_everything_that_is_shipped_can_be_planned() -> None:
     plan = planned(readings=("shipped", "plain"), seeds=(100,), extent=Extent(most_unseen=1))
     tasks = [each.task for each in load_paper().experiments]
     for reading in ("shipped", "plain"):
-        assert [each.task.name for each in plan.experiments if each.reading == reading] == tasks
+        assert [each.task.name for each in plan.of(TaughtJob) if each.reading == reading] == tasks
     assert len({job.file for job in plan.jobs}) == len(plan.jobs)
 
 
@@ -84,41 +83,38 @@ def test_twenty_robots_share_all_generated_worlds(first: int) -> None:
 
 def test_more_robots_may_be_added_to_those_there_are() -> None:
     extent = Extent(most_unseen=3)
-    (few,) = planned("wall_following", extent=extent, seeds=(100, 101)).experiments
-    (more,) = planned("wall_following", extent=extent, seeds=(102, 101, 100)).experiments
-    assert {job.seed: job.unseen for job in few.jobs} == {100: ("rooms-100",), 101: ("rooms-101",)}
-    assert {(job.file, job.made_of) for job in few.jobs} < {(job.file, job.made_of) for job in more.jobs}
+    few, more = (planned("wall_following", extent=extent, seeds=seeds) for seeds in ((100, 101), (102, 101, 100)))
+    assert {job.seed: job.worlds[-1] for job in few.of(TaughtJob)} == {100: "rooms-100", 101: "rooms-101"}
+    assert {(job.file, job.made_of) for job in few.of(TaughtJob)} < {(job.file, job.made_of) for job in more.jobs}
 
 
 def test_fig_2_is_drawn_where_its_task_is_taught() -> None:
-    (growth,) = planned("wall_following", extent=Extent(most_unseen=1, most_robots=2)).growth
-    assert [(job.radius, job.seed) for job in growth.jobs][:3] == [(150.0, 100), (150.0, 101), (200.0, 100)]
-    assert all(job.task.teaching.corrections_s == 0.0 and job.robot_time_s == 600.0 for job in growth.jobs)
-    assert planned("circle").growth == ()
+    growth = planned("wall_following", extent=Extent(most_unseen=1, most_robots=2)).of(GrowthJob)
+    assert [(job.radius, job.seed) for job in growth][:3] == [(150.0, 100), (150.0, 101), (200.0, 100)]
+    assert all(job.task.teaching.corrections_s == 0.0 and job.robot_time_s == 600.0 for job in growth)
+    assert planned("circle").of(GrowthJob) == ()
 
 
 def test_the_plain_reading_has_the_settings_of_its_own() -> None:
-    shipped, plain = planned("circle", readings=("shipped", "plain")).experiments
+    shipped, plain = planned("circle", readings=("shipped", "plain"), seeds=(100,)).of(TaughtJob)
     ordinary = load_teacher("ordinary")
     assert shipped.task == taught_by(load_task("circle"), ordinary)
     assert plain.task == taught_by(load_task("circle", plain=True), ordinary)
-    assert plain.jobs[0].made_of.differences(shipped.jobs[0].made_of) == ["task"]
+    assert plain.made_of.differences(shipped.made_of) == ["task"]
 
 
 def test_a_part_shortens_times_and_nothing_of_learning() -> None:
-    (experiment,) = planned("eight", extent=QUICK).experiments
-    whole = load_task("eight")
-    assert experiment.task.learning == taught_by(whole, load_teacher(whole.teaching.default_teacher)).learning
-    assert experiment.task.teaching.duration_s == pytest.approx(60.0, abs=1.0)
+    task, whole = first_of(planned("eight", extent=QUICK)).task, load_task("eight")
+    assert task.learning == taught_by(whole, load_teacher(whole.teaching.default_teacher)).learning
+    assert task.teaching.duration_s == pytest.approx(60.0, abs=1.0)
     share = whole.teaching.supervised_s / whole.teaching.duration_s
-    assert experiment.task.teaching.supervised_s == pytest.approx(60.0 * share, abs=1.0)
-    assert experiment.task.exam.duration_s == 20.0
+    assert task.teaching.supervised_s == pytest.approx(60.0 * share, abs=1.0)
+    assert task.exam.duration_s == 20.0
 
 
 def test_a_task_of_ones_own_is_done_and_nothing_is_asked_of_it(tmp_path: Path) -> None:
-    (experiment,) = planned(changed_task(tmp_path, name="mine")).experiments
-    assert experiment.task.name == "mine"
-    assert experiment.settings.asked.rlas_at_most == 0
+    job = first_of(planned(changed_task(tmp_path, name="mine")))
+    assert (job.task.name, job.settings.asked.rlas_at_most) == ("mine", 0)
 
 
 def test_an_unknown_task_is_refused_with_those_there_are() -> None:
@@ -134,9 +130,8 @@ def test_an_unknown_world_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", ["circle.yaml", "../tasks/circle.yaml"])
 def test_a_path_to_a_shipped_task_is_the_same_as_its_name(path: str) -> None:
-    (by_path,) = planned(str(CONFIG_DIR / "tasks" / path), "circle").experiments
-    (by_name,) = planned("circle").experiments
-    assert by_path.settings == by_name.settings
+    by_path, by_name = planned(str(CONFIG_DIR / "tasks" / path), "circle"), planned("circle")
+    assert first_of(by_path).settings == first_of(by_name).settings
     assert [(job.file, job.made_of) for job in by_path.jobs] == [(job.file, job.made_of) for job in by_name.jobs]
 
 
@@ -160,16 +155,66 @@ def test_success_asked_in_a_world_without_exam_is_refused() -> None:
         planned(paper=wrong)
 
 
-def test_make_plan_teacher_of_the_paper_teaches_every_task() -> None:
+def test_teacher_of_the_paper_teaches_every_task() -> None:
     plan = planned("circle", "eight", paper=load_paper().model_copy(update={"teacher": "slow"}))
-    assert {each.task.teaching.profile.name for each in plan.experiments} == {"slow"}
-    quick, slow = planned("circle").jobs[0].made_of, plan.jobs[0].made_of
-    assert slow is not None
-    assert slow != quick
+    assert {each.task.teaching.profile.name for each in plan.jobs} == {"slow"}
+    assert first_of(plan).made_of != first_of(planned("circle")).made_of
+    own = {each.task.name: each.task.teaching.profile.name for each in planned("circle", "streets").jobs}
+    assert own == {name: load_task(name).teaching.default_teacher for name in ("circle", "streets")}
 
 
-def test_make_plan_without_a_teacher_takes_that_of_each_task() -> None:
-    plan = planned("circle", "streets")
-    assert [each.task.teaching.profile.name for each in plan.experiments] == [
-        load_task(name).teaching.default_teacher for name in ("circle", "streets")
-    ]
+NOT_SEEN = range(100, 120)
+
+
+def judged(seeds: range | tuple[int, ...], settings: ExperimentSettings = WALL_FOLLOWING) -> StudyPlan[PaperExtent]:
+    """Return a plan of one experiment."""
+    plan, one = planned("wall_following", seeds=(100,)), first_of(planned("wall_following", seeds=(100,)))
+    jobs = tuple(replace(one, seed=seed, settings=settings, worlds=unseen_of(seed, settings)) for seed in seeds)
+    return replace(plan, seeds=tuple(seeds), jobs=jobs)
+
+
+@pytest.mark.parametrize(
+    ("seeds", "numbers"),
+    [
+        (NOT_SEEN, []),
+        (range(100, 119), [["19", "20"]]),
+        ((100,), [["1", "20"]]),
+        (range(79, 99), [["1", "0", "79"]]),
+        (range(100, 140, 2), [["15", "30", "20"]]),
+    ],
+)
+def test_reasons_not_to_judge_have_their_numbers(seeds: range | tuple[int, ...], numbers: list[list[str]]) -> None:
+    assert [re.findall(r"\d+", reason) for reason in reasons_not_to_judge(judged(seeds))] == numbers
+
+
+def test_a_part_and_known_rooms_are_not_judged() -> None:
+    plan = judged(NOT_SEEN)
+    (reason,) = reasons_not_to_judge(replace(plan, about=plan.about._replace(extent=QUICK)))
+    assert not re.findall(r"\d", reason)
+    assert WALL_FOLLOWING.unseen is not None
+    known = WALL_FOLLOWING.model_copy(update={"unseen": WALL_FOLLOWING.unseen.model_copy(update={"first": 59})})
+    (reason,) = reasons_not_to_judge(judged(NOT_SEEN, known))
+    assert re.findall(r"rooms-\d+", reason) == ["rooms-0", "rooms-59"]
+
+
+SHIPPED = yaml.safe_load((CONFIG_DIR / "paper" / "basic_level.yaml").read_text())
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"growth": SHIPPED["growth"] | {"task": "sledging"}}, r"growth\.task: .*'sledging'"),
+        ({"eight": "nine"}, "eight: .*'nine'; .*: fleeing, "),
+        ({"testing_ground": "nowhere"}, "testing_ground: nowhere: "),
+        ({"worlds": ["a", "nowhere"]}, r"worlds\.1: nowhere: "),
+    ],
+)
+def test_load_paper_names_file_and_key_of_missing_parts(changed: dict[str, Any], said: str, tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(SHIPPED | changed))
+    with pytest.raises(SettingsError, match=f"^{re.escape(str(path))}: {said}"):
+        load_paper(str(path), STAGE)
+
+
+def test_load_paper_accepts_the_shipped_settings() -> None:
+    assert load_paper(factory=STAGE) == load_paper()

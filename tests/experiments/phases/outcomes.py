@@ -1,88 +1,48 @@
 """Outcomes of robots, written by hand."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
-from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.phases.plan import PhasesPlan
-from kurt2rt.experiments.phases.steps import (
-    ASKS,
-    BLAME_BY_CHANCE,
-    CORRUPTED,
-    CRITIC_ALONE,
-    INTACT,
-    JUDGED,
-    LONG_RUN,
-    PHASE_1,
-    PHASE_2,
-    PHASE_3,
-    PHASE_4,
-    PHASE_5,
-    REWARDS,
-    SHUFFLED,
-    UNKNOWN_BAD,
-    UNTAUGHT,
-)
-from kurt2rt.experiments.phases.summary import PhasesStudy
+from kurt2rt.experiments.phases.steps import CORRUPTED, JUDGED, PHASE_1, TITLES, UNTAUGHT
+from kurt2rt.experiments.phases.study import PhasesTask, StageOutcome, TeachingOutcome
+from kurt2rt.experiments.phases.tables import PhasesStudy
+from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Table
+from tests.experiments.rows import FAILED, PASSED, row
 
 TASK = load_task("wall_following")
-ALL = (
-    *(UNTAUGHT, PHASE_1, PHASE_2, PHASE_3, PHASE_4, PHASE_5, LONG_RUN),
-    *(CORRUPTED, ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS, JUDGED, CRITIC_ALONE, SHUFFLED, INTACT),
-)
 
 
-def exam(
-    world: str = "a", *, succeeded: bool = True, collisions: int = 0, rescues: int = 0, progress: float = 8.0
-) -> ExamOutcome:
-    return ExamOutcome(
-        world=world,
-        unit="laps",
-        progress=progress,
-        duration_s=300.0,
-        way_m=70.0,
-        collisions=collisions,
-        rescues=rescues,
-        alarm="",
-        share_unknown=0.03,
-        action_changes_per_s=1.5,
-        findings={"distance error, m": 0.05},
-        succeeded=succeeded,
-    )
+def exam(world: str = "a", *, passed: bool = True, **more: Any) -> DriveRow:
+    return row(world, PASSED if passed else FAILED, **more)
 
 
-def teaching(
-    duration_s: float = 120.0,
-    *,
-    blame: int = 0,
-    collisions: int = 0,
-    rescues: int = 0,
-    unknown_rescues: int = 0,
-    agreement: tuple[float | None, ...] = (None, 0.7, 0.9),
-) -> TeachingOutcome:
-    return TeachingOutcome(
-        duration_s=duration_s,
-        load=(WorkloadMinute(lessons=4, corrections=6), WorkloadMinute(rewards=blame, appraisals=2)),
-        asks=4,
-        praise=0,
-        blame=blame,
-        refused_signals=0,
-        collisions=collisions,
-        rescues=rescues,
-        unknown_rescues=unknown_rescues,
-        alarms=0,
-        share_unknown=0.02,
-        agreement=agreement,
-        share_trusted=0.5,
-        withdrawn=3,
-        critics_changes=5,
-        rolled_back=1,
-    )
+def teaching(teaching_s: float = 120.0, *, blame: int = 0, **more: Any) -> TeachingOutcome:
+    fields: dict[str, Any] = {
+        "teaching_s": teaching_s,
+        "asks": 4,
+        "positive_rewards": 0,
+        "negative_rewards": blame,
+        "refused_signals": 0,
+        "workload": (WorkloadMinute(lessons=4, corrections=6), WorkloadMinute(rewards=blame, appraisals=2)),
+        "collisions": 0,
+        "rescues": 0,
+        "unknown_rescues": 0,
+        "alarms": 0,
+        "share_unknown": 0.02,
+        "agreement": (None, 0.7, 0.9),
+        "share_trusted": 0.5,
+        "withdrawn": 3,
+        "critics_changes": 5,
+        "rolled_back": 1,
+    }
+    return TeachingOutcome.model_validate({**fields, **more})
 
 
-def stage(name: str, *exams: ExamOutcome, taught: TeachingOutcome | None = None) -> StageOutcome:
+def stage(name: str, *exams: DriveRow, taught: TeachingOutcome | None = None) -> StageOutcome:
     return StageOutcome(
         name=name, rlas=60, appraisals=170, knowledge_hash="0" * 64, teaching=taught, exams=exams or (exam(),)
     )
@@ -95,15 +55,13 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
             stage(name, taught=None if name in (UNTAUGHT, PHASE_1, CORRUPTED, JUDGED) else teaching())
             for _ in range(robots)
         )
-        for name in ALL
+        for name in TITLES
     }
     stages |= {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
-    plan = PhasesPlan(task, tuple(range(100, 100 + robots)), False, ())
+    plan = StudyPlan(PhasesTask(task, quick=False), tuple(range(100, 100 + robots)), ())
     return PhasesStudy(plan, stages, ((exam(),),) * robots)
 
 
 def cells(table: Table, place: int) -> dict[str, str]:
     """Return a row of a table by the names of its columns."""
-    row = dict(zip(table.columns, table.rows[place], strict=True))
-    assert len(table.rows[place]) == len(table.columns)
-    return row
+    return dict(zip(table.columns, table.rows[place], strict=True))

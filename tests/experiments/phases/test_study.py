@@ -1,6 +1,7 @@
 """Phases study on the simulated robot: plan, results, figures and report."""
 
 import base64
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,8 @@ from matplotlib.image import imread
 
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.phases.figures import draw_figures
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
@@ -20,30 +23,66 @@ from kurt2rt.experiments.phases.steps import (
     SHUFFLED,
     TITLES,
 )
-from kurt2rt.experiments.phases.summary import read_study
-from kurt2rt.experiments.phases.tables import all_tables
-from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.phases.study import PhasesTask, make_plan
+from kurt2rt.experiments.phases.tables import PhasesStudy, all_tables, read_study, reasons_not_to_judge, write_phases
+from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.pool import PoolProgress
-from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
-from tests.experiments.phases.outcomes import ALL
-from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_plan, tiny_task
-from tests.experiments.study.here import HERE
+from tests.experiments.study.here import carry_out, parts_in
 from tests.experiments.study.page import Page
+
+COMMAND = "kurt2rt phases --task wall_following --seeds 100"
+
+
+@dataclass(frozen=True)
+class Tiny:
+    """The smallest run with all kinds of results: too short to teach anything."""
+
+    folder: Path
+    study: PhasesStudy
+    pictures: list[SavedFigure]
+
+    @property
+    def plan(self) -> StudyPlan[PhasesTask]:
+        return self.study.plan
+
+
+def tiny_task() -> TaskSettings:
+    task = load_task("wall_following")
+    assert task.phases is not None
+    teaching = task.teaching.model_copy(update={"supervised_s": 4.0, "corrections_s": 1.0})
+    exam = task.exam.model_copy(update={"worlds": ("a",), "duration_s": 0.5})
+    phases = task.phases.shortened(1.0, ("a",), 1.0, 0.5).model_copy(update={"critic_s": 4.0, "set_down_every_s": 2.0})
+    return task.model_copy(update={"teaching": teaching, "exam": exam, "phases": phases})
+
+
+def tiny_plan(folder: Path) -> StudyPlan[PhasesTask]:
+    return make_plan(tiny_task(), (100,), parts_in(folder))
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory: pytest.TempPathFactory) -> Tiny:
+    folder = tmp_path_factory.mktemp("phases")
+    study = read_study(carry_out(tiny_plan(folder), folder))
+    pictures = list(draw_figures(study, folder))
+    write_phases(study, pictures, COMMAND, folder / "report.html")
+    return Tiny(folder, study, pictures)
+
+
+def file_of(step: str) -> str:
+    return f"results/{step}/wall_following-100.json"
 
 
 def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
-    return list(
-        read_lessons(tiny.results.folder / f"knowledge/{step}/wall_following-100.knowledge", ROBOT, tiny_task())
-    )
+    return list(read_lessons(tiny.folder / f"knowledge/{step}/wall_following-100.knowledge", ROBOT, tiny_task()))
 
 
 def test_phases_run_stores_stages_and_knowledge(tiny: Tiny) -> None:
-    assert set(tiny.study.stages) == set(ALL)
-    assert tiny.results.missing(tiny.plan.jobs) == []
-    kept = {path.parent.name for path in tiny.results.folder.glob("knowledge/*/*.knowledge")}
-    assert kept == {job.step for job in tiny.plan.jobs}
+    assert set(tiny.study.stages) == set(TITLES)
+    assert all(job.knowledge.is_file() for job in tiny.plan.jobs)
     (long_run,) = tiny.study.stages[LONG_RUN]
     assert long_run.exams == ()
 
@@ -69,7 +108,7 @@ def test_the_critic_of_phase_4_goes_along_to_the_branches(tiny: Tiny) -> None:
     (taught,) = tiny.study.stages[PHASE_4]
     assert taught.appraisals > 0
     assert taught.teaching is not None
-    assert sum(minute.appraisals for minute in taught.teaching.load) > 0
+    assert sum(minute.appraisals for minute in taught.teaching.workload) > 0
     for step in (CRITIC_ALONE, SHUFFLED):
         (branch,) = tiny.study.stages[step]
         assert branch.appraisals == taught.appraisals
@@ -87,20 +126,18 @@ def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
 
 
 def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    plan = tiny_plan(results)
-    left_out = {job.file for job in plan.jobs if job.step in (CORRUPTED, LONG_RUN)}
-    for path in tiny.results.folder.rglob("*-100.*"):
-        name = path.relative_to(tiny.results.folder)
+    left_out = {file_of(step) for step in (CORRUPTED, LONG_RUN)}
+    for path in tiny.folder.rglob("*-100.*"):
+        name = path.relative_to(tiny.folder)
         if str(name) not in left_out:
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_bytes(path.read_bytes())
     seen: list[PoolProgress] = []
-    run_missing(plan, results, HERE, seen.append)
+    plan = carry_out(tiny_plan(tmp_path), tmp_path, seen.append)
     titles = {f"{TITLES[step]}, seed 100" for step in (CORRUPTED, LONG_RUN)}
     assert {name for progress in seen for name in progress.running} == titles
     assert seen[-1].done_s == sum(job.robot_time_s for job in plan.jobs if job.file in left_out)
-    assert read_study(plan, results).stages == tiny.study.stages
+    assert read_study(plan).stages == tiny.study.stages
 
 
 def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
@@ -111,21 +148,17 @@ def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
     assert 0 < sum(each.ticks for each in judged.judgements) <= 100
 
 
-def test_missing_knowledge_raises_study_error(tmp_path: Path) -> None:
-    results = Results(tmp_path)
-    plan = tiny_plan(results)
-    (job,) = [job for job in plan.jobs if job.step == CORRUPTED]
+def test_missing_knowledge_and_results_are_named(tmp_path: Path) -> None:
+    plan = tiny_plan(tmp_path)
+    (job,) = [job for job in plan.jobs if job.file == file_of(CORRUPTED)]
     with pytest.raises(StudyError, match=r"phase-2/\S+\.knowledge .*\S+100\.json "):
         job.run(lambda _: None)
-
-
-def test_results_that_are_not_there_are_not_shown(tiny: Tiny, tmp_path: Path) -> None:
     with pytest.raises(StudyError):
-        read_study(tiny.plan, Results(tmp_path))
+        read_study(plan)
 
 
 def test_report_holds_all_figures_and_tables(tiny: Tiny) -> None:
-    text = tiny.report.read_text(encoding="utf-8")
+    text = (tiny.folder / "report.html").read_text(encoding="utf-8")
     page = Page(text)
     assert [each.path.name for each in tiny.pictures] == [
         "phases.png",
@@ -138,7 +171,7 @@ def test_report_holds_all_figures_and_tables(tiny: Tiny) -> None:
     pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
     assert pictures == [each.path.read_bytes() for each in tiny.pictures]
     assert all(min(imread(each.path).shape[:2]) > 400 for each in tiny.pictures)
-    titles = [table.title for table in all_tables(tiny.study, tiny.reasons)]
+    titles = [table.title for table in all_tables(tiny.study, list(reasons_not_to_judge(tiny.plan)))]
     assert len(titles) == len(set(titles))
     assert all(f"<caption>{title}</caption>" in text for title in titles)
     assert page.tags.count("table") == len(titles) + 1  # and that of the settings
@@ -146,4 +179,4 @@ def test_report_holds_all_figures_and_tables(tiny: Tiny) -> None:
     assert "1 robot only" in text
     assert "MISSED" not in text  # seconds judge nothing
     assert "<script" not in text
-    assert str(tiny.results.folder) not in text
+    assert str(tiny.folder) not in text

@@ -1,14 +1,70 @@
-"""Tables of exams, teachers and targets."""
+"""Tables and verdicts of the phases study, against outcomes that were written by hand."""
 
+import re
 from dataclasses import replace
 
-from kurt2rt.experiments.phases.steps import BRANCHES, PATH, PHASE_2, TITLES
-from kurt2rt.experiments.phases.tables import exam_table, phases_targets_table, teachers_table
-from tests.experiments.phases.outcomes import cells, exam, stage, study, teaching
+import pytest
+
+from kurt2rt.experiments.phases.steps import (
+    ASKS,
+    BRANCHES,
+    CORRUPTED,
+    CRITIC_ALONE,
+    INTACT,
+    LONG_RUN,
+    PATH,
+    PHASE_2,
+    REWARDS,
+    TITLES,
+    UNKNOWN_BAD,
+)
+from kurt2rt.experiments.phases.study import Judgement
+from kurt2rt.experiments.phases.tables import (
+    CriticScore,
+    critic_table,
+    exam_table,
+    interventions,
+    long_run_table,
+    paired,
+    phases_targets_table,
+    score_of,
+    teachers_table,
+    verdicts,
+    words_of_controls,
+    workload_table,
+)
+from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.targets import Verdict
+from tests.experiments.phases.outcomes import TASK, cells, exam, stage, study, teaching
+
+
+def test_robots_are_compared_with_themselves_world_by_world() -> None:
+    before = [stage("x", exam("a", progress=float(n)), exam("c", collisions=2, passed=False)) for n in range(10)]
+    after = [stage("y", exam("c"), exam("a", progress=n + 1.0)) for n in range(10)]
+    found = {(each.world, each.measure.name): each for each in paired(before, after)}
+    progress = found["a", "progress"]
+    assert (progress.before, progress.after) == (4.5, 5.5)
+    assert progress.difference == (1.0, 1.0, 1.0)  # robots differ by 10, and the change is the same in all
+    assert (progress.better, progress.worse) == (10, 0)
+    collisions = found["c", "collisions in 10 min"]
+    assert (collisions.before, collisions.after, collisions.better) == (4.0, 0.0, 10)
+    assert collisions.surely_better
+    assert not collisions.surely_worse
+    assert found["c", "success"].surely_better
+    for each in paired(before, before):
+        assert (each.surely_better, each.surely_worse, each.better, each.worse) == (False, False, 0, 0)
+
+
+def test_score_of_measures_precision_and_recall() -> None:
+    told = [(-1, -1, 30), (-1, 0, 10), (0, -1, 20), (1, 1, 5), (1, None, 15), (0, 0, 20)]
+    score = score_of([Judgement(judged=judged, said=said, ticks=ticks) for judged, said, ticks in told])
+    assert (score.precision, score.recall, score.silent) == (0.6, 0.75, 0.15)
+    assert score.agreement == (0.75 + 0.25) / 2
+    assert score_of([]) == CriticScore(None, None, None, None)
 
 
 def test_every_stage_has_a_row_for_each_world() -> None:
-    robots = [stage(PHASE_2, exam(), exam("c", succeeded=False, collisions=3), taught=teaching()) for _ in range(2)]
+    robots = [stage(PHASE_2, exam(), exam("c", passed=False, collisions=3), taught=teaching()) for _ in range(2)]
     table = exam_table("t", PATH, study(phase_2=robots), "")
     named = [row[0] for row in table.rows if row[0]]
     assert named == [TITLES[name] for name in PATH]
@@ -31,6 +87,126 @@ def test_nothing_is_judged_where_there_is_a_reason_not_to() -> None:
 
 
 def test_teachers_table_names_failed_seeds() -> None:
-    told = replace(study(3), teachers=((exam(),), (exam(succeeded=False, collisions=1),), (exam(progress=9.0),)))
+    told = replace(study(3), teachers=((exam(),), (exam(passed=False, collisions=1),), (exam(progress=9.0),)))
     row = cells(teachers_table(told), 0)
     assert (row["without fault"], row["seeds that failed"], row["progress"]) == ("2 of 3", "101", "8.0 laps")
+
+
+def test_a_robot_that_was_stuck_once_or_more_counts_once() -> None:
+    robots = [stage(PHASE_2, exam(rescues=rescues), taught=teaching()) for rescues in (0, 1, 4)]
+    found = cells(exam_table("t", (PHASE_2,), study(phase_2=robots), ""), 0)
+    assert (found["stuck"], found["success"]) == ("2", "3 of 3")
+
+
+def test_why_somebody_had_to_come_is_told_apart() -> None:
+    robots = [stage(LONG_RUN, taught=teaching(7200.0, collisions=1, rescues=3, unknown_rescues=2)) for _ in range(2)]
+    row = cells(long_run_table(study(long_run=robots)), 0)
+    assert (row["hours"], row["collisions"], row["stuck"], row["unknown for long"]) == ("4.0", "2", "2", "4")
+    assert row["an hour"] == "2.00"
+
+
+def test_a_control_that_equals_another_is_said_to() -> None:
+    words = list(words_of_controls(study(2)))
+    assert any(each.startswith(f"{TITLES[UNKNOWN_BAD]}: 2 of 2 ") for each in words)
+    equal = [each for each in words if each.startswith(f"{TITLES[ASKS]}: ")]
+    assert len(equal) == 1
+    assert TITLES[CORRUPTED] in equal[0]
+    silent = [stage(ASKS, exam(progress=7.0), taught=teaching(asks=0)) for _ in range(2)]
+    (said,) = (each for each in words_of_controls(study(2, asks_only=silent)) if each.startswith(f"{TITLES[ASKS]}: "))
+    assert TITLES[CORRUPTED] not in said
+
+
+def test_a_critic_of_which_too_little_was_heard_says_so() -> None:
+    table = critic_table(study(2))
+    row = cells(table, 0)
+    assert (row["agreement at its end"], row["trusted"], row["undone"]) == ("0.90", "2 of 2", "1")
+    assert [bool(each[2]) for each in table.rows] == [True, *[False] * 4]  # of phase 4 alone
+    silent = study(phase_4=[stage("phase-4", taught=teaching(agreement=(None, None))) for _ in range(2)])
+    assert not re.search(r"\d", cells(critic_table(silent), 0)["agreement at its end"])
+
+
+def test_the_load_is_told_in_all_and_in_a_minute() -> None:
+    table = workload_table("t", (REWARDS,), study(rewards=[stage(REWARDS, taught=teaching(blame=30))]))
+    row = cells(table, 0)
+    assert (row["lasts, s"], row["answers"], row["corrections"]) == ("120", "4 (2.0)", "6 (3.0)")
+    assert (row["rewards"], row["-1"], row["withdrawn"]) == ("30 (15.0)", "30", "3")
+
+
+def found(**changed: object) -> dict[str, Verdict]:
+    """Return the verdicts on 20 robots by their names."""
+    return {each.what: each for each in verdicts(study(20, **changed))}  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("wrong_in_a", "wrong_in_c", "result"), [(1, 2, "met"), (2, 3, "MISSED")])
+def test_a_repair_needs_as_many_robots_as_the_share_says(wrong_in_a: int, wrong_in_c: int, result: str) -> None:
+    robots = [
+        stage(REWARDS, exam(passed=n >= wrong_in_a), exam("c", passed=n >= wrong_in_c), taught=teaching())
+        for n in range(20)
+    ]
+    repaired = [found(rewards=robots)[f"repaired by phase 3, {world}"] for world in "AC"]
+    assert [each.came for each in repaired] == [f"{20 - wrong} of 20" for wrong in (wrong_in_a, wrong_in_c)]
+    assert {each.result for each in repaired} == {result}
+
+
+@pytest.mark.parametrize(("most", "result"), [(100, "met"), (101, "MISSED")])
+def test_the_robot_that_took_most_blame_counts(most: int, result: str) -> None:
+    robots = [stage(REWARDS, taught=teaching(blame=most if n == 7 else 1)) for n in range(20)]
+    verdict = found(rewards=robots)["blame in phase 3, most of all robots"]
+    assert (verdict.came, verdict.result) == (str(most), result)
+
+
+@pytest.mark.parametrize(("left", "result"), [(2, "met"), (3, "MISSED")])
+def test_collisions_fall_by_those_that_are_no_more(left: int, result: str) -> None:
+    before = [stage(CORRUPTED, exam(collisions=1)) for _ in range(20)]
+    after = [stage(CRITIC_ALONE, exam(collisions=int(n < left)), taught=teaching()) for n in range(20)]
+    verdict = found(corrupted=before, critic_alone=after)["collisions fall by the critic alone"]
+    assert verdict.came.startswith(f"by {1 - left / 20:.0%} (")
+    assert verdict.came.endswith(f", 2.00 to {left / 10:.2f} in 10 min")
+    assert verdict.result == result
+
+
+def intact(*after: DriveRow) -> dict[str, Verdict]:
+    """Return the verdicts in world A, by measure, on 20 robots that were clean and alike before."""
+    before = [stage(PHASE_2, taught=teaching()) for _ in range(20)]
+    robots = [stage(INTACT, each, taught=teaching()) for each in after]
+    start = "an intact set in phase 5, A: "
+    told = found(phase_2=before, intact_autonomous=robots)
+    return {what.removeprefix(start): each for what, each in told.items() if what.startswith(start)}
+
+
+def test_intact_set_is_not_worse_unless_a_robot_is_no_longer_clean() -> None:
+    told = intact(*[exam()] * 20)
+    assert {each.result for each in told.values()} == {"met"}
+    assert len(told) == 5
+    told = intact(exam(passed=False, collisions=1), *[exam()] * 19)
+    for measure, means in (("success", "1.000 -> 0.950"), ("collisions in 10 min", "0.000 -> 0.100")):
+        assert told[measure] == (*told[measure][:2], f"{means}; robots no longer clean: 1", False, True)
+    assert told["progress"].met
+
+
+def test_intact_measure_may_be_worse_by_the_margin() -> None:
+    for progress, result in ((7.85, "met"), (7.83, "MISSED")):
+        verdict = intact(*[exam(progress=progress)] * 20)["progress"]
+        assert (verdict.result, verdict.came.split(", at worst ")[1]) == (result, f"{1 - progress / 8.0:.1%} worse")
+    # On the mean it is better; what it may be is not known well enough.
+    unsure = intact(*(exam(progress=8.1 + (n % 2 - 0.5) * 4) for n in range(20)))["progress"]
+    assert unsure.came.startswith("8.000 -> 8.100")
+    assert unsure.result == "MISSED"
+
+
+def test_intervention_counts_each_cause_that_needs_a_person() -> None:
+    robots = [
+        stage(LONG_RUN, taught=teaching(1800.0, collisions=1, rescues=2, unknown_rescues=1)),
+        stage(LONG_RUN, taught=teaching(1800.0)),
+    ]
+    told = study(2, long_run=robots)
+    assert interventions(told).value == 3.0
+    verdict = list(verdicts(told))[-1]
+    assert (verdict.what, verdict.result) == ("interventions an hour after phase 5", "MISSED")
+    assert verdict.came.endswith("3")
+
+
+def test_of_a_task_that_asks_for_nothing_nothing_is_said() -> None:
+    assert TASK.phases is not None
+    asks_nothing = TASK.phases.model_copy(update={"asked": type(TASK.phases.asked)()})
+    assert list(verdicts(study(2, TASK.model_copy(update={"phases": asks_nothing})))) == []

@@ -13,8 +13,7 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.route.outcome import Layer
-from kurt2rt.experiments.route.route_monitor import RouteMonitor
+from kurt2rt.experiments.route.route_monitor import Layer, RouteMonitor
 from tests.behaviors.metrics.test_route import a_route, streets
 from tests.core.helpers import sensed
 

@@ -1,36 +1,48 @@
 import re
 from collections.abc import Sequence
-from pathlib import Path
 
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.route.outcome import RouteOutcome
-from kurt2rt.experiments.route.plan import RouteExperiment, RoutePlan, make_plan
-from kurt2rt.experiments.route.summary import RouteStudy, RouteSummary
-from kurt2rt.experiments.route.tables import all_tables, errors_of
+from kurt2rt.experiments.route.route_monitor import Layer, Wrong
+from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, make_plan
+from kurt2rt.experiments.route.tables import Routes, RouteStudy, all_tables, errors_of
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import Table
-from tests.experiments.helpers import ROBOT, STAGE
-from tests.experiments.route.outcomes import drive, outcome
+from tests.experiments.rows import FAILED, MADE_OF, PASSED, lesson, row
+from tests.experiments.study.here import parts_in
+
+SQUARE = ((2.2, 2.2), (2.2, 4.0), (4.0, 4.0), (4.0, 2.2))
 
 
-def plan(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> RoutePlan:
-    route, streets = load_task("route"), load_task("streets")
-    results = Results(Path("unused"))
-    return make_plan(
-        route,
-        streets,
-        seeds,
-        (8,),
-        variants,
-        JobParts(factory=STAGE, robot=ROBOT, results=results),
+def outcome(seed: int, *layers: Layer, mid_rlas: int = 12, collisions: int = 0, stuck: bool = False) -> RouteOutcome:
+    """Return a robot that did 80 decisions, of which each of the layers failed at one."""
+    return RouteOutcome(
+        made_of=MADE_OF,
+        seed=seed,
+        lesson=lesson(seed, teaching_s=797.0, rlas=150, asks=1, corrections=40, rescues=0),
+        route=SQUARE,
+        start=(3.1, 2.2),
+        mid_rlas=mid_rlas,
+        mid_asks=3,
+        mid_corrections=8,
+        missed_junctions=0,
+        drive=row(
+            "manhattan",
+            FAILED if layers or collisions or stuck else PASSED,
+            duration_s=600.0,
+            findings={"junctions": 80.0, "junctions right": 80.0 - len(layers)},
+            collisions=collisions,
+            stuck=stuck,
+        ),
+        wrong=tuple(
+            Wrong(at_s=10.0 * number, leg=number, layer=layer, x_m=2.2, y_m=3.1)
+            for number, layer in enumerate(layers, 1)
+        ),
     )
 
 
 def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> RouteStudy:
-    planned = plan([each.seed for each in outcomes], variants)
-    return RouteStudy(planned, tuple(RouteSummary(each, tuple(outcomes)) for each in planned.experiments))
+    plan = make_plan(load_task("route"), [each.seed for each in outcomes], (8,), variants, parts_in())
+    return RouteStudy(plan, tuple(Routes((each, 8), tuple(outcomes)) for each in variants))
 
 
 def table_titled(of: RouteStudy, title: str) -> Table:
@@ -43,37 +55,37 @@ def column(table: Table, heading: str) -> list[str]:
 
 
 def test_twenty_robots_are_judged_by_what_was_asked() -> None:
-    good = [outcome(seed, drive()) for seed in range(100, 118)]
-    asked = table_titled(study([*good, outcome(118, drive("mid")), outcome(119, drive(stuck=True))]), "What was asked")
+    good = [outcome(seed) for seed in range(100, 118)]
+    asked = table_titled(study([*good, outcome(118, "mid"), outcome(119, stuck=True)]), "What was asked")
     assert column(asked, "came") == ["12", "797 s", "99.94% of 1600", "18 of 20"]
     assert set(column(asked, "verdict")) == {"met"}
-    bad = [outcome(seed, drive("basic"), mid_rlas=198) for seed in range(117, 120)]
+    bad = [outcome(seed, "basic", mid_rlas=198) for seed in range(117, 120)]
     asked = table_titled(study([*good[:17], *bad]), "What was asked")
     assert column(asked, "verdict") == ["MISSED", "met", "met", "MISSED"]
 
 
 def test_few_robots_or_known_ones_are_not_judged() -> None:
-    asked = table_titled(study([outcome(1, drive())]), "What was asked")
+    asked = table_titled(study([outcome(1)]), "What was asked")
     assert set(column(asked, "verdict")) == {"not judged"}
     assert "1 robot only" in asked.note
 
 
 def test_each_layers_errors_are_counted_apart() -> None:
-    drives = [drive("basic", "basic", "mid"), drive("symbols", collisions=2), drive(stuck=True), drive()]
-    exams = table_titled(study([outcome(seed, each) for seed, each in enumerate(drives, 100)]), "Drives without")
+    robots = [outcome(100, "basic", "basic", "mid"), outcome(101, "symbols", collisions=2), outcome(102, stuck=True)]
+    exams = table_titled(study([*robots, outcome(103)]), "Drives without")
     assert [column(exams, layer) for layer in ("symbols", "mid", "basic")] == [["1"], ["1"], ["2"]]
     assert column(exams, "without an error") == ["1 of 4"]
     assert (column(exams, "collisions"), column(exams, "stuck")) == (["2"], ["1"])
 
 
 def test_of_controls_nothing_is_asked_and_each_has_its_row() -> None:
-    compared = study([outcome(100, drive())], (TAUGHT, *CONTROLS))
+    compared = study([outcome(100)], (TAUGHT, *CONTROLS))
     assert len(table_titled(compared, "What was asked").rows) == 4
     assert len(table_titled(compared, "What was taught").rows) == 1 + len(CONTROLS)
 
 
 def test_errors_are_told_with_their_layer_time_and_place() -> None:
-    wrong = outcome(1, drive("mid", collisions=1, stuck=True))
+    wrong = outcome(1, "mid", collisions=1, stuck=True)
     told = errors_of(wrong).split(", ")
     assert len(told) == 3
     assert told[0].startswith("mid ")
@@ -81,7 +93,6 @@ def test_errors_are_told_with_their_layer_time_and_place() -> None:
 
 
 def test_every_robot_is_known_by_its_own_route_and_streets() -> None:
-    jobs = [job for each in plan((1, 2)).experiments for job in each.jobs]
+    jobs = study([outcome(1), outcome(2)]).plan.of(RouteJob)
     assert len({job.made_of.task for job in jobs}) == 2
     assert [job.basic.name for job in jobs] == ["streets-1.knowledge", "streets-2.knowledge"]
-    assert isinstance(plan((1,)).experiments[0], RouteExperiment)

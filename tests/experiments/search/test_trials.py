@@ -14,10 +14,9 @@ from kurt2rt.experiments.search.journal import FILE, TrialJournal
 from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.trials import run_trials
 from kurt2rt.experiments.study import provenance
-from kurt2rt.experiments.study.local_executor import open_processes
-from kurt2rt.experiments.study.plan import StudyPlan, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.runner import Waves, open_processes, run_missing
 from tests.experiments.search.tiny import tiny_plan
 from tests.experiments.study.here import HERE
 
@@ -26,7 +25,7 @@ Trial = tuple[dict[str, Any], TrialState, float | None, dict[int, float]]
 
 @contextmanager
 def opened(plan: SearchPlan) -> Iterator[TrialJournal]:
-    with plan.jobs.parts["results"].held():
+    with plan.parts["results"].held():
         yield TrialJournal(plan)
 
 
@@ -112,11 +111,11 @@ def test_search_interrupted_between_robots_goes_on(
     stop = _Stop()
     stop.left = waves
 
-    def stopping(plan: StudyPlan, *others: Any) -> None:
+    def stopping(waves: Waves, *others: Any) -> None:
         if not stop.left:
             raise InterruptedError
         stop.left -= 1
-        run_missing(plan, *others)
+        run_missing(waves, *others)
 
     monkeypatch.setattr(trials_module, "run_missing", stopping)
     with pytest.raises(InterruptedError):

@@ -7,9 +7,7 @@ import yaml
 
 from kurt2rt.experiments.search.plan import SearchPlan, make_plan
 from kurt2rt.experiments.search.settings import SearchSettings, load_search
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.results import Results
-from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.here import parts_in
 
 CONTENT: dict[str, Any] = {
     "name": "tiny",
@@ -40,5 +38,4 @@ def tiny_settings(folder: Path, **other: Any) -> SearchSettings:
 
 
 def tiny_plan(folder: Path, **other: Any) -> SearchPlan:
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder / "made"))
-    return make_plan(tiny_settings(folder, **other), parts, changes=SHORT)
+    return make_plan(tiny_settings(folder, **other), parts_in(folder / "made"), changes=SHORT)

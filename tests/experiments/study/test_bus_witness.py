@@ -12,37 +12,31 @@ from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.loop_choice import LoopRequest, RequestedLoops
-from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
-from kurt2rt.experiments.study.seeds import SeedPlan, make_plan, read_results
-from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.study.here import HERE
+from kurt2rt.experiments.study.seeds import make_plan, read_results
+from kurt2rt.experiments.study.study_plan import LoopRequest, RequestedLoops, StudyPlan
+from tests.experiments.helpers import short_task
+from tests.experiments.study.here import carry_out, parts_in
 
 TASK = short_task(2.5, 1.0, 1.0)
 IN_BATCH = LoopRequest.BATCH
 
 
-def run(folder: Path, asked: LoopRequest = IN_BATCH) -> SeedPlan:
-    results = Results(folder)
-    parts, loops = JobParts(factory=STAGE, robot=ROBOT, results=results), RequestedLoops(asked, asked)
-    plan = make_plan({"": TASK}, [5], parts, loops=loops)
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    return plan
+def run(folder: Path, asked: LoopRequest = IN_BATCH) -> StudyPlan[None]:
+    plan = make_plan({"": TASK}, [5], parts_in(folder), loops=RequestedLoops(asked, asked))
+    return carry_out(plan, folder)
 
 
-def witness_of(plan: SeedPlan) -> BusWitnessJob:
-    (witness,) = plan.choice.witnesses(plan.every_job)
+def witness_of(plan: StudyPlan[None]) -> BusWitnessJob:
+    (witness,) = plan.choice.witnesses(plan.jobs)
     return witness
 
 
 def test_batch_and_bus_come_to_the_same_result(tmp_path: Path) -> None:
     plan, on_bus = run(tmp_path / "batch"), run(tmp_path / "bus", LoopRequest.BUS)
     results = Results(tmp_path / "batch")
-    assert read_results(plan, results) == read_results(on_bus, Results(tmp_path / "bus"))
+    assert read_results(plan) == read_results(on_bus)
     assert results.read(witness_of(plan), BusWitnessOutcome).differing == ()
     assert results.missing(plan.waves[0]) == []
     require_no_difference(results, ["tested"])

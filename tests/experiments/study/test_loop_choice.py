@@ -1,21 +1,20 @@
 """Choice of the loops that drive a study."""
 
-from pathlib import Path
+from dataclasses import replace
 
 import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
-from kurt2rt.experiments.paper.jobs import GrowthJob
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob
-from kurt2rt.experiments.study.loop_choice import ALL_ON_BUS, LoopRequest, RequestedLoops, choose_loops
-from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.paper.study import GrowthJob
+from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.seeds import make_plan
-from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.paper.outcomes import MADE_OF
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, LoopRequest, RequestedLoops, choose_loops
+from tests.experiments.helpers import ROBOT, short_task
+from tests.experiments.rows import MADE_OF
+from tests.experiments.study.here import parts_in
 
-PARTS = JobParts(factory=STAGE, robot=ROBOT, results=Results(Path("never-made")))
 IN_BATCH = RequestedLoops(LoopRequest.BATCH, LoopRequest.BATCH)
 AUTO = RequestedLoops(LoopRequest.AUTO, LoopRequest.AUTO, compiled=True)
 KNOWN, UNKNOWN = short_task(), taught_by_named(load_task("route"), None)
@@ -23,8 +22,7 @@ BOTH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
 
 
 def jobs(robots: int, task: TaskSettings = KNOWN) -> tuple[StudyJob, ...]:
-    plan = make_plan({"": task}, range(robots), PARTS)
-    return plan.every_job
+    return make_plan({"": task}, range(robots), parts_in()).jobs
 
 
 def test_known_task_is_driven_in_the_batch_with_three_witnesses() -> None:
@@ -35,8 +33,10 @@ def test_known_task_is_driven_in_the_batch_with_three_witnesses() -> None:
 
 
 def test_witnesses_are_one_percent_of_a_large_study() -> None:
-    task = KNOWN
-    many = [GrowthJob(task=task, reading="shipped", seed=seed, made_of=MADE_OF, **PARTS) for seed in range(450)]
+    one = GrowthJob(
+        **parts_in(), task=KNOWN, seed=0, made_of=MADE_OF, name="", stem="", robot_time_s=15.0, reading="shipped"
+    )
+    many = [replace(one, seed=seed, stem=str(seed)) for seed in range(450)]
     choice = choose_loops(many, IN_BATCH, ROBOT)
     assert {each.exams for each in choice.loops.values()} == {DriveLoop.BUS}  # a curve of growth has no exam
     assert len(choice.witnessed) == 5
@@ -87,8 +87,8 @@ def test_auto_names_no_task_if_nothing_is_driven_in_the_batch() -> None:
 
 @pytest.mark.parametrize("asked", [AUTO, IN_BATCH])
 def test_robot_of_another_kind_goes_to_its_link(asked: RequestedLoops) -> None:
-    choice = choose_loops(jobs(20), asked, load_robot("school"))
-    assert choice.apply(jobs(20)) == jobs(20)
+    given = jobs(20)
+    assert choose_loops(given, asked, load_robot("school")).apply(given) == given
 
 
 def test_robot_of_another_kind_is_named() -> None:

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.paper.outcome import TaughtOutcome
+from kurt2rt.experiments.study.jobs import TaughtOutcome
 from kurt2rt.experiments.study.parcel import WorkerDiffersError, pack, run_parcel, unpack
-from kurt2rt.experiments.study.plan import StoredJob, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress, Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
-from tests.experiments.paper.outcomes import MADE_OF, robot
+from kurt2rt.experiments.study.runner import StoredJob, run_missing
+from tests.experiments.rows import MADE_OF, lesson
 from tests.experiments.study.here import HERE
 
 
@@ -47,23 +47,19 @@ class Job:
         tell(1.0)
         length = 7 if self.given is None else len(self.given.read_text())
         if self.before is not None:
-            length += self.before.results.read(self.before, TaughtOutcome).rlas
+            length += self.before.results.read(self.before, TaughtOutcome).lesson.rlas
             length += len((self.before.results.folder / self.before.knowledge_name).read_text())
         with self.results.scratch() as folder:
             (folder / "knowledge").write_text(f"{self.name} taught")
             self.results.keep(folder / "knowledge", self.knowledge_name)
-        self.results.write(self, robot(self.seed, length))
+        outcome = TaughtOutcome(made_of=MADE_OF, seed=self.seed, lesson=lesson(self.seed, rlas=length))
+        self.results.write(self, outcome)
 
 
-@dataclass(frozen=True)
-class Plan:
-    waves: Sequence[Sequence[Job]]
-
-
-def plan_in(folder: Path, given: Path) -> Plan:
+def waves_in(folder: Path, given: Path) -> Sequence[Sequence[Job]]:
     results = Results(folder)
     first = [Job(results=results, seed=seed, stem="first", given=given) for seed in (3, 5)]
-    return Plan((first, [Job(results=results, seed=job.seed, stem="then", before=job) for job in first]))
+    return first, [Job(results=results, seed=job.seed, stem="then", before=job) for job in first]
 
 
 @pytest.fixture
@@ -78,12 +74,12 @@ def files(folder: Path) -> dict[str, bytes]:
 
 
 def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
-    plans = [plan_in(tmp_path / name, given) for name in ("here", "there")]
+    plans = [waves_in(tmp_path / name, given) for name in ("here", "there")]
     here, there = Results(tmp_path / "here"), Results(tmp_path / "there")
     with here.held(), there.held():
         run_missing(plans[0], here, HERE, lambda _: None)
         done: list[Job] = []
-        for wave in plans[1].waves:
+        for wave in plans[1]:
             for job in wave:
                 parcel = pack(job, there, [each for each in done if each.seed == job.seed])
                 before = files(tmp_path / "there")
@@ -95,8 +91,8 @@ def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
 
 
 def test_parcel_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None:
-    plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
-    (first, _), (then, _) = plan.waves
+    plan, results = waves_in(tmp_path / "there", given), Results(tmp_path / "there")
+    (first, _), (then, _) = plan
     with results.held():
         unpack(first, results, run_parcel(pack(first, results, [])))
         parcel = pack(then, results, [first])
@@ -106,7 +102,7 @@ def test_parcel_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None
 
 
 def test_parcel_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
-    (first, _), _ = plan_in(tmp_path, given).waves
+    (first, _), _ = waves_in(tmp_path, given)
     parcel = pack(first, Results(tmp_path), [])._replace(program="another")
     with pytest.raises(WorkerDiffersError, match=r"got [0-9a-f]{16}, Python .+, allowed another"):
         run_parcel(parcel)
@@ -114,7 +110,7 @@ def test_parcel_of_another_program_is_refused(tmp_path: Path, given: Path) -> No
 
 def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, given: Path) -> None:
     results = Results(tmp_path / "there")
-    (first, _), _ = plan_in(tmp_path / "there", given).waves
+    (first, _), _ = waves_in(tmp_path / "there", given)
     with results.held():
         unpack(first, results, {first.knowledge_name: b"old", first.file: b"{}"})
         unpack(first, results, {first.knowledge_name: b"new", first.file: b"{}"})
@@ -123,14 +119,14 @@ def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, giv
 
 
 def test_executor_gets_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Path) -> None:
-    plan, results = plan_in(tmp_path / "there", given), Results(tmp_path / "there")
+    plan, results = waves_in(tmp_path / "there", given), Results(tmp_path / "there")
     executor = _InTurn()
     with results.held():
         run_missing(plan, results, executor, lambda _: None)
         assert executor.earlier == [{}, {3: ["first, seed 3"], 5: ["first, seed 5"]}]
-        (tmp_path / "there" / plan.waves[1][1].file).unlink()
+        (tmp_path / "there" / plan[1][1].file).unlink()
         run_missing(plan, results, executor, lambda _: None)
-    assert results.missing(plan.waves[1]) == []
+    assert results.missing(plan[1]) == []
 
 
 class _InTurn:
@@ -153,7 +149,7 @@ class _InTurn:
 
 
 def test_parcel_of_a_job_with_other_paths_keeps_them(tmp_path: Path, given: Path) -> None:
-    (first, _), _ = plan_in(tmp_path / "there", given).waves
+    (first, _), _ = waves_in(tmp_path / "there", given)
     missing = replace(first, given=tmp_path / "nowhere")
     with pytest.raises(FileNotFoundError, match="nowhere"):
         run_parcel(pack(missing, Results(tmp_path / "there"), []))

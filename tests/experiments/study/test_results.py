@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.paper.outcome import TaughtOutcome
+from kurt2rt.experiments.study.jobs import TaughtOutcome
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
-from tests.experiments.paper.outcomes import MADE_OF, drive, robot
+from tests.experiments.rows import MADE_OF, lesson
 
 
 @dataclass(frozen=True)
@@ -21,12 +21,16 @@ class Job:
     replaces_others: bool = False
 
 
+def robot(seed: int) -> TaughtOutcome:
+    return TaughtOutcome(made_of=MADE_OF, seed=seed, lesson=lesson(seed))
+
+
 JOBS = [Job("results/shipped/one-1.json"), Job("results/shipped/one-2.json"), Job("results/plain/one-1.json")]
 
 
 def test_a_result_comes_back_as_it_was_kept(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    kept = robot(7, 90, drive(collisions=2), drive("b", stuck=True))
+    kept = robot(7)
     results.write(JOBS[0], kept)
     assert results.read(JOBS[0], TaughtOutcome) == kept
 
@@ -34,15 +38,15 @@ def test_a_result_comes_back_as_it_was_kept(tmp_path: Path) -> None:
 def test_only_what_is_not_there_yet_is_missing(tmp_path: Path) -> None:
     results = Results(tmp_path)
     assert results.missing(JOBS) == [0, 1, 2]
-    results.write(JOBS[1], robot(2, 90))
+    results.write(JOBS[1], robot(2))
     assert results.missing(JOBS) == [0, 2]
 
 
 @pytest.mark.parametrize("what", list(Provenance.model_fields))
 def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_path: Path) -> None:
     results = Results(tmp_path)
-    results.write(JOBS[0], robot(1, 90))
-    results.write(JOBS[1], robot(2, 90))
+    results.write(JOBS[0], robot(1))
+    results.write(JOBS[1], robot(2))
     other = [Job(job.file, MADE_OF.model_copy(update={what: "changed"})) for job in JOBS]
     with pytest.raises(StudyError, match=rf"one-1\.json .*\b1 .*: {what}\)") as caught:
         results.missing(other)
@@ -53,7 +57,7 @@ def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_pa
 def test_missing_has_a_job_that_replaces_results_of_another_make(tmp_path: Path) -> None:
     results = Results(tmp_path)
     for job in JOBS[:2]:
-        results.write(job, robot(1, 90))
+        results.write(job, robot(1))
     other = MADE_OF.model_copy(update={"task": "changed"})
     assert results.missing([Job(JOBS[0].file, other, replaces_others=True), JOBS[1]]) == [0]
 
@@ -67,9 +71,9 @@ def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
 
 def test_missing_raises_for_an_incomplete_result(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    results.write(JOBS[0], robot(1, 90, drive()))
+    results.write(JOBS[0], robot(1))
     content = json.loads((tmp_path / JOBS[0].file).read_text())
-    del content["drives"][0]["teachers_stuck"]
+    del content["lesson"]["asks"]
     (tmp_path / JOBS[0].file).write_text(json.dumps(content))
     with pytest.raises(StudyError, match=r"one-1\.json: .*--out"):
         results.missing(JOBS)

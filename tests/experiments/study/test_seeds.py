@@ -5,43 +5,42 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.local_executor import open_processes
-from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.seeds import SeedPlan, forget_lost_robots, make_plan, read_results
+from kurt2rt.experiments.study.runner import open_processes, run_missing
+from kurt2rt.experiments.study.seeds import forget_lost_robots, make_plan, read_results
+from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.journal import Journal
-from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.helpers import short_task
+from tests.experiments.study.here import parts_in
 
 TASK = short_task(2.5, 1.0, 1.0)
 
 
-def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> SeedPlan:
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(folder))
-    return make_plan({"": task}, seeds, parts)
+def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> StudyPlan[None]:
+    return make_plan({"": task}, seeds, parts_in(folder))
 
 
-def taught(folder: Path, *seeds: int, processes: int = 1) -> SeedPlan:
+def taught(folder: Path, *seeds: int, processes: int = 1) -> StudyPlan[None]:
     plan, results = plan_in(folder, *seeds), Results(folder)
     with results.held(), open_processes(processes) as executor:
-        run_missing(plan, results, executor, lambda _: None)
+        run_missing(plan.waves, results, executor, lambda _: None)
     return plan
 
 
 def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
     plan, results = taught(tmp_path, 5), Results(tmp_path)
-    (outcome,) = read_results(plan, results)[""]
+    (outcome,) = read_results(plan)[""]
     assert results.missing(plan.waves[0]) == []
     with Journal.read_only(tmp_path / "wall_following-5.knowledge") as journal:
         assert journal.events()
     assert (outcome.lesson.seed, outcome.lesson.world, outcome.exams[0].learned.trail) == (5, "a", ())
     assert outcome.lesson.rlas > 0
 
-    forget_lost_robots(plan, results)
+    forget_lost_robots(plan)
     assert results.missing(plan.waves[0]) == []
     (tmp_path / "wall_following-5.knowledge").unlink()
-    forget_lost_robots(plan, results)
+    forget_lost_robots(plan)
     assert results.missing(plan.waves[0]) == [0]
 
 
@@ -58,7 +57,7 @@ def test_robot_of_another_task_is_taught_again(tmp_path: Path) -> None:
 def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> None:
     there = taught(tmp_path / "there", 5, 6, processes=2)
     here = taught(tmp_path / "here", 5, 6)
-    results = [read_results(each, Results(tmp_path / name)) for each, name in ((there, "there"), (here, "here"))]
+    results = [read_results(each) for each in (there, here)]
     assert results[0] == results[1]
     first, second = results[0][""]
     assert first.lesson.knowledge_hash != second.lesson.knowledge_hash

@@ -10,29 +10,42 @@ from hal.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
-from kurt2rt.experiments.study.jobs import JobParts
-from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results, StudyError
-from kurt2rt.experiments.transfer.figures import draw_curves
-from kurt2rt.experiments.transfer.jobs import TransferJob, events_before_press
-from kurt2rt.experiments.transfer.outcome import TransferOutcome
-from kurt2rt.experiments.transfer.plan import NewWorlds, TransferPlan, TransferStudy, make_plan, read_study
-from kurt2rt.experiments.transfer.tables import all_tables
-from kurt2rt.experiments.transfer.variants import CONTROLS, TAUGHT_ON, taught_on_by
+from kurt2rt.experiments.study.runner import missing_time_s
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.experiments.transfer.study import (
+    CONTROLS,
+    TAUGHT_ON,
+    HomeJob,
+    NewWorlds,
+    Transfer,
+    TransferJob,
+    TransferOutcome,
+    events_before_press,
+    make_plan,
+    taught_on_by,
+)
+from kurt2rt.experiments.transfer.tables import TransferStudy, all_tables, draw_curves, read_study
 from kurt2rt.knowledge.journal.journal import Journal
-from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.study.here import HERE
-from tests.experiments.transfer.outcomes import AFTER, plan_for
+from tests.experiments.helpers import short_task
+from tests.experiments.study.here import carry_out, parts_in
+
+AFTER = (0, 2, 5)
+NEW = NewWorlds(("rooms-SEED",), AFTER, 15.0)
+
+
+def plan_in(folder: Path, new: NewWorlds = NEW) -> StudyPlan[Transfer]:
+    return make_plan(short_task(exam_s=4.0), new, (1,), (TAUGHT_ON, *CONTROLS), parts_in(folder))
 
 
 @dataclass(frozen=True)
 class Done:
     results: Results
-    plan: TransferPlan
+    plan: StudyPlan[Transfer]
     study: TransferStudy
 
     def job(self, variant: str) -> TransferJob:
-        (job,) = (job for each in self.plan.experiments for job in each.jobs if each.variant.name == variant)
+        (job,) = (job for job in self.plan.of(TransferJob) if job.variant.name == variant)
         return job
 
     def outcome(self, variant: str) -> TransferOutcome:
@@ -41,11 +54,9 @@ class Done:
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
-    results = Results(tmp_path_factory.mktemp("transfer"))
-    plan = plan_for(results, (1,), (TAUGHT_ON, *CONTROLS))
-    with results.held():
-        run_missing(plan, results, HERE, lambda _: None)
-    return Done(results, plan, read_study(plan, results))
+    folder = tmp_path_factory.mktemp("transfer")
+    plan = carry_out(plan_in(folder), folder)
+    return Done(Results(folder), plan, read_study(plan))
 
 
 def events_of(file: Path) -> list[TeachingEvent]:
@@ -54,10 +65,10 @@ def events_of(file: Path) -> list[TeachingEvent]:
 
 
 def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
-    (home,) = done.plan.home_jobs
+    (home,) = done.plan.of(HomeJob)
     before, after = events_of(home.knowledge), events_of(done.job("taught-on").knowledge)
     outcome = done.outcome("taught-on")
-    assert outcome.world == "rooms-1"
+    assert outcome.lesson.world == "rooms-1"
     assert after[: len(before)] == before
     assert len(after) - len(before) == outcome.checkpoints[-1].lessons >= 1
     assert {event.origin.phase for event in after[len(before) :]} == {Phase.CORRECTIONS}
@@ -69,16 +80,16 @@ def test_checkpoints_grow_by_presses_from_home_knowledge(done: Done) -> None:
     lessons = [each.lessons for each in outcome.checkpoints]
     assert lessons[0] == 0
     assert lessons == sorted(lessons)
-    assert outcome.checkpoints[-1].teaching_s <= outcome.teaching_s
+    assert outcome.checkpoints[-1].teaching_s <= outcome.lesson.teaching_s
 
 
 def test_checkpoint_is_what_a_shorter_lesson_teaches(done: Done) -> None:
     job = done.job("from-nothing")
-    shorter = replace(job, after=(0, 2), variant=replace(job.variant, name="shorter"))
+    shorter = replace(job, after=(0, 2), stem="shorter")
     shorter.run(lambda _: None)
     outcome = done.results.read(shorter, TransferOutcome)
     _, point, _ = done.outcome("from-nothing").checkpoints
-    assert outcome.presses == 2
+    assert outcome.lesson.presses == 2
     assert events_of(shorter.knowledge) == events_of(job.knowledge)[: point.lessons]
     assert outcome.checkpoints[-1] == point
 
@@ -91,7 +102,7 @@ def test_control_without_home_knowledge_begins_with_nothing(done: Done) -> None:
 
 
 def test_answers_only_control_corrects_nothing(done: Done) -> None:
-    assert done.outcome("answers-only").corrections == 0
+    assert done.outcome("answers-only").lesson.corrections == 0
 
 
 def test_lessons_of_a_press_come_before_the_next_press() -> None:
@@ -105,10 +116,10 @@ def test_lessons_of_a_press_come_before_the_next_press() -> None:
 
 
 def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> None:
-    job = replace(done.job("taught-on"), after=(0,), variant=replace(TAUGHT_ON, name="not-taught"))
+    job = replace(done.job("taught-on"), after=(0,), stem="not-taught")
     job.run(lambda _: None)
     outcome, (before,) = done.results.read(job, TransferOutcome), done.study.home
-    assert outcome.presses == outcome.checkpoints[0].lessons == 0
+    assert outcome.lesson.presses == outcome.checkpoints[0].lessons == 0
     assert outcome.home == outcome.home_when_right == before.drive
 
 
@@ -120,9 +131,8 @@ def test_other_teacher_of_the_new_world_is_named() -> None:
 
 
 def test_study_goes_on_where_it_was(done: Done) -> None:
-    assert missing_time_s(done.plan, done.results) == 0.0
     with pytest.raises(StudyError):
-        missing_time_s(plan_for(done.results, (1,), seconds=14.0), done.results)
+        missing_time_s(plan_in(done.results.folder, NEW._replace(seconds=14.0)).waves, done.results)
 
 
 def test_tables_and_figure_show_each_variant(done: Done, tmp_path: Path) -> None:
@@ -135,13 +145,12 @@ def test_tables_and_figure_show_each_variant(done: Done, tmp_path: Path) -> None
 
 
 def test_home_is_no_new_world(tmp_path: Path) -> None:
-    parts = JobParts(factory=STAGE, robot=ROBOT, results=Results(tmp_path))
     with pytest.raises(SettingsError, match=r"world a\b"):
-        make_plan(short_task(), NewWorlds(("a",)), (1,), (TAUGHT_ON,), parts)
+        plan_in(tmp_path, NewWorlds(("a",)))
 
 
 def test_job_tells_its_progress_up_to_its_robot_time(done: Done) -> None:
-    job = replace(done.job("taught-on"), variant=replace(TAUGHT_ON, name="told"))
+    job = replace(done.job("taught-on"), stem="told")
     told: list[float] = []
     job.run(told.append)
     assert told == sorted(told)

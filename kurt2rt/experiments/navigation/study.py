@@ -1,0 +1,161 @@
+"""Navigation study: a guided tour of each robot, then drives to goals by each strategy."""
+
+import random
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from behaviors.metrics.streets import ALONG
+from behaviors.metrics.town import Street
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
+from kurt2rt.experiments.navigation.exam import ErrandsRun, GoalsRun, Strategy
+from kurt2rt.experiments.navigation.goals import choose_goals
+from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
+from kurt2rt.experiments.route.study import basic_task_of, streets_of
+from kurt2rt.experiments.study.drive_row import Place
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
+from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
+
+PLANNING: tuple[Strategy, ...] = ("planning",)
+CONTROLS: tuple[Strategy, ...] = ("chance", "first taught")
+_BESIDE_M = 0.15
+_COUNTED = (
+    *("teaching_s", "ways", "mid_rlas", "basic_rlas", "mid_asks", "missed_junctions", "corrections", "rescues"),
+    "knowledge_hash",
+)
+"""Counters of a tour that are stored as they are."""
+
+
+class ErrandsOutcome(Outcome):
+    """Outcome of one robot: a tour and drives to goals."""
+
+    teaching_s: float
+    ways: int
+    """Taught, of all that the town has."""
+    ways_in_all: int
+    mid_rlas: int
+    basic_rlas: int
+    mid_asks: int
+    missed_junctions: int
+    corrections: int
+    rescues: int
+    named: dict[str, Place]
+    """Position of each name: right of the middle of its street."""
+    led: tuple[Place, ...]
+    """Trail of the tour."""
+    knowledge_hash: str
+    runs: tuple[ErrandsRun, ...]
+    """Runs by planning, and controls."""
+
+    def run_of(self, how: Strategy) -> ErrandsRun | None:
+        """Return the run of a strategy; None without one."""
+        return next((each for each in self.runs if each.how == how), None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NavigationJob(StudyJob):
+    """Guided tour of one robot, and its drives to goals by each strategy."""
+
+    outcome = ErrandsOutcome
+    strategies: tuple[Strategy, ...]
+    basic: Path
+    """Knowledge of the streets; the job copies it."""
+
+    async def measure(self, knowledge: Path, report: Report) -> ErrandsOutcome:
+        """Lead the robot through the town and send it to its goals; `knowledge`: path of the file to make."""
+        copy_knowledge(self.basic, knowledge)
+        factory, robot, task, seed = self.factory, self.robot, self.task, self.seed
+        world, whole_s = task.teaching.world, task.teaching.duration_s
+        with lessons_kept(knowledge, robot, task) as keeping:
+            on_progress = keeping.telling(report, f"led about world {world}", whole_s)
+            with closing(factory.open(world, seed, "errands")) as simulation:
+                led = await guided_tour(simulation, robot, task, keeping.training, seed=seed, on_progress=on_progress)
+            keeping.end(led.saved)
+            report(f"led about world {world}", whole_s, whole_s)
+        events = read_lessons(knowledge, robot, task)
+        exam_world = task.exam.worlds[0]
+        town = street_tracker(factory.plan_of(exam_world), task).town
+        start = town.street_at(led.home)
+        assert start is not None  # the tour began there
+        chance = random.Random(f"errands of robot {seed}")
+        goals = choose_goals(town, led.named, led.streets, start, navigation_settings(task), chance)
+        runs = []
+        for how in self.strategies:
+            with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
+                runtime = build_unattended_runtime(simulation, robot, task, events, led.saved)
+
+                def on_goal(done: float, how: Strategy = how) -> None:
+                    report(f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s)
+
+                run = GoalsRun(simulation, runtime, goals, how=how, seed=seed, on_goal=on_goal)
+                runs.append(await run.drive(led.home))
+        return ErrandsOutcome(
+            made_of=self.made_of,
+            seed=seed,
+            **{name: getattr(led, name) for name in _COUNTED},
+            ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
+            named={name: _shown_at(street) for name, street in led.named.items()},
+            led=led.trail,
+            runs=tuple(runs),
+        )
+
+
+def _shown_at(street: Street) -> Place:
+    """Return the position right of the middle: the opposite direction is another place."""
+    along_x, along_y = ALONG[street.way]
+    return street.middle.x_m + _BESIDE_M * along_y, street.middle.y_m - _BESIDE_M * along_x
+
+
+def make_plan(
+    task: TaskSettings,
+    seeds: Sequence[int],
+    parts: JobParts,
+    *,
+    basic_folder: Path | None = None,
+    controls: bool = False,
+) -> StudyPlan[TaskSettings]:
+    """Check task and worlds, and return the jobs.
+
+    Args:
+        task: with errands.
+        seeds: one robot each.
+        parts: factory, robot and results of the jobs.
+        basic_folder: files of robots that were taught the streets; None: the streets are taught first.
+        controls: whether to drive also without a plan.
+
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        StudyError: a knowledge file is missing.
+        KnowledgeError: a knowledge file cannot be read.
+    """
+    basic = basic_task_of(task)
+    worlds = (task.teaching.world, *task.exam.worlds[:1])
+    goals = navigation_settings(task).goals
+    parts["factory"].require_worlds(basic.teaching.world)
+    require_places(parts["factory"], task, worlds)
+    strategies = (*PLANNING, *(CONTROLS if controls else ()))
+    fingerprints = Fingerprints(parts["factory"], parts["robot"])
+    streets = streets_of(basic, seeds, parts, fingerprints, basic_folder)
+    jobs = (
+        NavigationJob(
+            **parts,
+            task=task,
+            seed=seed,
+            made_of=fingerprints.of(task, worlds, streets.made_of[seed], " ".join(strategies)),
+            name=f"{task.name}, seed {seed}",
+            stem=f"{task.name}-{seed}",
+            # of the goals, if each takes the whole time
+            robot_time_s=task.teaching.duration_s + len(strategies) * goals * task.exam.duration_s,
+            wave=1,
+            strategies=strategies,
+            basic=streets.files[seed],
+        )
+        for seed in seeds
+    )
+    return StudyPlan(task, tuple(seeds), (*streets.jobs, *jobs))

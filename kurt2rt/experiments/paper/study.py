@@ -1,0 +1,207 @@
+"""Paper study: each task in each reading, taught and examined with many seeds, and the curves of Fig. 2."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import ClassVar, Literal, NamedTuple
+
+from hal.settings_files import find_config
+from kurt2rt.core.phase_settings import PHASES
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import Report, run_exams
+from kurt2rt.experiments.lockstep.seed_result import counts_of
+from kurt2rt.experiments.paper.settings import ExperimentSettings, Extent, PaperSettings
+from kurt2rt.experiments.study.drive_row import DriveRow, row_with_teacher
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, TaughtOutcome
+from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.targets import ROBOTS
+
+Reading = Literal["shipped", "plain"]
+"""Reading of the paper's scheme: the settings of this project, or the literal ones."""
+
+
+class ExaminedOutcome(TaughtOutcome):
+    """One robot, taught and examined."""
+
+    rlas_of: dict[str, int]
+    """Number of RLAs by behaviour; empty for a single behaviour."""
+    drives: tuple[DriveRow, ...]
+
+
+class GrowthOutcome(Outcome):
+    """One robot, taught in phase 1 only."""
+
+    growth: tuple[int, ...]
+    """Number of RLAs after each second."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TaughtJob(StudyJob):
+    """Robot of one task, one reading of the paper and one seed, taught and examined."""
+
+    outcome = ExaminedOutcome
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
+    settings: ExperimentSettings
+    reading: Reading
+
+    worlds: tuple[str, ...]
+    """Worlds of the exams: those of the task, and generated ones of the robot's own."""
+
+    async def measure(self, knowledge: Path, report: Report) -> ExaminedOutcome:
+        """Teach the task into the file `knowledge`, examine it in each world and return the outcome."""
+        factory, robot, task, seed, loop = self.factory, self.robot, self.task, self.seed, self.loops.exams
+        lesson, events = await self.teach(knowledge, report)
+        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, loop=loop)
+        counts, several = Counter(rla.behaviour for rla in lesson.rlas), len(task.behaviours) > 1
+        return ExaminedOutcome(
+            made_of=self.made_of,
+            seed=seed,
+            lesson=counts_of(lesson),
+            rlas_of={name: counts[name] for name in task.behaviours} if several else {},
+            drives=tuple(map(row_with_teacher, exams)),
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GrowthJob(StudyJob):
+    """Robot of one confidence radius, taught in phase 1 only: a curve of Fig. 2."""
+
+    outcome = GrowthOutcome
+    keeps_knowledge: ClassVar[bool] = False
+    gives_lesson: ClassVar[bool] = True
+    reading: Reading
+
+    @property
+    def radius(self) -> float:
+        """Confidence radius R in counts."""
+        return self.task.learning.radius
+
+    async def measure(self, knowledge: Path, report: Report) -> GrowthOutcome:
+        """Teach the task in phase 1 into the file `knowledge` and return the number of RLAs after each second."""
+        lesson, _ = await self.teach(knowledge, report)
+        return GrowthOutcome(made_of=self.made_of, seed=self.seed, growth=lesson.growth)
+
+
+class PaperExtent(NamedTuple):
+    """What is studied, and how much of it."""
+
+    paper: PaperSettings
+    extent: Extent
+
+
+def make_plan(
+    paper: PaperSettings,
+    extent: Extent,
+    seeds: Sequence[int],
+    readings: Sequence[Reading],
+    parts: JobParts,
+    *,
+    tasks: Sequence[str] = (),
+    loops: RequestedLoops = ALL_ON_BUS,
+) -> StudyPlan[PaperExtent]:
+    """Check every task and world, and return the jobs.
+
+    Args:
+        paper: settings of the study.
+        extent: limits of tasks, worlds and times.
+        seeds: one robot each.
+        readings: readings of the paper to study.
+        parts: factory, robot and results of the jobs.
+        tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
+        loops: requested for lessons and exams.
+
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        StudyError: two tasks have one name, or a target has no exam.
+    """
+    paper = extent.paper(paper)
+    chosen = _chosen(paper, extent, tasks)
+    _require_tasks(chosen, parts)
+    fingerprints = Fingerprints(parts["factory"], parts["robot"], ("paper", "plain", *PHASES))
+    robots: list[StudyJob] = []
+    curves: list[StudyJob] = []
+    for reading, each in product(readings, chosen):
+        task = taught_by_named(extent.task(load_task(each.task, plain=reading == "plain")), paper.teacher)
+        end = ", plain" if reading == "plain" else ""
+        for seed in seeds:
+            worlds = (*task.exam.worlds, *unseen_of(seed, each))
+            job = TaughtJob(
+                **parts,
+                task=task,
+                seed=seed,
+                made_of=fingerprints.of(task, (task.teaching.world, *worlds)),
+                name=f"{task.name}, seed {seed}{end}",
+                stem=f"{reading}/{task.name}-{seed}",
+                robot_time_s=task.teaching.duration_s + 2 * len(worlds) * task.exam.duration_s,
+                settings=each,
+                reading=reading,
+                worlds=worlds,
+            )
+            robots.append(job)
+        for radius in paper.growth.radii if each.task == paper.growth.task else ():
+            own = with_radius_only(task, radius, paper.growth.duration_s)
+            made = fingerprints.of(own, (own.teaching.world,))
+            curves += (
+                GrowthJob(
+                    **parts,
+                    task=own,
+                    seed=seed,
+                    made_of=made,
+                    name=f"growth at R {radius:g}, seed {seed}{end}",
+                    stem=f"{reading}/growth-{own.name}-R{radius:g}-{seed}",
+                    robot_time_s=own.teaching.duration_s,
+                    reading=reading,
+                )
+                for seed in seeds[: paper.growth.robots]
+            )
+    plan = StudyPlan(PaperExtent(paper, extent), tuple(seeds), (*robots, *curves))
+    return plan.driven(loops, parts["robot"])
+
+
+def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
+    """Return the names of the generated worlds of one seed; 20 successive seeds share all of them."""
+    return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
+
+
+def with_radius_only(task: TaskSettings, radius: float, duration_s: float) -> TaskSettings:
+    """Return the task with this radius in counts, taught in phase 1 only for `duration_s`."""
+    learning = task.learning.model_copy(update={"radius": radius})
+    teaching = task.teaching.model_copy(update={"supervised_s": duration_s, "corrections_s": 0.0})
+    return task.model_copy(update={"learning": learning, "teaching": teaching})
+
+
+def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:
+    if tasks:
+        # By their files, since a path may lead to a shipped one.
+        known = {_file_of(each.task): each for each in paper.experiments}
+        asked = {_file_of(name): ExperimentSettings(task=name, title=Path(name).stem) for name in tasks}
+        return [known.get(file, own) for file, own in asked.items()]
+    return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
+
+
+def _file_of(task: str) -> Path:
+    return find_config("tasks", task).resolve()
+
+
+def _require_tasks(chosen: Sequence[ExperimentSettings], parts: JobParts) -> None:
+    loaded = [(each, load_task(each.task)) for each in chosen]
+    names = [task.name for _, task in loaded]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise StudyError(f"two tasks have the name {', '.join(twice)}", do="give one of them another name in its file")
+    for each, task in loaded:
+        nowhere = sorted(set(each.asked.success_at_least) - set(task.exam.worlds))
+        if nowhere:
+            raise StudyError(
+                f"success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}",
+                where=task.name,
+            )
+    for each, task in loaded:
+        generated = each.unseen.names if each.unseen else ()
+        require_course(parts["factory"], task, (task.teaching.world, *task.exam.worlds, *generated))

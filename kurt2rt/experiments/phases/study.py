@@ -1,0 +1,530 @@
+"""Phases study: every step of every robot's training as a job, with the exams after it."""
+
+import shutil
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import takewhile
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple
+
+from behaviors.judges.judge import Judge
+from behaviors.primitives import primitive_speeds
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.critic.sides import critic_of
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.reinforcement.settings import AutonomousValues
+from kurt2rt.core.rla.events import ActionWithdrawn, LessonUndone, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.experiments.lockstep.batch_exam import BatchExam
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
+from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
+from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.steps import (
+    PHASE_1,
+    PHASE_2,
+    PHASE_4,
+    TITLES,
+    UNTAUGHT,
+    PhaseStep,
+    phases_of,
+    steps_of,
+)
+from kurt2rt.experiments.study.drive_row import DriveRow, row_of
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
+from kurt2rt.experiments.study.results import StudyError
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.knowledge.journal.fold import fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
+from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
+
+
+class TeachingOutcome(Settings):
+    """Counters of the training run of one step."""
+
+    teaching_s: float
+    workload: tuple[WorkloadMinute, ...]
+    asks: int
+    positive_rewards: int
+    negative_rewards: int
+    refused_signals: int
+    collisions: int
+    rescues: int
+    unknown_rescues: int
+    """Rescues of a robot in an unknown situation without a teacher."""
+    alarms: int
+    share_unknown: float
+    agreement: tuple[float | None, ...]
+    """Agreement after each 10 s."""
+    share_trusted: float
+    withdrawn: int
+    """Actions that were withdrawn because their value fell."""
+    critics_changes: int
+    """Lessons that the critic gave itself."""
+    rolled_back: int
+    """Lessons of the critic that were undone because its score fell."""
+
+    @property
+    def interventions(self) -> int:
+        """Number of interventions by a person: after collisions, rescues and latched stops."""
+        return self.collisions + self.rescues + self.alarms
+
+
+class Judgement(Settings):
+    """Opinions of judge and critic, with the number of their ticks."""
+
+    judged: int
+    """Opinion of the judge: -1, 0 or +1."""
+    said: int | None
+    """Opinion of the critic; None: unknown."""
+    ticks: int
+
+
+class StageOutcome(Settings):
+    """A robot's knowledge at one stage, how it came there, and how it drives with it."""
+
+    name: str
+    rlas: int
+    appraisals: int
+    """RLAs of its critic."""
+    knowledge_hash: str
+    teaching: TeachingOutcome | None
+    """None: nothing was taught since the stage before."""
+    exams: tuple[DriveRow, ...]
+    still_withdrawn: int = 0
+    """RLAs with a withdrawn action: they ask, and exams skip them."""
+    judgements: tuple[Judgement, ...] = ()
+    """Pairs of opinions, if the critic was only judged."""
+
+
+class JobOutcome(Outcome):
+    """Stored outcome of one job."""
+
+    stages: tuple[StageOutcome, ...]
+    teachers: tuple[DriveRow, ...] = ()
+    """Drives of the teacher's own policy; of the first job alone."""
+
+
+class Scoring:
+    """Counter of the pairs of opinions of critic and judge, while the robot drives."""
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+        self._ticks: Counter[tuple[int, int | None]] = Counter()
+
+    def on_tick(self, record: TickRecord) -> None:
+        """Count the pair of opinions of critic and judge in one tick; call it on every tick."""
+        if record.appraisal_features is None or not record.decision.driving:
+            return
+        said = None if record.opinion is None else record.opinion.said
+        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
+
+    @property
+    def judgements(self) -> Iterator[Judgement]:
+        """Pairs of opinions of judge and critic, each with its number of ticks."""
+        for judged, said in sorted(self._ticks, key=str):
+            yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
+
+
+def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
+    """Return the RLA system with all its levels, for counting: it does not match by the task's weights.
+
+    Raises hal.settings.SettingsError if the task's situation cannot be loaded, InvalidEventError if an event does not
+    fit.
+    """
+    dimensions = load_situation(task.situation, robot.infrared.names).dimensions
+    system = RlaSystem(
+        dimensions, task.learning.radius, others={CRITIC: Space(len(load_critic(task.critic).names), 1.0, None)}
+    )
+    system.apply_all(events)
+    return system
+
+
+def teaching_outcome(lesson: TrainingResult, events: Iterable[TeachingEvent]) -> TeachingOutcome:
+    """Return the stored counters of a training run; `events`: those of this run."""
+    events = tuple(events)
+    own = [event for event in events if event.origin.teacher == CRITIC]
+    undone = sum(isinstance(event, LessonUndone) for event in own)
+    of_events: dict[str, Any] = {
+        "withdrawn": sum(isinstance(event, ActionWithdrawn) for event in events),
+        "critics_changes": len(own) - undone,
+        "rolled_back": undone,
+    }
+    counted = {name: getattr(lesson, name) for name in TeachingOutcome.model_fields if name not in of_events}
+    return TeachingOutcome(**counted, **of_events)
+
+
+def stage_outcome(
+    name: str,
+    system: RlaSystem,
+    teaching: TeachingOutcome | None,
+    exams: tuple[DriveRow, ...],
+    judgements: tuple[Judgement, ...] = (),
+) -> StageOutcome:
+    """Return the outcome of the stage `name`, with the counts of `system`; `teaching`: None without a training run.
+
+    `judgements`: opinions of critic and judge, if they were compared.
+    """
+    return StageOutcome(
+        name=name,
+        rlas=len(system),
+        appraisals=len(system.rlas_at(CRITIC)),
+        knowledge_hash=system.knowledge_hash(),
+        teaching=teaching,
+        exams=exams,
+        still_withdrawn=sum(rla.is_withdrawn for rla in system.rlas),
+        judgements=judgements,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PhasesJob(StudyJob):
+    """Job of one step in one robot's training. In its exams a stuck robot is rescued and drives on."""
+
+    outcome = JobOutcome
+    gives_exams: ClassVar[bool] = True
+
+    async def drive_teacher(self, report: Report) -> tuple[DriveRow, ...]:
+        """Let the teacher's own policy drive in each world of the exam; return the drives in order.
+
+        Raises SettingsError if task and world do not fit.
+        """
+        setups = [ExamSetup(each, self.seed, teacher_policy=True, stuck_ends=False) for each in self.task.exam.worlds]
+        drives = await self._drive([BatchExam(each) for each in setups], report, self.loops.exams)
+        return tuple(row_of(each, ExamVerdict.FAILED if each.failed else ExamVerdict.PASSED) for each in drives)
+
+    async def examine(
+        self,
+        events: Sequence[TeachingEvent],
+        saved: Statistics | None,
+        teachers: Sequence[DriveRow],
+        report: Report,
+        autonomous_values: Statistics | None = None,
+    ) -> tuple[DriveRow, ...]:
+        """Return the exams of the knowledge in `events`, measured by the teacher's own drives in the same worlds.
+
+        Args:
+            events: lessons of the robot.
+            saved: values that rewards had given; None: none.
+            teachers: drives of the teacher's policy, one for each exam.
+            report: progress callback.
+            autonomous_values: values of phase 5; None: none.
+
+        Raises:
+            SettingsError: task and world do not fit.
+            UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
+        """
+        exams = [self._exam(each.world, events, saved, autonomous_values) for each in teachers]
+        drives = await self._drive(exams, report, self.loops.exams)
+        return tuple(
+            row_of(drive, drive.verdict(teacher.progress, self.task.exam.success))
+            for drive, teacher in zip(drives, teachers, strict=True)
+        )
+
+    async def judge_critic(
+        self, events: Sequence[TeachingEvent], saved: Statistics | None, report: Report
+    ) -> tuple[Judgement, ...]:
+        """Drive in the world of the training without learning, and return the opinions of critic and judge.
+
+        `saved`: values that rewards had given; None: none. Raises SettingsError if task and world do not fit.
+        """
+        assert self.task.judge is not None
+        scoring = Scoring(self.task.judge.build())
+        exam = self._exam(self.task.teaching.world, events, saved, None)
+        setup = replace(exam.setup, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
+        # A batch has no record of each tick.
+        await self._drive([replace(exam, setup=setup)], report, DriveLoop.BUS)
+        return tuple(scoring.judgements)
+
+    def _exam(
+        self,
+        world: str,
+        events: Sequence[TeachingEvent],
+        saved: Statistics | None,
+        autonomous_values: Statistics | None,
+    ) -> BatchExam:
+        # A robot without knowledge only stands: its exam need not last.
+        setup = ExamSetup(world, self.seed, saved=saved, autonomous_values=autonomous_values, stuck_ends=not events)
+        return BatchExam(setup, events)
+
+    async def _drive(self, exams: Sequence[BatchExam], report: Report, loop: DriveLoop) -> list[ExamResult]:
+        return await run_drives(self.factory, self.robot, self.task, exams, report, loop)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FirstPhasesJob(PhasesJob):
+    """Training run of phases 1 and 2, with exams before it, of the knowledge of phase 1, and of all knowledge."""
+
+    gives_lesson: ClassVar[bool] = True
+
+    async def measure(self, knowledge: Path, report: Report) -> JobOutcome:
+        """Teach phases 1 and 2 into the file `knowledge`, examine all stages and return the outcome."""
+        lesson, events = await self.teach(knowledge, report)
+        teachers = await self.drive_teacher(report)
+        answered = list(takewhile(lambda event: event.origin.phase is Phase.SUPERVISED, events))
+        stages = [
+            stage_outcome(
+                name,
+                replay_events(self.task, self.robot, known),
+                teaching_outcome(lesson, events) if name == PHASE_2 else None,
+                await self.examine(known, None, teachers, report),
+            )
+            for name, known in ((UNTAUGHT, []), (PHASE_1, answered), (PHASE_2, events))
+        ]
+        return JobOutcome(made_of=self.made_of, seed=self.seed, stages=tuple(stages), teachers=teachers)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StepJob(PhasesJob):
+    """Job of one step after phases 1 and 2."""
+
+    of: PhaseStep
+    before: "FirstPhasesJob | StepJob"
+    """Job whose knowledge this one continues."""
+    first: FirstPhasesJob
+    """Job with the teacher's own drives."""
+    alike: "FirstPhasesJob | StepJob | None"
+    """Job with the number of penalties for random ones."""
+
+    async def measure(self, knowledge: Path, report: Report) -> JobOutcome:
+        """Prepare the knowledge in the file `knowledge`, teach the step, examine it and return the outcome.
+
+        Raises StudyError without the result of an earlier step, and the errors of all jobs.
+        """
+        step = self.of
+        self._copy_knowledge(knowledge)
+        self._prepare(knowledge)
+        before = len(read_lessons(knowledge, self.robot, self.task))
+        teaching, autonomous_values, plan = None, None, self.plan()
+        if plan is not None:
+            lesson, events = await self.teach(knowledge, report, plan=plan)
+            teaching, autonomous_values = teaching_outcome(lesson, events[before:]), lesson.autonomous_values
+            if step.aside:
+                self._copy_knowledge(knowledge)
+                self._add(knowledge, list(critics_lessons(events[before:])))
+        with Journal.read_only(knowledge) as journal:
+            events, saved = [entry.event for entry in journal.entries()], journal.statistics()
+            system = fold_journal(journal, radius=self.task.learning.radius)
+        if step.aside:  # the basic level is unchanged, and its exams are, too
+            exams = self.results.read(self.before, JobOutcome).stages[-1].exams
+        else:
+            by_world = {each.world: each for each in self.results.read(self.first, JobOutcome).teachers}
+            teachers = [by_world[world] for world in step.worlds]
+            exams = await self.examine(events, saved, teachers, report, autonomous_values)
+        judgements = await self.judge_critic(events, saved, report) if step.judges_critic else ()
+        stage = stage_outcome(step.name, system, teaching, exams, judgements)
+        return JobOutcome(made_of=self.made_of, seed=self.seed, stages=(stage,))
+
+    def plan(self) -> LessonPlan | None:
+        """Return the phases that the step teaches; None for a step without a training run.
+
+        Random penalties are as many as the judge's penalties in the result of the job `alike`. Raises StudyError
+        without that result.
+        """
+        plan = self.of.plan
+        if plan is None or self.alike is None:
+            return plan
+        (stage,) = self.results.read(self.alike, JobOutcome).stages
+        assert stage.teaching is not None
+        return replace(plan, blame_by_chance=stage.teaching.negative_rewards)
+
+    def _copy_knowledge(self, knowledge: Path) -> None:
+        """Copy the knowledge that the step continues."""
+        shutil.copyfile(self._left_by(self.of.after), knowledge)
+
+    def _left_by(self, step: str) -> Path:
+        """Return the knowledge file of another step. Raises StudyError without the file."""
+        stem, folder = f"{step}/{self.task.name}-{self.seed}", self.results.folder
+        file = folder / f"knowledge/{stem}.knowledge"
+        if not file.exists():
+            result = folder / f"results/{stem}.json"
+            raise StudyError(f"{file} is gone, and {result} stands", do="delete that too, and run again")
+        return file
+
+    def _prepare(self, knowledge: Path) -> None:
+        """Add the wrong actions and the critic of phase 4 to the knowledge, if the step begins with them."""
+        with Journal.read_only(knowledge) as journal:
+            system = fold_journal(journal, radius=self.task.learning.radius)
+        lessons: list[TeachingEvent] = []
+        if self.of.corrupted:
+            primitives = tuple(primitive_speeds(self.task.repertoire))
+            lessons += corrupt(system.rlas, primitives, self.of.corrupted, self.seed, self.of.mistakes)
+        if self.of.critic != "own":
+            lessons += self._critics()
+        self._add(knowledge, lessons)
+
+    def _add(self, knowledge: Path, lessons: Sequence[TeachingEvent]) -> None:
+        """Append lessons to the file. Raises LessonLostError."""
+        if not lessons:
+            return
+        with JournalWriter(open_for_teaching(knowledge, self.robot, self.task).journal, utc_now) as writer:
+            for lesson in lessons:
+                writer.submit(lesson)
+            writer.flush(timeout_s=30.0)
+            refused = [each.error for each in writer.acknowledged() if each.error is not None]
+        if refused:
+            raise LessonLostError(f"{refused[0]}", where=self.name)
+
+    def _critics(self) -> Iterator[TeachingEvent]:
+        taught = self._left_by(PHASE_4)
+        if self.of.critic == "taught":
+            yield from critics_lessons(read_lessons(taught, self.robot, self.task))
+            return
+        with Journal.read_only(taught) as journal:
+            appraisals = fold_journal(journal, radius=1.0).rlas_at(CRITIC)
+        yield from shuffled(appraisals, load_critic(self.task.critic), self.seed, self.robot.cycle_s)
+
+
+_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
+_QUICK_SHARE = 0.2
+"""Factor of the intervals in a quick run."""
+
+
+class PhasesTask(NamedTuple):
+    """What is taught."""
+
+    task: TaskSettings
+    quick: bool
+    """A part only."""
+
+
+def make_plan(
+    task: TaskSettings,
+    seeds: Sequence[int],
+    parts: JobParts,
+    *,
+    quick: bool = False,
+    loops: RequestedLoops = ALL_ON_BUS,
+) -> StudyPlan[PhasesTask]:
+    """Check task and worlds, and return the jobs.
+
+    Args:
+        task: with a section on phases.
+        seeds: one robot each.
+        parts: factory, robot and results of the jobs.
+        quick: all steps, each so short that it says nothing but that everything works.
+        loops: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
+
+    Raises:
+        hal.settings.SettingsError: the task has no such section, or does not fit a world.
+    """
+    robot = parts["robot"]
+    if quick:
+        task = _shortened(task, robot)
+    worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
+    require_places(parts["factory"], task, worlds)
+    # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
+    fingerprints = Fingerprints(parts["factory"], robot)
+    critic = critic_of(task.critic, robot).model_dump_json()
+    steps = {step.name: step for step in steps_of(task)}
+
+    def made_of(step: PhaseStep | None) -> Provenance:
+        return fingerprints.of(task, worlds, critic, "\n".join(map(repr, _way_to(step, steps))))
+
+    made, made_first, exam_s = (
+        {name: made_of(step) for name, step in steps.items()},
+        made_of(None),
+        task.exam.duration_s,
+    )
+    jobs: list[PhasesJob] = []
+    for seed in seeds:
+        first = FirstPhasesJob(
+            **parts,
+            task=task,
+            seed=seed,
+            made_of=made_first,
+            name=f"phases 1 and 2, seed {seed}",
+            stem=f"{PHASE_2}/{task.name}-{seed}",
+            robot_time_s=task.teaching.duration_s + 3 * len(task.exam.worlds) * exam_s,
+        )
+        of_robot: dict[str, FirstPhasesJob | StepJob] = {PHASE_2: first}
+        for name, step in steps.items():
+            drives = 0 if step.aside else len(step.worlds) + step.judges_critic
+            of_robot[name] = StepJob(
+                **parts,
+                task=task,
+                seed=seed,
+                made_of=made[name],
+                name=f"{TITLES[name]}, seed {seed}",
+                stem=f"{name}/{task.name}-{seed}",
+                robot_time_s=(step.plan.duration_s if step.plan else 0.0) + drives * exam_s,
+                wave=_depth(step, steps),
+                of=step,
+                before=of_robot[step.after],
+                first=first,
+                alike=of_robot.get(step.blames_like),
+            )
+        jobs += of_robot.values()
+    return StudyPlan(PhasesTask(task, quick), tuple(seeds), tuple(jobs)).driven(loops, robot)
+
+
+def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:
+    """Yield all steps that lead to a step, and the step itself."""
+    if step is not None:
+        for name in step.needs:
+            yield from _way_to(by_name.get(name), by_name)
+        yield step
+
+
+def _depth(step: PhaseStep, by_name: dict[str, PhaseStep]) -> int:
+    return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
+
+
+def _shortened(task: TaskSettings, robot: RobotSettings) -> TaskSettings:
+    share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
+    times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
+    worlds = task.exam.worlds[:1]
+    exam = {"worlds": worlds, "duration_s": min(task.exam.duration_s, _QUICK_EXAM_S)}
+    return task.model_copy(
+        update={
+            "teaching": task.teaching.model_copy(update=times),
+            "exam": task.exam.model_copy(update=exam),
+            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
+            "critic": _hastened(critic_of(task.critic, robot)),
+            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
+        }
+    )
+
+
+def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
+    """Return values that a few rewards can withdraw."""
+    names = ("first_value", "sunk_below", "well_above")
+    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
+
+
+def _hastened(critic: CriticSettings) -> CriticSettings:
+    """Return a critic that is trusted, measures and changes after some seconds."""
+    agreement, every = critic.agreement, critic.signal_every_s
+    few = max(2, round(_QUICK_SHARE * agreement.least))
+    heard = {
+        "bound": _QUICK_SHARE * agreement.bound,
+        "least": few,
+        "window": 2 * few,
+        "apart_s": _QUICK_SHARE * agreement.apart_s,
+    }
+    return critic.model_copy(
+        update={
+            "agreement": agreement.model_copy(update=heard),
+            "signal_every_s": every.model_copy(
+                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
+            ),
+            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
+            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
+        }
+    )

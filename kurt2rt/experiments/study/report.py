@@ -1,0 +1,86 @@
+"""Report of a study: one HTML file that holds everything. It needs no other, and nothing from elsewhere."""
+
+import base64
+import re
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import NamedTuple
+
+import jinja2
+
+from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.provenance import source_hash, versions
+from kurt2rt.experiments.study.table import Table
+from kurt2rt.platform.durable_files import write_durably
+
+_MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
+
+
+class Section(NamedTuple):
+    """Part of a report. Between backticks in a text stands what is typed."""
+
+    heading: str
+    """Empty: it goes on with the section before."""
+    texts: Sequence[str] = ()
+    tables: Sequence[Table] = ()
+    pictures: Sequence[SavedFigure] = ()
+
+
+def write_report(
+    path: Path,
+    title: str,
+    sections: Sequence[Section],
+    *,
+    command: str,
+    footer: str,
+    reasons: Sequence[str] = (),
+    extent: str = "",
+) -> None:
+    """Write the report of a study as an HTML page to `path`. Raises OSError.
+
+    Args:
+        path: of the file.
+        title: of the page.
+        sections: in their order; the first one comes before the reasons and needs no heading, the last one ends with
+            the command.
+        command: typed words, without those that belong to the machine alone.
+        footer: sentences on how it was made, around the versions: `{versions}` and `{source}` stand for these.
+        reasons: those against judging.
+        extent: what is left out, below the reasons.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("kurt2rt.experiments.study", ""),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"typed": _typed, "uri": _as_uri}
+    made_with = ", ".join([versions(), *(f"{name} {version(name)}" for name in _MADE_WITH)])
+    html = environment.get_template("report.html.j2").render(
+        title=title,
+        sections=sections,
+        reasons=reasons,
+        extent=extent,
+        command=command,
+        footer=footer.format(versions=made_with, source=source_hash()),
+    )
+    write_durably(path, html)
+
+
+def spans(seeds: Sequence[int]) -> str:
+    """Return seeds as a user types them: 100-119, or 1,5,7."""
+    first, last = seeds[0], seeds[-1]
+    if len(seeds) > 1 and list(seeds) == list(range(first, last + 1)):
+        return f"{first}-{last}"
+    return ",".join(map(str, seeds))
+
+
+def _typed(text: str) -> str:
+    """Return escaped text with marks around what is typed, in place of backticks."""
+    return re.sub("`(.+?)`", r"<code>\1</code>", text)
+
+
+def _as_uri(path: Path) -> str:
+    return f"data:image/png;base64,{base64.b64encode(path.read_bytes()).decode()}"

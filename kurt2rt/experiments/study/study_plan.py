@@ -1,0 +1,192 @@
+"""Plan of a study: its jobs, the loops that drive them, and the robots with a witness on the CAN bus."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Generic, NamedTuple, Self, TypeVar
+
+from hal.batch_refusal import BatchRefusedError
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
+from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops, choose_witnesses
+from kurt2rt.experiments.study.bus_witness import BusWitnessJob
+from kurt2rt.experiments.study.jobs import StudyJob
+
+JobT = TypeVar("JobT", bound=StudyJob)
+KeyT = TypeVar("KeyT")
+OutcomeT = TypeVar("OutcomeT", bound=Settings)
+AboutT = TypeVar("AboutT")
+
+WORTHWHILE_S = 1800.0
+"""Robot time that a batch has to save, in s: so long a drive on the CAN bus takes as long as compiling the batch."""
+
+
+class LoopRequest(StrEnum):
+    """Loop that a user asks for."""
+
+    AUTO = "auto"
+    """Batch if it is compiled, knows the task, and saves time."""
+    BATCH = "batch"
+    """Batch if it knows the task."""
+    BUS = "bus"
+
+
+@dataclass(frozen=True, slots=True)
+class RequestedLoops:
+    """Requests for a study's lessons and exams."""
+
+    lessons: LoopRequest = LoopRequest.BUS
+    exams: LoopRequest = LoopRequest.BUS
+    compiled: bool = False
+    """True if a compiled batch can drive the study's simulation."""
+
+
+ALL_ON_BUS = RequestedLoops()
+
+
+@dataclass(frozen=True, slots=True)
+class LoopChoice:
+    """Loops of all jobs of a study."""
+
+    loops: Mapping[str, DriveLoops]
+    """Loops by the stem of the job; jobs that are not named are driven on the CAN bus."""
+    witnessed: frozenset[str]
+    """Stems of the jobs with a witness."""
+    refusals: tuple[str, ...]
+    """One line for each thing that the batch does not know, with the tasks."""
+
+    def apply(self, jobs: Sequence[JobT]) -> tuple[JobT, ...]:
+        """Return the jobs with their loops."""
+        return tuple(replace(job, loops=self.loops.get(job.stem, ON_BUS)) for job in jobs)
+
+    def witnesses(self, jobs: Sequence[StudyJob]) -> tuple[BusWitnessJob, ...]:
+        """Return the witnesses of these jobs."""
+        return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.stem in self.witnessed)))
+
+
+NO_CHOICE = LoopChoice({}, frozenset(), ())
+"""All jobs are driven on the CAN bus."""
+
+
+@dataclass(frozen=True, slots=True)
+class StudyPlan(Generic[AboutT]):
+    """Jobs of a study, in the order of its tables."""
+
+    about: AboutT
+    """What the tables tell besides the results."""
+    seeds: tuple[int, ...]
+    jobs: tuple[StudyJob, ...]
+    """Jobs without witnesses."""
+    choice: LoopChoice = NO_CHOICE
+    """Loops of the jobs."""
+
+    def driven(self, asked: "RequestedLoops", robot: RobotSettings) -> Self:
+        """Return the plan with jobs that these loops drive. Raises hal.settings.SettingsError."""
+        choice = choose_loops(self.jobs, asked, robot)
+        return replace(self, jobs=choice.apply(self.jobs), choice=choice)
+
+    @property
+    def waves(self) -> tuple[tuple[StudyJob, ...], ...]:
+        """Jobs and their witnesses in waves; the jobs of a wave need only results of earlier waves."""
+        jobs = (*self.jobs, *self.choice.witnesses(self.jobs))
+        return tuple(tuple(job for job in jobs if job.wave == wave) for wave in sorted({job.wave for job in jobs}))
+
+    def of(self, kind: type[JobT]) -> tuple[JobT, ...]:
+        """Return the jobs of a kind."""
+        return tuple(job for job in self.jobs if isinstance(job, kind))
+
+
+class Group(NamedTuple, Generic[KeyT, OutcomeT]):
+    """Robots that share a row of a table."""
+
+    of: KeyT
+    """What they have in common."""
+    outcomes: tuple[OutcomeT, ...]
+    """One per robot, in the order of the seeds."""
+
+
+def read_groups(
+    jobs: Iterable[JobT], key: Callable[[JobT], KeyT], schema: type[OutcomeT]
+) -> tuple[Group[KeyT, OutcomeT], ...]:
+    """Return the outcomes of jobs, grouped by what `key` returns; raises StudyError if one is missing or damaged."""
+    groups: list[tuple[KeyT, list[OutcomeT]]] = []
+    for job in jobs:
+        of, outcome = key(job), job.results.read(job, schema)
+        own = next((outcomes for other, outcomes in groups if other == of), None)
+        if own is None:
+            groups.append((of, [outcome]))
+        else:
+            own.append(outcome)
+    return tuple(Group(of, tuple(outcomes)) for of, outcomes in groups)
+
+
+def choose_loops(jobs: Sequence[StudyJob], asked: RequestedLoops, robot: RobotSettings) -> LoopChoice:
+    """Return the loops of all jobs of a study, and 1 % of those with a batch, at least three, that have a witness.
+
+    A task that the batch does not know is driven on the CAN bus.
+
+    Args:
+        jobs: of the whole study.
+        asked: what the user asks for.
+        robot: settings of the robot.
+
+    Raises:
+        hal.settings.SettingsError: settings of a task do not fit each other.
+    """
+    choice = _choose(jobs, asked, robot, auto=asked.compiled)
+    saved_s = sum(job.robot_time_s for job in jobs if job.stem in choice.loops.keys() - choice.witnessed)
+    return choice if saved_s >= WORTHWHILE_S else _choose(jobs, asked, robot, auto=False)
+
+
+def _choose(jobs: Sequence[StudyJob], asked: RequestedLoops, robot: RobotSettings, *, auto: bool) -> LoopChoice:
+    """Return the choice; `auto`: whether `LoopRequest.AUTO` means a batch."""
+    batch = {LoopRequest.BATCH, *([LoopRequest.AUTO] if auto else [])}
+    known = _KnownTasks(robot)
+    loops = {}
+    for job in jobs:
+        lesson = asked.lessons in batch and job.gives_lesson and known.knows(job.task, "lessons", require_known_lesson)
+        exams = asked.exams in batch and job.gives_exams and known.knows(job.task, "exams", require_known_exams)
+        if lesson or exams:
+            loops[job.stem] = DriveLoops(*(DriveLoop.BATCH if each else DriveLoop.BUS for each in (lesson, exams)))
+    taught = [stem for stem, own in loops.items() if own.lesson is DriveLoop.BATCH]
+    examined = [stem for stem, own in loops.items() if own.exams is DriveLoop.BATCH]
+    # By the same chance, so that one witness does for a robot with both.
+    witnessed = {*choose_witnesses(taught, "robots"), *choose_witnesses(examined, "robots")}
+    return LoopChoice(loops, frozenset(witnessed), known.refusals)
+
+
+class _KnownTasks:
+    """Tasks that a batch knows, each looked at once."""
+
+    def __init__(self, robot: RobotSettings) -> None:
+        self._robot = robot
+        self._refused: dict[tuple[int, str], str] = {}
+        """Reasons for the CAN bus, empty if the batch knows all, by the id of the task and the kind of drive."""
+        self._kinds: dict[tuple[str, str], list[str]] = {}
+        """Kinds of drives on the CAN bus by the name of the task and what the batch does not know."""
+
+    def knows(self, task: TaskSettings, kind: str, require: Callable[[RobotSettings, TaskSettings], None]) -> bool:
+        """Return whether a batch knows a kind of drive of a task, which `require` checks."""
+        key = id(task), kind
+        if key not in self._refused:
+            self._refused[key] = ""
+            try:
+                require(self._robot, task)
+            except BatchRefusedError as error:
+                self._refused[key] = error.what
+                kinds = self._kinds.setdefault((task.name, error.what), [])
+                kinds += [kind] if kind not in kinds else []
+        return not self._refused[key]
+
+    @property
+    def refusals(self) -> tuple[str, ...]:
+        """One line for each thing that the batch does not know, with the tasks."""
+        tasks: dict[tuple[str, str], list[str]] = {}
+        for (name, what), kinds in self._kinds.items():
+            tasks.setdefault((" and ".join(kinds), what), []).append(name)
+        return tuple(
+            f"{', '.join(names)}: {kinds} on the CAN bus, because {what}" for (kinds, what), names in tasks.items()
+        )

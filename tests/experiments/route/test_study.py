@@ -1,0 +1,105 @@
+"""Route study on the simulated robot: streets, route, tables, figures and report."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.route import study as module
+from kurt2rt.experiments.route.figures import draw_figures
+from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteTasks, basic_file, basic_task_of, make_plan
+from kurt2rt.experiments.route.tables import RouteStudy, all_tables, read_study, write_routes
+from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
+from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.pool import PoolProgress
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.experiments.study.runner import missing_time_s
+from kurt2rt.experiments.study.study_plan import StudyPlan
+from kurt2rt.knowledge.journal.fold import fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.experiments.study.here import carry_out, parts_in
+from tests.experiments.study.page import Page
+
+COMMAND = "kurt2rt lesson route --seeds 1"
+VARIANTS = (TAUGHT, next(each for each in CONTROLS if each.name == "commanded"))
+
+
+def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
+    teaching = task.teaching.model_copy(update={"supervised_s": 0.0, "corrections_s": teaching_s})
+    exam = task.exam.model_copy(update={"duration_s": 3.0})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+
+def plan_in(folder: Path, basic_folder: Path | None = None, teaching_s: float = 8.0) -> StudyPlan[RouteTasks]:
+    route = short(load_task("route"), teaching_s)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(module, "basic_task_of", lambda _task: short(load_task("streets"), 10.0))
+        return make_plan(route, (1,), (4,), VARIANTS, parts_in(folder), basic_folder=basic_folder)
+
+
+@dataclass(frozen=True)
+class Done:
+    folder: Path
+    study: RouteStudy
+    pictures: list[SavedFigure]
+    progress: list[PoolProgress]
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
+    folder, progress = tmp_path_factory.mktemp("routes"), list[PoolProgress]()
+    study = read_study(carry_out(plan_in(folder), folder, progress.append))
+    pictures = list(draw_figures(study, parts_in()["factory"], folder))
+    write_routes(study, pictures, COMMAND, folder / "report.html")
+    return Done(folder, study, pictures, progress)
+
+
+def test_route_run_teaches_the_streets_once(done: Done) -> None:
+    (basic,) = done.study.plan.of(BasicJob)
+    assert basic.knowledge.is_file()
+    taught, commanded = (each.outcomes[0] for each in done.study.routes)
+    assert (taught.lesson.teaching_s, commanded.lesson.teaching_s) == (8.0, 8.0)
+    assert taught.mid_rlas == taught.mid_asks > 0 == commanded.mid_rlas
+    assert done.progress[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
+
+
+def test_route_run_stores_the_mid_level(done: Done) -> None:
+    job, outcome = done.study.plan.of(RouteJob)[0], done.study.routes[0].outcomes[0]
+    with Journal.read_only(job.knowledge) as journal:
+        system = fold_journal(journal, job.task.learning.radius)
+        assert journal.binding.system == "streets"
+        assert journal.binding.levels[MID].feature_names[0] == "symbol 1"
+    assert (len(system.rlas_at(MID)), len(system.rlas)) == (outcome.mid_rlas, outcome.lesson.rlas)
+    assert system.knowledge_hash() == outcome.lesson.knowledge_hash
+
+
+def test_route_run_repeated_does_nothing(done: Done) -> None:
+    results = Results(done.folder)
+    assert missing_time_s(plan_in(done.folder).waves, results) == 0.0
+    with pytest.raises(StudyError, match=re.escape(f"{done.folder}: ")):
+        results.missing(plan_in(done.folder, teaching_s=13.0).jobs)
+
+
+def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
+    folder = done.study.plan.of(BasicJob)[0].knowledge.parent
+    plan = plan_in(tmp_path, folder)
+    assert {each.basic for each in plan.of(RouteJob)} == {folder / "streets-1.knowledge"}
+    assert len(plan.jobs) == 2
+    basic = basic_task_of(load_task("route"))
+    assert basic.name == "streets"
+    assert basic_file(folder / "streets-1.knowledge", basic, 1) == folder / "streets-1.knowledge"
+    with pytest.raises(StudyError, match=r"streets-2\.knowledge: "):
+        basic_file(folder, basic, 2)
+
+
+def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
+    assert [each.path.name for each in done.pictures] == ["route-taught-4.png", "route-commanded-4.png"]
+    assert all(imread(each.path).std() > 0.01 for each in done.pictures)
+    text = (done.folder / "report.html").read_text(encoding="utf-8")
+    assert Page(text).images == [each.title for each in done.pictures]
+    assert COMMAND in text
+    assert all(table.title in text for table in all_tables(done.study))

@@ -1,0 +1,52 @@
+"""Stored rows of drives and lessons, written by hand."""
+
+from typing import Any
+
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.seed_result import LessonCounts
+from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.provenance import Provenance
+
+MADE_OF = Provenance(task="t", robot="r", worlds="w", source="s", versions="Python 3")
+PASSED, FAILED, NOT_JUDGED = ExamVerdict.PASSED, ExamVerdict.FAILED, ExamVerdict.NOT_JUDGED
+
+
+def row(world: str = "a", verdict: ExamVerdict = PASSED, **more: Any) -> DriveRow:
+    """Return a drive of 300 s and 8 laps without a fault, but for `more`."""
+    fields: dict[str, Any] = {
+        "world": world,
+        "verdict": verdict,
+        "duration_s": 300.0,
+        "unit": "laps",
+        "progress": 8.0,
+        "way_m": 70.0,
+        "collisions": 0,
+        "stuck": False,
+        "alarm": "",
+        "share_unknown": 0.034,
+        "action_changes_per_s": 1.5,
+        "findings": {"distance error, m": 0.05},
+        "trail": ((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
+    }
+    return DriveRow.model_validate({**fields, **more})
+
+
+def lesson(seed: int, **more: Any) -> LessonCounts:
+    """Return a lesson of 345 s and 90 RLAs, but for `more`."""
+    fields: dict[str, Any] = {
+        "seed": seed,
+        "world": "a",
+        "teacher": "superhuman",
+        "teaching_s": 345.0,
+        "rlas": 90,
+        "asks": 41,
+        "knowledge_hash": "0" * 64,
+        "corrections": 52,
+        "presses": 93,
+        "rescues": 3,
+        "repositions": 0,
+        "deletions": 0,
+        "alarms": 0,
+        "collisions": 0,
+    }
+    return LessonCounts.model_validate({**fields, **more})
