@@ -1,7 +1,6 @@
 """The robot's mind behind its request handler, on ticks that the test makes; no socket, no keys, no clock."""
 
 import asyncio
-from collections.abc import Mapping
 from typing import Any, cast
 
 from hal.guard_reason import GuardReason
@@ -285,7 +284,3 @@ def outcome_of(reply: Reply) -> Outcome | None:
 def why(reply: Reply) -> object:
     """Return the wire word of a refusal; "" if there is none."""
     return reply.body.get("why", "")
-
-
-def body_of(reply: Reply) -> Mapping[str, Any]:
-    return reply.body

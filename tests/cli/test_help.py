@@ -48,26 +48,6 @@ def test_help_mentions_every_option_and_explains_it(
         assert len(explained.split()) > 2, f"{' '.join(words)} {name} is not explained"
 
 
-def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
-    extras = (
-        "matplotlib",
-        "pymunk",
-        "scipy",
-        "jinja2",
-        "shapely",
-        "PIL",
-        "contourpy",
-        "starlette",
-        "uvicorn",
-        "optuna",
-    )
-    without = f"import sys; sys.modules.update(dict.fromkeys({extras})); sys.argv = ['kurt2rt', '--help']"
-    command = [sys.executable, "-c", f"{without}; from kurt2rt.cli.main import main; main()"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "lesson" in done.stdout
-
-
 def test_version_is_that_of_the_installed_package(kurt2rt: CommandLine) -> None:
     said = kurt2rt("--version")
     assert (said.exit_code, said.out, said.err) == (0, f"kurt2rt {metadata.version('kurt2rt')}\n", "")

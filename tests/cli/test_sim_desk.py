@@ -3,7 +3,6 @@
 import io
 import itertools
 import math
-import re
 from collections.abc import Iterator
 
 import pytest
@@ -21,8 +20,6 @@ from tests.simbridge.rig import ROBOT
 
 WORLD = load_world("a")
 SLOWLY = SpeedControl(Mode.SPEED_CM, 10, 10)
-NUMBER = re.compile(r"[+-]?\d[\d.]*")
-
 _numbers = itertools.count()
 
 

@@ -9,16 +9,6 @@ from kurt2rt.channel.protocol.health_codec import report_of
 from tests.cli.helpers import CommandLine, running
 
 
-@pytest.mark.deep
-def test_status_of_a_robot_without_channel_is_read_by_its_file(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    with running("run", "--teacher", "none", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
-        robot.wait_for("stands and asks")
-        said = kurt2rt("status", tmp_path / "mine.knowledge")
-        assert said.exit_code in (0, 1)  # urgent on a machine that has much to do at the same time
-        for words in ("late", "does      stands and asks", "bus       error-active", "task wall_following"):
-            assert words in said.out
-
-
 def test_status_by_file_and_over_the_channel_is_of_one_robot(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -29,7 +29,6 @@ WELL = Health(
     latched=None,
 )
 PASSIVE = replace(WELL, controller=ControllerState.PASSIVE, controller_trouble="bus can0: error-passive, 130 errors")
-LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=GuardReason.BUS_LOST)
 
 
 @pytest.fixture(scope="module")

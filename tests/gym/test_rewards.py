@@ -2,13 +2,8 @@
 
 import pytest
 
-from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, TeacherReward, build_reward
-
-
-def features(speed_m_s: float) -> AppraisalFeatures:
-    return AppraisalFeatures(0.2, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, speed_m_s, 0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize(

@@ -24,16 +24,6 @@ def told() -> Iterator[tuple[kurt2rt.SimulatedRobot, list[str]]]:
         yield robot, told
 
 
-def test_why_of_an_earlier_step_is_what_was_told_then(told: tuple[kurt2rt.SimulatedRobot, list[str]]) -> None:
-    robot, explanations = told
-    assert len(set(explanations)) > 20
-    ticks = (1, 3, 4, 20, 39, 40, 41, 60)
-    assert [robot.why(tick=tick) for tick in ticks] == [explanations[tick - 1] for tick in ticks]
-    assert robot.why(at=0.2) == explanations[19]
-    assert robot.why(at=0.0) == explanations[0]
-    assert (robot.seconds, robot.why()) == (0.6, explanations[-1])
-
-
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [

@@ -3,8 +3,6 @@
 from collections.abc import Callable
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
@@ -140,20 +138,6 @@ async def test_scheduler_missed_ticks_are_skipped_and_counted() -> None:
     assert starts_s[3] == pytest.approx(0.0878)
     assert starts_s[4:] == pytest.approx([number * PERIOD_S for number in range(9, 16)])
     assert run.ledger.lateness().worst_us == pytest.approx(7800, abs=1)
-
-
-@given(st.dictionaries(st.integers(1, 60), st.floats(0, 0.2), max_size=12))
-async def test_scheduler_runs_or_counts_every_tick(
-    delays_s: dict[int, float],
-) -> None:
-    run = Run(HandClock(5.0))
-    run.delays_s = delays_s
-    numbers = await run.ticks(60)
-    assert numbers == sorted(set(numbers))
-    assert len(numbers) + run.ledger.missed_ticks == numbers[-1]
-    for record in run.records:
-        late_s = record.now_s - (5.0 + record.tick * PERIOD_S)
-        assert -1e-9 <= late_s <= PERIOD_S + 1e-9
 
 
 async def test_end_lets_it_return_after_the_tick_it_is_in() -> None:

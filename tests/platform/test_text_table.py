@@ -4,7 +4,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
-from rich.text import Text
 
 from kurt2rt.platform.text_table import TextTable
 from tests.examples import examples
@@ -57,18 +56,6 @@ def test_table_that_does_not_fit_is_a_block_a_row() -> None:
         "file: b",
         "RLAs: 3",
     ]
-
-
-def test_words_wrap_at_spaces_and_keep_their_style() -> None:
-    table = TextTable("what", "found")
-    table.add_row("timer", Text("the timer was late by 0.1 ms on this machine today", "red"))
-    lines = list(table.lines(30))
-    assert [line.plain for line in lines[2:]] == [
-        "timer  the timer was late by",
-        "       0.1 ms on this machine",
-        "       today",
-    ]
-    assert all("red" in str(line.spans) for line in lines[2:])
 
 
 def test_row_with_another_number_of_cells_is_refused() -> None:

@@ -1,13 +1,8 @@
 """Real time: that it waits at all, and not how exactly; how exactly is measured by the benchmark."""
 
 import asyncio
-from pathlib import Path
 
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-
-
-def open_files() -> int:
-    return len(list(Path("/proc/self/fd").iterdir()))
 
 
 async def test_it_returns_at_the_deadline_and_not_before() -> None:

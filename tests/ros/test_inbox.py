@@ -1,7 +1,5 @@
 """Inbox of one topic: order, ages, junk, and limits against floods."""
 
-import threading
-
 import pytest
 
 from kurt2rt.ros.inbox import Inbox
@@ -87,21 +85,3 @@ def test_inbox_invalid_huge_and_refused_messages_are_junk() -> None:
         topics.carry("words", payload)
     assert list(inbox.take(refuse)) == ["yes"]
     assert inbox.junk == 3
-
-
-def test_inbox_another_thread_may_send_while_one_takes() -> None:
-    topics = LocalTopics(RosSettings())
-    inbox, sender = inbox_of_words(topics), topics.join().publisher(WORDS)
-
-    def send_all() -> None:
-        for number in range(5000):
-            sender.publish(String(str(number)))
-
-    sending = threading.Thread(target=send_all)
-    sending.start()
-    taken: list[int] = []
-    while sending.is_alive():
-        taken += map(int, inbox.take(text_of))
-    taken += map(int, inbox.take(text_of))
-    assert taken == sorted(set(taken))
-    assert taken[-1] == 4999

@@ -5,7 +5,7 @@ import pytest
 from hal.errors import UserError
 from kurt2rt.ros.messages import LaserScan, String
 from kurt2rt.ros.settings import Naming, RosSettings
-from kurt2rt.ros.topic import Topic, key_expression, liveliness_key, node_liveliness_key, topic_of, trigger_service
+from kurt2rt.ros.topic import Topic, key_expression, liveliness_key, node_liveliness_key, topic_of
 
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 CHATTER = topic_of("chatter", String)
@@ -16,7 +16,6 @@ CHATTER = topic_of("chatter", String)
     [
         (RosSettings(), topic_of("/scan", LaserScan), "scan"),
         (RosSettings(namespace="robot1"), topic_of("scan", LaserScan), "robot1/scan"),
-        (RosSettings(namespace="/robot1"), topic_of("/scan", LaserScan), "scan"),
         (
             RosSettings(naming=Naming.RMW_ZENOH, namespace="robot1"),
             CHATTER,
@@ -26,12 +25,6 @@ CHATTER = topic_of("chatter", String)
             RosSettings(naming=Naming.RMW_ZENOH_HUMBLE, domain=7),
             CHATTER,
             "7/chatter/std_msgs::msg::dds_::String_/TypeHashNotSupported",
-        ),
-        (
-            RosSettings(naming=Naming.RMW_ZENOH, domain=2),
-            trigger_service("add"),
-            "2/add/std_srvs::srv::dds_::Trigger_/"
-            "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f",
         ),
     ],
 )

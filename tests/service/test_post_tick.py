@@ -1,22 +1,17 @@
 """Work of the service after each tick, with a real journal and its thread, on ticks that the test makes."""
 
-import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.requests import CorrectRequest
-from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
@@ -25,7 +20,7 @@ from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
-from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot, reply_of, turns
+from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot
 from tests.core.rla.helpers import created, origin
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
@@ -160,38 +155,6 @@ def test_post_tick_question_comes_once(shift: Shift) -> None:
     (question,) = shift.questions
     assert isinstance(question, Question)
     assert question.nearest_rla is None
-
-
-async def test_post_tick_channel_lesson_is_answered_once_durable(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    disk_answers = threading.Event()
-    append = Journal.append
-
-    def append_late(journal: Journal, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        assert disk_answers.wait(30.0)
-        return append(journal, entries)
-
-    monkeypatch.setattr(Journal, "append", append_late)
-    shift = Shift(tmp_path / "lessons.knowledge", with_channel=True)
-    desk = shift.desk
-    task = await desk.send(desk.answer())
-    shift.run(2)
-    await turns()
-    assert not task.done()
-    disk_answers.set()
-    shift.write()
-    shift.run()
-    reply = await reply_of(task)
-    assert (reply.status, reply.body["row"], reply.body["code"]) == (ReplyStatus.DONE, 1, ResultCode.RLA_TAUGHT)
-    assert desk.tick == shift.seen[-1].tick
-
-    task = await desk.send(desk.command(CorrectRequest, "back", None))
-    shift.run()
-    shift.write()
-    shift.run()
-    assert (await reply_of(task)).body["row"] == 2
-    shift.writer.close()
 
 
 def saved_uses(shift: Shift) -> dict[int, int]:

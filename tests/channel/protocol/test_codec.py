@@ -269,39 +269,26 @@ def test_request_not_flat_list_is_refused() -> None:
     ("path", "body", "field"),
     [
         ("/stop", [b"short", None], "command_id"),
-        ("/stop", ["12345678", None], "command_id"),
         ("/lessons", [True], "count"),
         ("/lessons", [21], "count"),
-        ("/lessons", [2.0], "count"),
         ("/watch", [BOOT, -1], "seen"),
         ("/correct", [BOOT, ID, 0, "turn_left", None, "basic", 1], "late"),
         ("/shown", [BOOT, ID, 0, 7, [-1]], "segments"),
-        ("/shown", [BOOT, ID, 0, 7, [0] * 13], "segments"),
         ("/hold", [BOOT, 0, 0, ""], "action"),
-        ("/hold", [BOOT, 0, -1, "back"], "press_id"),
         ("/hold", [BOOT, 0, 0], "/hold"),
         ("/drive", [BOOT, 0, 0, math.nan, 0.0], "left_m_s"),
         ("/drive", [BOOT, 0, 0, 0.0, 2.01], "right_m_s"),
-        ("/drive", [BOOT, 0, 0, 0.0, True], "right_m_s"),
-        ("/drive", [BOOT, 0, 0, 0.0, 2**64 - 1], "right_m_s"),
         ("/world/move", [BOOT, ID, 0, "north", 100.5, 0.0], "dx_m"),
         ("/world/move", [BOOT, ID, 0, "north", 0.0, -math.inf], "dy_m"),
         ("/reward", [BOOT, ID, 0, 0, None], "value"),
-        ("/reward", [BOOT, ID, 0, True, None], "value"),
         ("/appraise", [BOOT, ID, 0, "", None], "appraisal"),
-        ("/appraise", [BOOT, ID, 0, -1, None], "appraisal"),
-        ("/name", [BOOT, ID, 0, "", None], "name"),
         ("/seek", [BOOT, ID, 0, 12], "name"),
         ("/seek/rla", [BOOT, ID, 0, "12"], "rla_id"),
-        ("/seek/like", [BOOT, ID, 0, ["x"], 0.1], "features"),
         ("/seek/like", [BOOT, ID, 0, [["x", math.nan]], 0.1], "features"),
         ("/seek/like", [BOOT, ID, 0, [["x", 1]] * 17, 0.1], "features"),
-        ("/here", [BOOT, ID, 0, None], "name"),
         ("/phase", [BOOT, ID, 0, 6], "phase"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, "high", False], "level"),
-        ("/answer", [BOOT, ID, 0, "turn_left", None, None, False], "level"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, "mid", 1], "alternative"),
-        ("/correct", [BOOT, ID, 0, "turn_left", None, b"mid", False], "level"),
         (
             "/correct",
             [BOOT, ID, 0, "turn_left", None, "mid", False, 0],
@@ -315,7 +302,6 @@ def test_request_not_flat_list_is_refused() -> None:
         ("/answer", [BOOT, ID, 0, "", None, "basic", False], "action"),
         ("/answer", [BOOT, ID, 0, "a\nb", None, "basic", False], "action"),
         ("/answer", [BOOT, ID, 0, "x" * 65, None, "basic", False], "action"),
-        ("/session", [BOOT, ID, 0, 7], "name"),
         ("/behaviour", [BOOT, ID, 0, "forward", 0], "ticks"),
     ],
 )
@@ -361,14 +347,6 @@ def test_state_with_another_key_is_read_and_without_one_is_not() -> None:
             decode_state(cbor2.dumps({name: value for name, value in picture.items() if name != key}))
 
 
-@pytest.mark.parametrize(
-    ("key", "row"), [("sr", ["battery empty", ""]), ("sd", ["battery empty", True, True, 1.0, ""])]
-)
-def test_state_of_an_unknown_reason_is_refused(key: str, row: list[object]) -> None:
-    with pytest.raises(WireError, match="one of"):
-        decode_state(cbor2.dumps(cbor2.loads(encode_state(state())) | {key: row}))
-
-
 @pytest.mark.parametrize("kind", PATHS.values(), ids=lambda kind: kind.path)
 def test_mischief_knows_the_fields_of_every_request(kind: type[Request]) -> None:
     request = HostileDatagrams(1, lambda: (b"boot", 0)).valid(kind)
@@ -380,10 +358,3 @@ def test_shown_drive_of_unequal_lists_is_refused() -> None:
     body["dm"][2] = ["forward"]
     with pytest.raises(WireError):
         decode_state(cbor2.dumps(body))
-
-
-@pytest.mark.parametrize("way", [[1.0], [1.0, "x"], [1.0, float("nan")], "11"])
-def test_way_that_is_no_pair_of_numbers_is_refused(way: object) -> None:
-    body = cbor2.loads(encode_state(state()))
-    with pytest.raises(WireError):
-        decode_state(cbor2.dumps({**body, "od": way}))

@@ -7,7 +7,6 @@ import pytest
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
-    CorrectRequest,
     LessonsRequest,
     NameRequest,
     SeekLikeRequest,
@@ -21,7 +20,7 @@ from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID
 from tests.channel.channel_fixture import STAMP, ChannelFixture, outcome_of, why
 from tests.channel.grounds import Yard
@@ -76,31 +75,6 @@ async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> No
     assert (mid.taught_by, mid.taught_at, mid.there) == ("ann", STAMP, NOTHING_YET)
     lessons = (await desk.ask(LessonsRequest(1))).body["lessons"]
     assert {"mid-level", "RLA", "turn_left"} <= set(lessons[0][1].split())
-
-
-async def test_mid_level_unknown_level_or_behaviour_is_refused(
-    desk: ChannelFixture,
-) -> None:
-    refused = await desk.ask(desk.command(AnswerRequest, "forward", None, MID, False))
-    assert (why(refused), outcome_of(refused)) == (
-        "refused",
-        Outcome.of(RefusalCode.NO_BEHAVIOUR, behaviour="forward", known=("straight_on", "turn_left", "turn_right")),
-    )
-    refused = await desk.ask(desk.command(AnswerRequest, "forward", None, BASIC, True))
-    assert why(refused) == "refused"
-    plain = ChannelFixture()
-    for request in (
-        plain.command(AnswerRequest, "turn_left", None, MID, False),
-        plain.command(CorrectRequest, "turn_left", None, MID),
-        plain.command(NameRequest, "door", None),
-        plain.command(SeekRequest, "door"),
-        plain.command(SeekRequest, None),
-        plain.command(SetLocationRequest, "door"),
-    ):
-        refused = await plain.ask(request)
-        assert (why(refused), refused.status) == ("refused", ReplyStatus.CONFLICT)
-        assert outcome_of(refused) == Outcome(RefusalCode.NO_MID_LEVEL)
-    assert picture(plain).mid is None
 
 
 async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:

@@ -118,13 +118,6 @@ async def _taught_under_flood(robot: Child, port: int, device: Path, calm_s: flo
     return Seen(resident, lines, told)
 
 
-async def _cheap_robot(folder: Path, calm_s: float, flood_s: float, *, collect: str = "sweep") -> Seen:
-    pairing = _pairing(folder)
-    async with child("-m", "tests.channel.robot_process", str(folder), collect) as robot:
-        port = int(await robot.line(str.isdigit))
-        return await _taught_under_flood(robot, port, pairing.device.folder, calm_s, flood_s)
-
-
 async def _simulated_robot(folder: Path, calm_s: float, flood_s: float) -> tuple[Seen, str]:
     """Run the robot program, and return its last status line."""
     pairing = _pairing(folder)
@@ -161,22 +154,6 @@ def _must_have_kept_control(seen: Seen) -> None:
         assert told["dropped"] > 0
         assert told["junk"] > 0
         assert (told["failed"], told["failures"]) == (0, 0)
-
-
-@pytest.mark.deep
-async def test_a_teacher_is_answered_while_junk_pours_in(tmp_path: Path) -> None:
-    seen = await _cheap_robot(tmp_path, 0.0, 3.0)
-    _report("short", seen)
-    _must_have_kept_control(seen)
-
-
-@pytest.mark.deep
-async def test_a_minute_of_junk_takes_neither_memory_nor_control(tmp_path: Path) -> None:
-    seen = await _cheap_robot(tmp_path, 5.0, 60.0)
-    _report("a minute", seen)
-    _must_have_kept_control(seen)
-    assert seen.growth_kb < _MOST_GROWTH_KB
-    assert seen.answered >= 0.99
 
 
 @pytest.mark.deep

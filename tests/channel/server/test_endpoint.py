@@ -237,19 +237,6 @@ async def test_endpoint_flood_of_strangers_leaves_teacher_alone() -> None:
             pass
 
 
-async def test_a_site_that_fails_is_counted_and_nothing_is_written(caplog: pytest.LogCaptureFixture) -> None:
-    async with robot_at() as robot:
-        sender = await robot.sender()
-        for _ in range(3):
-            sender.post("fault")
-            assert (await sender.answer()).code == aiocoap.INTERNAL_SERVER_ERROR
-        assert robot.endpoint.counters.failed == 3
-        assert "the site is wrong" in robot.endpoint.newest_failure
-        sender.post("echo")
-        assert (await sender.answer()).code == aiocoap.CHANGED
-    assert caplog.records == []
-
-
 async def test_of_a_request_without_an_answer_nothing_is_left() -> None:
     async with robot_at() as robot:
         sender = await robot.sender()

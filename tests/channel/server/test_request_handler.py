@@ -141,14 +141,6 @@ async def test_hold_drives_and_its_release_tells_the_lessons(desk: ChannelFixtur
     assert desk.record.decision.cause is not DecisionCause.STOPPED
 
 
-async def test_hold_of_a_stopped_robot_or_unknown_action_is_refused(desk: ChannelFixture) -> None:
-    unknown = await desk.stream(desk.hold("fly"))
-    assert (why(unknown), unknown.body["code"]) == ("refused", "no action")
-    await desk.ask(desk.stop())
-    stopped = await desk.stream(desk.hold())
-    assert (why(stopped), stopped.body["code"]) == ("stopped", "robot stopped")
-
-
 @pytest.mark.parametrize("kind", ["watch", "press"])
 @pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
 async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
@@ -358,19 +350,6 @@ async def test_take_is_refused_only_while_another_drives_by_hand(desk: ChannelFi
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
     await desk.ask(desk.stop(), "ben")
     assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
-
-
-async def test_reward_and_correction_apply_to_decision_of_tick(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer("forward"))
-    await desk.stream(desk.watch())
-    meant = desk.run(counts=100).tick
-    desk.run(20, counts=900)
-    reply = await desk.ask(desk.command(RewardRequest, 1, meant))
-    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
-    reply = await desk.ask(desk.command(CorrectRequest, "back", meant))
-    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
-    refused = await desk.ask(desk.command(RewardRequest, 1, desk.tick + 50))
-    assert why(refused) == "refused"
 
 
 @pytest.mark.parametrize(
@@ -675,34 +654,6 @@ async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Cha
 
 
 # Several taught behaviours.
-
-
-async def test_pursue_before_stop_or_other_behaviour_is_refused() -> None:
-    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
-    older = desk.command(PursueRequest, "straight_on")
-    desk.run(5)
-    await desk.ask(desk.command(PursueRequest, "turn_left"))
-    late = await desk.ask(older)
-    assert why(late) == "refused"
-    assert outcome_of(late) == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_left")
-    before = desk.command(PursueRequest, "straight_on")
-    desk.run(5)
-    await desk.ask(StopRequest(b"stopstop"))
-    assert outcome_of(await desk.ask(before)) == Outcome(RefusalCode.STOPPED_SINCE)
-    assert desk.runtime.active_behaviour.behaviour == "turn_left"
-
-
-async def test_lesson_on_old_state_counts_for_old_behaviour() -> None:
-    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
-    seen = desk.tick
-    await desk.ask(desk.command(PursueRequest, "turn_left"))
-    await desk.ask(desk.answer("forward", of=seen))
-    await desk.ask(desk.answer("forward"))
-    lessons = (await desk.ask(LessonsRequest(2))).body["lessons"]
-    assert [text.split()[:4] for _, text, *_ in lessons] == [
-        ["RLA", "2", "of", "turn_left"],
-        ["RLA", "1", "of", "straight_on"],
-    ]
 
 
 async def test_stop_copy_sent_before_resume_does_not_stop() -> None:

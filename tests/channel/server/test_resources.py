@@ -26,9 +26,7 @@ from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     HelloRequest,
     LessonsRequest,
-    PhaseRequest,
     StopRequest,
-    WorldRequest,
 )
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
@@ -37,8 +35,7 @@ from kurt2rt.channel.server.channel import Channel, open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.outcome import RefusalCode, ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.outcome import ResultCode
 from tests.channel.channel_fixture import ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
@@ -244,17 +241,6 @@ async def test_site_malformed_request_is_bad_request(school: School, payload: by
         assert told["why"] == "malformed"
         assert told["text"]
     assert school.desk.runtime.inbox.pop_all() == ()
-
-
-async def test_site_reply_status_sets_coap_code(
-    school: School,
-) -> None:
-    phone = school.phone()
-    refused = await phone.post(PhaseRequest(b"last", b"12345678", 0, Phase.CORRECTIONS))
-    assert (refused.code, decode_answer(refused.payload)["why"]) == (aiocoap.CONFLICT, "boot")
-    nothing = await phone.post(WorldRequest())
-    assert nothing.code == aiocoap.NOT_FOUND
-    assert decode_answer(nothing.payload)["code"] == RefusalCode.NOT_SIMULATED
 
 
 async def test_site_internal_error_is_counted_and_next_request_works(

@@ -14,14 +14,11 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import ASK
 from tests.channel.channel_fixture import ROBOT, STAMP, ChannelFixture
 from tests.service.health.reports import ILL
-
-APART = round(load_critic().agreement.apart_s / ROBOT.cycle_s)
 
 
 @pytest.fixture
@@ -69,30 +66,6 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -
     assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)
 
 
-async def test_a_question_names_the_features_that_differ_most(desk: ChannelFixture) -> None:
-    await desk.ask(desk.answer())
-    desk.run(counts=900)
-    told = picture(desk)
-    assert (told.cause, told.nearest, told.rla) == ("unknown", 1, None)
-    assert told.distance > told.radius
-    assert len(told.question) == 5
-    assert all(each.here > each.in_condition for each in told.question)
-    desk.run(counts=100)
-    assert picture(desk).question == ()
-
-
-async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: ChannelFixture) -> None:
-    await desk.stream(desk.press())
-    desk.run()
-    told = picture(desk)
-    assert (told.cause, told.action, told.rla, told.by_hand, told.teacher) == ("teacher", "by hand", None, True, "ann")
-    assert (told.left_m_s, told.right_m_s) == (0.2, 0.1)
-    desk.run(30)
-    told = picture(desk)
-    assert (told.cause, told.by_hand, told.stopped) == ("stopped", False, ActiveStop(StopReason.LET_GO, "ann"))
-    assert (told.left_m_s, told.right_m_s) == (0.0, 0.0)
-
-
 async def test_phase_session_and_clock(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(PhaseRequest, Phase.CORRECTIONS))
     await desk.ask(desk.command(SessionRequest, "morning"))
@@ -130,20 +103,3 @@ async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: ChannelF
     assert told.cause == "unknown"
     assert told.nearest_value is not None
     assert told.nearest_value < 0
-
-
-async def test_withdrawn_action_makes_robot_ask(desk: ChannelFixture) -> None:
-    await drives(desk)
-    while picture(desk).cause == "rla":
-        for _ in range(10):
-            await desk.stream(desk.watch())
-            desk.run(10)
-        await desk.ask(desk.command(RewardRequest, -1, None))
-        desk.run()
-    told = picture(desk)
-    assert (told.cause, told.action, told.nearest, told.nearest_action) == ("unknown", None, 1, "ask")
-    assert told.distance < told.radius
-    assert (await desk.ask(desk.answer("back"))).body["ok"]
-    await desk.stream(desk.watch())
-    desk.run()
-    assert (picture(desk).cause, picture(desk).action, picture(desk).rla) == ("rla", "back", 1)

@@ -19,22 +19,6 @@ from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import TODAY, Instead, Session, Workshop, leaves_at
 
 
-async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Path) -> None:
-    with Workshop() as workshop:
-        stood = workshop.robot.pose
-        session = Session(workshop, tmp_path)
-        progress = await session.run()
-        assert workshop.robot.pose == stood
-    assert session.person.lines(Tone.BAD) == []
-    assert passed(progress, STEPS)
-    findings = progress.findings
-    assert findings.speed_mode is SpeedMode.SPEED_CM
-    assert findings.channels == {sensor.name: sensor.channel for sensor in workshop.true.infrared.sensors}
-    assert findings.bumper_bits == {bumper.name: bit for bit, bumper in enumerate(workshop.true.bumpers)}
-    assert findings.controller_watchdog_s == pytest.approx(0.2, abs=0.03)
-    assert findings.law is not None
-
-
 async def test_wheels_turn_only_after_the_words_and_a_key(tmp_path: Path) -> None:
     moved: dict[QuestionKind, float] = {}
     asked_before = QuestionKind.BEGIN

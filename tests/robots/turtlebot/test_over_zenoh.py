@@ -1,10 +1,8 @@
 """The base in another program, over real zenoh, and foreign command line tools that look at its topics."""
 
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
-from pathlib import Path
 
 import pytest
 
@@ -20,7 +18,6 @@ from simbridge.worlds.world_loading import load_world
 from tests.robots.turtlebot.rig import FORWARD, SETTINGS
 from tests.ros.helpers import free_locator, wait_for
 
-BIN = Path(sys.executable).parent
 RMW_SETTINGS = SETTINGS.model_copy(update={"ros": SETTINGS.ros.model_copy(update={"naming": "rmw_zenoh"})})
 
 
@@ -91,11 +88,3 @@ def test_zenoh_base_with_a_tap_is_refused() -> None:
 
     with pytest.raises(SettingsError, match="no CAN frames"):
         TURTLEBOT.open(SETTINGS, free_locator(), Silent())
-
-
-def _is_served(locator: str) -> bool:
-    try:
-        TURTLEBOT.open(SETTINGS, locator).close()
-    except BusError:
-        return False
-    return True

@@ -102,16 +102,6 @@ def test_ticks_are_late_from_a_fifth_of_a_period_on(ward: Ward) -> None:
     assert (trouble.code, trouble.urgent) == (TroubleCode.TICKS_LATE, False)
 
 
-def test_diagnostics_tolerates_few_stalls_of_a_simulation() -> None:
-    ward = Ward(tolerates_stalls=True)
-    late = replace(WELL.punctuality, p99_ms=9.0)
-    assert ward.look(punctuality=late) == ()
-    ward.counters["missed"] = 600  # of 6000 in a minute
-    assert ward.look(punctuality=late) == ()
-    ward.counters["missed"] = 601
-    assert ward.one(punctuality=late).numbers == (601, 601)
-
-
 def test_the_bus_says_itself_what_is_wrong_and_what_to_do(ward: Ward) -> None:
     off = replace(A_BUS, controller_trouble="bus can0: bus-off; check cable; then restart", latched=GuardReason.BUS_OFF)
     alarm = ward.one(replace(CALM, bus=off))

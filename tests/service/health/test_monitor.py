@@ -87,17 +87,6 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
     assert len(robot.heard) == 1
 
 
-def test_lateness_of_now_is_the_worst_of_the_last_second(robot: Robot) -> None:
-    for late_s in (0.004, 0.0):
-        robot.desk.runtime.timer.begin(late_s)
-        robot.desk.runtime.timer.end()
-    assert robot.report().punctuality.newest_ms == pytest.approx(4.0)
-    robot.tick(100)
-    late = robot.report().punctuality
-    assert late.newest_ms == 0.0
-    assert late.worst_ms == pytest.approx(4.0)
-
-
 def test_sensors_that_were_never_heard_have_no_age(robot: Robot) -> None:
     robot.desk.robot.infrared_age_s = float("inf")
     robot.tick()

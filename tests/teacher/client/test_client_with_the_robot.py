@@ -159,51 +159,6 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
     assert len(given.lessons) == 1
 
 
-@pytest.mark.deep  # a press ends, as it must, when this machine stalls for a quarter of a second
-async def test_drive_moves_robot_only_while_pressed(tmp_path: Path) -> None:
-    device = paired(tmp_path).device
-    with rig() as live:
-        async with (
-            listening_robot(live, tmp_path) as port,
-            TeacherClient(device.folder, port=port) as robot,
-        ):
-            await state_where(robot, cause="unknown")
-            async with robot.driving() as wheel:
-                assert wheel.set(0.15, 0.15)
-                drives = await state_where(robot, by_hand=True, left_m_s=0.15, right_m_s=0.15)
-                assert (drives.teacher, drives.cause) == ("phone", "teacher")
-            stands = await state_where(robot, by_hand=False, left_m_s=0.0, right_m_s=0.0)
-            assert stands.stopped is not None
-            async with robot.driving() as wheel:
-                wheel.set(0.15, 0.15)
-                await state_where(robot, by_hand=True, left_m_s=0.15)
-                await robot.stop()
-                assert not wheel.set(0.15, 0.15)
-            assert robot.link.rtt_ms is not None
-
-
-@pytest.mark.deep  # a press ends, as it must, when this machine stalls for a quarter of a second
-async def test_hold_drives_and_teaches_while_its_block_lasts(tmp_path: Path) -> None:
-    device = paired(tmp_path).device
-    with rig() as live:
-        async with (
-            listening_robot(live, tmp_path) as port,
-            TeacherClient(device.folder, port=port) as robot,
-        ):
-            await state_where(robot, cause="unknown")
-            async with robot.hold("forward") as held:
-                drives = await state_where(robot, by_hand=True, action="forward")
-                assert drives.hold is not None
-                assert (drives.hold.teacher, drives.hold.on) == ("phone", True)
-                await state_where(robot, rlas=1)
-            assert held.lessons >= 1
-            goes_on = await state_where(robot, by_hand=False)
-            assert goes_on.stopped is None
-            assert goes_on.hold is not None
-            assert (await robot.undo(goes_on.hold.lesson)).code is ResultCode.HOLD_UNDONE
-            await state_where(robot, rlas=0)
-
-
 async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:

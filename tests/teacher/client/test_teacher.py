@@ -12,7 +12,7 @@ import pytest
 
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.codec import WireError
-from kurt2rt.channel.protocol.requests import AppraiseRequest, StopRequest, WatchRequest
+from kurt2rt.channel.protocol.requests import WatchRequest
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
@@ -150,34 +150,6 @@ async def test_attention_ends_after_the_last_call(pairing: Pairing) -> None:
         await robot.hears(WatchRequest, heard + 1)
         await in_a_thread(teacher.close)
         await in_a_thread(teacher.close)
-
-
-async def test_each_command_reaches_the_robot(pairing: Pairing) -> None:
-    async with stand_in_robot(pairing.teacher.parent) as robot:
-
-        def give() -> None:
-            with Teacher(pairing.device.folder, port=robot.port) as teacher:
-                commands: tuple[Callable[[], Answer], ...] = (
-                    lambda: teacher.begin_session("one"),
-                    teacher.end_session,
-                    lambda: teacher.reward(+1, of=7),
-                    lambda: teacher.appraise("bad"),
-                    lambda: teacher.pursue("turn_left"),
-                    lambda: teacher.place(1.0, 2.0, 0.0),
-                    lambda: teacher.save("mine"),
-                    lambda: teacher.hand_over("anna"),
-                    teacher.stop,
-                )
-                assert all(command().accepted for command in commands)
-
-        await in_a_thread(give)
-        names = [type(each).__name__ for each in robot.orders()]
-        assert names[-9:] == [
-            *("SessionRequest", "SessionRequest", "RewardRequest", "AppraiseRequest", "PursueRequest"),
-            *("PlaceRequest", "SaveRequest", "HandOverRequest", "StopRequest"),
-        ]
-        assert robot.all_of(AppraiseRequest)[0].appraisal == "bad"
-        assert robot.all_of(StopRequest)
 
 
 def test_no_robot_is_one_line_that_says_what_to_do(pairing: Pairing) -> None:

@@ -21,7 +21,7 @@ from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.texts import PageNotice
 from kurt2rt.teacher.page.texts import text_of as page_text_of
 from tests.teacher.page.clock import Clock
-from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
+from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.stand_in_robot import in_a_task_of_its_own
 
 PLACE = "127.0.0.1:5683"
@@ -120,27 +120,6 @@ async def fixture() -> AsyncIterator[BridgeFixture]:
 @pytest.fixture
 async def page(fixture: BridgeFixture) -> Page:
     return Page(fixture)
-
-
-async def test_connect_sends_each_kind_of_message(page: Page) -> None:
-    await page.see(place=A_PLACE)
-    await settled()
-    page.read()
-    # A machine that stalls tells of a silent robot as well.
-    assert {each["kind"] for each in page.heard} - {"silent"} == {
-        "page",
-        "hello",
-        "world",
-        "lessons",
-        "health",
-        "exam",
-        "simulation",
-        "state",
-    }
-    assert page.last("page") == {"kind": "page", "device": "phone", "robot": "127.0.0.1:5683", "seat": "here"}
-    assert page.last("hello")["robot"] == "kurt2-indoor"
-    assert page.last("lessons")["lessons"][0]["text"] == "RLA 1: forward"
-    assert page.last("state")["place"]["x_m"] == A_PLACE.x_m
 
 
 async def test_state_infinite_numbers_are_null(page: Page) -> None:

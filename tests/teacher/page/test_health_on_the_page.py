@@ -63,16 +63,6 @@ def test_a_touch_on_the_bar_opens_a_table_of_how_the_robot_is(lesson: Lesson) ->
     assert not phone.shows("#health-table")
 
 
-def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
-    state = lesson.robot.state
-    assert state is not None
-    lesson.show(tick=state.tick + 600)  # and no report was made meanwhile
-    lesson.reads("#health", "no report")
-    lesson.phone.wait(lambda: lesson.phone.run(CLASS, "#health") == "warns", "it is in colour, but not urgent")
-    later(lesson, 100, WELL)
-    lesson.reads("#health", "late 0.20 ms")
-
-
 def test_faults_are_coloured_with_time_and_cure(lesson: Lesson) -> None:
     phone = lesson.phone
     falls_ill(lesson)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.channel.protocol.hello import MidIntroduction
-from tests.channel.states import COMMANDS, SURPRISED
+from tests.channel.states import COMMANDS
 from tests.teacher.page.classroom import classroom
 from tests.teacher.page.fake_robot import A_HELLO, FakeRobot
 from tests.teacher.page.lesson import Lesson
@@ -124,22 +124,6 @@ def test_question_of_the_basic_level_changes_the_buttons(junction: Junction) -> 
     phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
     phone.wait(lambda: ("back", "late") in junction.told("correct"), "a correction of the basic level")
-
-
-def test_surprise_is_a_quiet_mark_and_a_loud_one_when_far(junction: Junction) -> None:
-    phone = junction.phone
-    junction.reads("#mid-sentence", "turn left")
-    assert not phone.shows("#surprise")
-    tick = junction.show().tick
-    junction.show(surprise=replace(SURPRISED, tick=tick, times=2.5))
-    junction.reads("#surprise", "surprise 2.5 \N{MULTIPLICATION SIGN} after mid-level RLA 12")
-    assert not phone.has("#surprise.loud")
-    phone.show("13-surprised")
-    junction.show(surprise=replace(SURPRISED, tick=tick + 10, times=6.0, new=True))
-    junction.reads("#surprise", "surprise 6.0 \N{MULTIPLICATION SIGN} after mid-level RLA 12, new")
-    assert phone.has("#surprise.loud")
-    junction.show(tick=tick + 1000)
-    phone.wait(lambda: not phone.shows("#surprise"), "it is over")
 
 
 def test_places_get_names_and_are_sought(junction: Junction) -> None:

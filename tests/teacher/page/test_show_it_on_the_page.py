@@ -43,9 +43,3 @@ def test_not_now_is_not_asked_again_at_the_next_stand(lesson: Lesson) -> None:
     assert not lesson.phone.shows("#shown")
     lesson.show(shown=replace(SHOWN, press_id=92))
     lesson.phone.wait(lambda: lesson.phone.shows("#shown"), "another drive is offered")
-
-
-@pytest.mark.parametrize("shown", [None, ShownState("anna", 91, ("forward",), (100,), (180,))])
-def test_drive_of_no_one_or_of_another_is_not_offered(lesson: Lesson, shown: ShownState | None) -> None:
-    lesson.show(shown=shown)
-    lesson.phone.wait(lambda: not lesson.phone.shows("#shown"), "nothing is offered")

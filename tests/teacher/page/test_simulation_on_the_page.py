@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from tests.teacher.page.fake_robot import A_SIMULATION, FakeRobot
+from tests.teacher.page.fake_robot import A_SIMULATION
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import Phone
 from tests.teacher.page.screens import on_each_screen
@@ -73,13 +73,3 @@ def test_speed_is_chosen_and_the_reached_one_shown(lesson: Lesson) -> None:
     assert phone.run("return document.querySelector('#sim-task').value;") == "eight"
     phone.middle("#sim-speed")
     phone.show("25-speed")
-
-
-def test_a_real_robot_has_no_simulation(a_lesson: Lesson) -> None:
-    def prepare(robot: FakeRobot) -> None:
-        robot.greeting = replace(robot.greeting, simulated=False)
-
-    a_lesson.begin(prepare, place=None)
-    a_lesson.phone.touch("#tab-more")
-    assert a_lesson.phone.shows("#export")
-    assert not a_lesson.phone.shows("#simulation")

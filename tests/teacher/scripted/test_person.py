@@ -290,15 +290,6 @@ def test_update_touch_is_let_pass_if_not_its_way_or_phase(phase: Phase) -> None:
     assert corrected_ticks(person(phase, profile=profile), touched(wrong=25)) == []
 
 
-def rewind_once() -> list[TeacherView]:
-    """Return a robot that begins to do the wrong thing after 0.2 s, and stands from then on."""
-    return [doing("a")] * 20 + [doing("b")] * 120 + [standing()] * 2000
-
-
-def counts(command: Command) -> bool:
-    return not isinstance(command, Resume)
-
-
 @pytest.mark.parametrize(("undone", "undos"), [(0.0, 0), (1.0, 1)])
 def test_update_own_wrong_press_is_undone_if_noticed(undone: float, undos: int) -> None:
     errors = ErrorSettings(answers=1.0, corrections=0.0, undone=undone)

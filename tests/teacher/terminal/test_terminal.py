@@ -38,7 +38,6 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
-from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
@@ -463,13 +462,3 @@ async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot
         assert robot.all_of(SeekRequest)[-1].name == "x_m=high"
         console.type("help")
         await console.reads("seek FEATURE=VALUE")
-
-
-async def test_standing_robot_prints_its_reason_instead_of_asking(pairing: Pairing, robot: StandInRobot) -> None:
-    async with console_at(pairing, robot.port) as console:
-        await console.reads("/take is done")
-        robot.show(cause="unknown", standing=Standing(StandReason.COMPUTER_TOO_SLOW, True, asks=True, stall_s=0.12))
-        await console.reads("Stands: the computer was too slow for 0.1 s. Type go to let it drive on")
-        touches = {"cause": "touches", "nearest": 3, "nearest_action": "forward", "distance": 90.0, "radius": 600.0}
-        robot.show(standing=Standing(StandReason.REAR_BUMPER, asks=True), **touches)
-        await console.reads("I touch something behind me; what now? RLA 3 says forward")
