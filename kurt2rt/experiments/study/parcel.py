@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from threadpoolctl import threadpool_limits
 
 from hal.errors import UserError
-from kurt2rt.experiments.study.provenance import program_hash, versions
+from kurt2rt.experiments.study.provenance import program_hash, versions_with_python
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import StoredJob
 from kurt2rt.knowledge.files.archive_existing import archive_existing
@@ -100,7 +100,7 @@ def unpack(job: StoredJob, results: Results, files: Mapping[str, bytes]) -> None
 
 def _program() -> str:
     """Return what two machines must have alike: the program with its settings, and the packages that compute."""
-    return f"{program_hash('.py', '.yaml', '.dbc', '.json', '.png', '.pgm')}, {versions()}"
+    return f"{program_hash('.py', '.yaml', '.dbc', '.json', '.png', '.pgm')}, {versions_with_python()}"
 
 
 def _files_of(job: StoredJob) -> list[str]:

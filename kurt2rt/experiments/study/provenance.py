@@ -43,8 +43,13 @@ class Provenance(Settings):
 
 
 def versions() -> str:
+    """Return the versions of the computing packages; each Python computes the same (docs/how-it-decides.md)."""
+    return ", ".join(f"{name} {version(name)}" for name in _COMPUTE)
+
+
+def versions_with_python() -> str:
     """Return the versions of Python and of the computing packages."""
-    return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
+    return f"Python {platform.python_version()}, {versions()}"
 
 
 @lru_cache

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import jinja2
 
 from kurt2rt.experiments.study.figures import SavedFigure
-from kurt2rt.experiments.study.provenance import source_hash, versions
+from kurt2rt.experiments.study.provenance import source_hash, versions_with_python
 from kurt2rt.experiments.study.table import Table
 from kurt2rt.platform.durable_files import write_durably
 
@@ -57,7 +57,7 @@ def write_report(
         lstrip_blocks=True,
     )
     environment.filters |= {"typed": _typed, "uri": _as_uri}
-    made_with = ", ".join([versions(), *(f"{name} {version(name)}" for name in _MADE_WITH)])
+    made_with = ", ".join([versions_with_python(), *(f"{name} {version(name)}" for name in _MADE_WITH)])
     html = environment.get_template("report.html.j2").render(
         title=title,
         sections=sections,

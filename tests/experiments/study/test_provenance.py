@@ -23,6 +23,14 @@ def test_the_same_is_the_same(fingerprints: Fingerprints) -> None:
     assert fingerprints.of(TASK, ("a", "b")) == fingerprints.of(TASK, ("b", "a", "a"))
 
 
+def test_a_folder_of_another_python_is_gone_on_with(
+    fingerprints: Fingerprints, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = fingerprints.of(TASK, ("a",))
+    monkeypatch.setattr("platform.python_version", lambda: "3.99.0")
+    assert Fingerprints(STAGE, ROBOT).of(TASK, ("a",)) == made
+
+
 def test_a_change_of_the_task_shows(fingerprints: Fingerprints) -> None:
     made = fingerprints.of(TASK, ("a",))
     learning = TASK.model_copy(update={"learning": TASK.learning.model_copy(update={"radius": 701.0})})
