@@ -13,6 +13,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
+TESTED := $(VENV)/tested
+INSTALL = $(BIN)/pip install --disable-pip-version-check --progress-bar off --constraint constraints.txt --editable
 COMPILED := $(VENV)/compiled
 
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
@@ -28,44 +30,44 @@ demo: $(INSTALLED)
 
 # Types take one processor; the other one compiles the tests meanwhile, once for all that run them. More workers than
 # processors: stories wait for programs, browsers and real time; with four hands in browsers lose their robots.
-test: $(INSTALLED)
+test: $(TESTED)
 	$(MAKE) --no-print-directory --jobs 3 --output-sync=target lint types size $(COMPILED)
 	$(PYTEST) -n 3 -q --dist loadfile --no-loadscope-reorder
 
 # A test that fails only on a busy machine is a fault of the test, or worse.
 RUNS ?= 20
 BUSY ?= 10
-trust: $(INSTALLED) $(COMPILED)
+trust: $(TESTED) $(COMPILED)
 	PYTHONDONTWRITEBYTECODE= $(BIN)/python -m tests.many_runs --runs $(RUNS) --busy $(BUSY)
 
 # A test that waits for a processor has not failed: six times what the quick ones have.
-test-deep: $(INSTALLED) guard
+test-deep: $(TESTED) guard
 	EXAMPLES=thorough $(PYTEST) -n 2 -q -m 'deep or hypothesis' --timeout 1800
 
 # Every line and branch of the guard and of what it stands on, by the tests of hal alone.
-guard: $(INSTALLED)
+guard: $(TESTED)
 	EXAMPLES=thorough $(BIN)/coverage run -m pytest -q tests/hal -k 'not thousand_ticks'
 	$(BIN)/coverage report
 
 # Every small change to them has to make a test fail; minutes.
-mutants: $(INSTALLED)
+mutants: $(TESTED)
 	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt mutmut
 	EXAMPLES=thorough $(BIN)/python -m tests.hal.mutants
 
 # The robot program is killed 10 000 times while it is taught: an hour of one processor; SHARD=2/8 is the second of eight.
 SHARD ?= 1/1
 KILLS ?= 10000
-kills: $(INSTALLED)
+kills: $(TESTED)
 	$(BIN)/python -m tests.crash.kills --kills $(KILLS) --shard $(SHARD)
 
 # Two processors take three quarters of an hour.
 LESSONS ?= 1000
-equal-lessons: $(INSTALLED)
+equal-lessons: $(TESTED)
 	$(BIN)/python -m tests.simbridge.batch.equal_lessons --lessons $(LESSONS) --shard $(SHARD)
 
 # Each goes on where it was, and leaves its report in results/search.
 SEARCHES ?= $(basename $(notdir $(wildcard config/searches/*.yaml)))
-studies: $(INSTALLED)
+studies: $(TESTED)
 	for name in $(SEARCHES); do $(BIN)/kurt2rt study search $$name || exit 1; done
 
 # With a small environment of its own, because a robot needs no tests. Wheels for glibc 2.34 and newer, Debian 12.
@@ -89,43 +91,48 @@ wheelhouse:
 	rm -rf wheelhouse/venv build
 
 # First that both machines can be had (the small kernel is built once, 3 minutes), then real time, then simulated time.
-hil: $(INSTALLED)
+hil: $(TESTED)
 	$(BIN)/python -m tests.hil.machine $(HIL) --check
 	$(BIN)/python -m tests.hil.machine $(HIL) --simulated-time --check
 	$(BIN)/python -m tests.hil.machine --limit 1800 $(BIN)/python -m pytest -q -m hil tests/hil
 	$(BIN)/pytest -n 2 -q -m boots tests/hil
 
-bench: $(INSTALLED)
+bench: $(TESTED)
 	$(BIN)/python -m tests.bench $(ARGS)
 
-lint: $(INSTALLED)
+lint: $(TESTED)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python -m tests.lint
 	$(BIN)/hadolint Containerfile
 
-types: $(INSTALLED)
+types: $(TESTED)
 	$(BIN)/mypy
 
 # A room above its budget in pyproject.toml is a failure.
-size: $(INSTALLED)
+size: $(TESTED)
 	$(BIN)/python -m tests.size
 
 # What cannot be collected is told by the tests themselves.
-$(COMPILED): $(INSTALLED) $(shell find tests -name '*.py')
+$(COMPILED): $(TESTED) $(shell find tests -name '*.py')
 	-@$(PYTEST) --collect-only -qqq > /dev/null 2>&1
 	@$(BIN)/python -m tests.compile_batch
 	@touch $@
 
-# One environment for both commands: what is tested is what runs.
+# One environment for all: what is tested is what runs. A user needs a quarter of the packages of the tests.
 $(INSTALLED): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 		|| { echo "kurt2rt needs Python 3.11 or newer; give one with: make PYTHON=python3.12 $(MAKECMDGOALS)"; exit 1; }
 	@$(PYTHON) -c 'import ensurepip, venv' \
 		|| { echo "Python's venv is missing; on Debian: apt-get install python3-venv"; exit 1; }
-	@echo "Installing kurt2rt and its packages into $(VENV), once: one to five minutes, 0.6 GB of disk ..."
+	@echo "Installing kurt2rt and its packages into $(VENV), once: a minute or two, 0.4 GB of disk ..."
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[test]'
+	$(INSTALL) '.[page,recording,simulation]'
+	touch $@
+
+$(TESTED): $(INSTALLED)
+	@echo "Installing the packages of the tests into $(VENV), once: one to five minutes, 1 GB of disk ..."
+	$(INSTALL) '.[test]'
 	touch $@
 
 clean:

@@ -58,8 +58,13 @@ def test_wheelhouse_requirements_hold_a_hash_of_each_wheel(tmp_path: Path) -> No
 
 
 def test_first_make_run_says_that_it_installs_before_it_does(dry_run: str) -> None:
-    said, installs = dry_run.index("one to five minutes"), dry_run.index("-m venv")
+    said, installs = dry_run.index("a minute or two"), dry_run.index("-m venv")
     assert said < installs
+
+
+def test_make_run_installs_no_packages_of_the_tests(dry_run: str) -> None:
+    assert "'.[page,recording,simulation]'" in dry_run
+    assert "'.[test]'" not in dry_run
 
 
 def test_make_run_serves_phones_too(dry_run: str) -> None:
