@@ -39,7 +39,7 @@ from tests.runs.replay.stories import slim
 ROOT = Path(__file__).parents[1]
 ROOMS = ("config", "hal", "behaviors", "simbridge", "kurt2rt", "tests")
 SOURCES = (".py", ".yaml", ".dbc", ".js")
-DOCUMENTS = sorted([ROOT / "README.md", ROOT / "CHANGELOG.md", *ROOT.glob("docs/*.md")])
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")])
 
 SCHEMAS: dict[str, type[Settings]] = {
     "repertoire": RepertoireSettings,
@@ -531,10 +531,15 @@ def test_name_of_glossary_is_defined_in_its_module(name: str, module: str) -> No
     assert name in defined | {ast.unparse(node.targets[0]) for node in body if isinstance(node, ast.Assign)}
 
 
-def test_readme_links_every_document() -> None:
-    linked = set(re.findall(r"\]\(([^)\s#]+)\)", (ROOT / "README.md").read_text(encoding="utf-8")))
-    here = {str(path.relative_to(ROOT)) for path in DOCUMENTS} - {"README.md"} | {"CITATION.cff"}
-    assert here <= linked
+def links_of(document: Path) -> set[Path]:
+    links = re.findall(r"\]\(([^)\s#]+)", document.read_text(encoding="utf-8"))
+    return {(document.parent / link).resolve() for link in links if "://" not in link}
+
+
+def test_each_document_is_two_clicks_from_the_readme() -> None:
+    first = links_of(ROOT / "README.md")
+    near = first | set().union(*(links_of(path) for path in first if path.suffix == ".md"))
+    assert {*DOCUMENTS, ROOT / "CITATION.cff"} <= near | {ROOT / "README.md"}
 
 
 def test_citation_names_this_version() -> None:
