@@ -1,6 +1,6 @@
 """Train an agent to follow walls with PPO of stable-baselines3, and examine it next to its teacher's policy.
 
-pip install 'kurt2rt[fast,gym]' stable-baselines3, then: python train_with_ppo.py --steps 50000
+pip install '.[fast,gym]' stable-baselines3, then: python train_with_ppo.py --steps 50000
 """
 
 import argparse

@@ -60,7 +60,7 @@ def main() -> None:
         extra = extra_for(error)
         if extra is None:
             raise
-        _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")
+        _complain(f"{error.name} is not installed; this command needs it: pip install '.[{extra}]' in kurt2rt's folder")
     except typer.Abort:
         _complain("aborted; nothing more was done", ExitCode.FAILED)
     except USAGE_ERROR as error:

@@ -16,4 +16,5 @@ def extra_named() -> Iterator[None]:
         extra = extra_for(error)
         if extra is None:
             raise
-        raise UserError(f"{error.name} is not installed", where=extra, do=f"install kurt2rt[{extra}]") from error
+        remedy = f"pip install '.[{extra}]' in kurt2rt's folder"
+        raise UserError(f"{error.name} is not installed", where=extra, do=remedy) from error

@@ -126,7 +126,7 @@ def test_cluster_without_dask_names_its_extra(
     for name in [name for name in sys.modules if name.startswith("kurt2rt.experiments.study.cluster")]:
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "distributed", None)
-    assert "pip install 'kurt2rt[studies]'" in kurt2rt.refused(*words)
+    assert "pip install '.[studies]' in kurt2rt's folder" in kurt2rt.refused(*words)
 
 
 def test_broken_file_of_dask_is_one_line_that_names_it(

@@ -90,21 +90,23 @@ def test_robot_without_extras_drives_and_says_it_is_not_recorded(said: dict[str,
     assert said["help"].exit_code == 0
     assert said["drive"].exit_code == 0, said["drive"].err
     assert "the run is not recorded" in said["drive"].out
-    assert "pip install 'kurt2rt[recording]'" in said["drive"].out
+    assert "pip install '.[recording]' in kurt2rt's folder" in said["drive"].out
 
 
 @pytest.mark.parametrize("extra", REFUSED)
 def test_command_without_its_extra_names_the_extra(extra: str, said: dict[str, Said]) -> None:
     for line in REFUSED[extra]:
         assert said[line].exit_code == 2, line
-        assert said[line].err.endswith(f"this command needs it: pip install 'kurt2rt[{extra}]'\n"), said[line]
+        assert said[line].err.endswith(f"this command needs it: pip install '.[{extra}]' in kurt2rt's folder\n"), said[
+            line
+        ]
 
 
 def test_study_without_scipy_is_refused_before_its_jobs(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy", None)
     monkeypatch.delitem(sys.modules, "scipy.special", raising=False)
     line = kurt2rt.refused("lesson", "--seeds", "0-1", "--out", "lessons")
-    assert line.endswith("pip install 'kurt2rt[studies]'")
+    assert line.endswith("pip install '.[studies]' in kurt2rt's folder")
     assert not Path("lessons").exists()
 
 

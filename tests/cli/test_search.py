@@ -72,7 +72,7 @@ def test_search_without_optuna_names_its_extra(
     for name in [name for name in sys.modules if name.startswith("kurt2rt.experiments.search")]:
         monkeypatch.delitem(sys.modules, name)
     line = kurt2rt.refused("study", "search", tiny_search(tmp_path), *WORDS)
-    assert "pip install 'kurt2rt[studies]'" in line
+    assert "pip install '.[studies]' in kurt2rt's folder" in line
 
 
 def test_tiny_search_is_a_valid_file(tmp_path: Path) -> None:

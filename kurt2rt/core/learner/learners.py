@@ -47,7 +47,7 @@ def find_learner(name: str) -> LearnerFactory:
     """
     try:
         if name in _BUILTIN:
-            made = import_target(_BUILTIN[name], f"learner {name}", "pip install 'kurt2rt[studies]'")
+            made = import_target(_BUILTIN[name], f"learner {name}", "pip install '.[studies]' in kurt2rt's folder")
         else:
             made = LEARNERS.find(name)
     except PluginError as error:

@@ -32,4 +32,4 @@ def test_run_without_the_extra_names_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "rosbags.interfaces", None)
     words = ("run", "--robot-settings", "turtlebot", "--task", "turtlebot/circle", "--bus", free_locator())
-    assert CommandLine(monkeypatch, capfd).refused(*words).endswith("pip install 'kurt2rt[ros]'")
+    assert CommandLine(monkeypatch, capfd).refused(*words).endswith("pip install '.[ros]' in kurt2rt's folder")
