@@ -7,6 +7,7 @@
 # make equal-lessons  1000 whole lessons in the batch and on the CAN bus; SHARD=2/8 gives an eighth of them
 # make studies  the searches of config/searches again, from which settings come: hours
 # make wheelhouse  all packages of a robot as wheels, for x86-64 and aarch64, to install without a network: a minute
+# make site   the documentation as a site in site/, whose index.html opens without a network: 10 seconds
 # make bench  what the runtime takes on this machine, next to references of the same run: 7 minutes; ARGS=--quick does a tenth
 # make hil    the tests on the kernel's own CAN, in a machine that has it; HIL=--install installs Debian packages for it
 PYTHON ?= python3
@@ -20,7 +21,7 @@ COMPILED := $(VENV)/compiled
 # All workers and the programs they start would each compile all of it anew on a machine that keeps no bytecode.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/pytest
 
-.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies wheelhouse hil bench lint types size clean
+.PHONY: run demo test trust test-deep guard mutants kills equal-lessons studies wheelhouse hil bench site lint types size clean
 
 run: $(INSTALLED)
 	$(BIN)/kurt2rt run --phone $(ARGS)
@@ -99,6 +100,10 @@ hil: $(TESTED)
 
 bench: $(TESTED)
 	$(BIN)/python -m tests.bench $(ARGS)
+
+# A link that leads nowhere is a failure.
+site: $(TESTED)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 lint: $(TESTED)
 	$(BIN)/ruff check .
