@@ -21,8 +21,7 @@ if TYPE_CHECKING:
 
 _CHANNEL, _NO_TEACHER = "channel", "none"
 _NOT_RECORDED = (
-    "the run is not recorded: foxglove-sdk is not installed; pip install '.[recording]' in kurt2rt's folder, "
-    "or give --no-record"
+    "the run is not recorded without foxglove-sdk; pip install '.[recording]' in kurt2rt's folder, or give --no-record"
 )
 
 

@@ -16,5 +16,4 @@ def extra_named() -> Iterator[None]:
         extra = extra_for(error)
         if extra is None:
             raise
-        remedy = f"pip install '.[{extra}]' in kurt2rt's folder"
-        raise UserError(f"{error.name} is not installed", where=extra, do=remedy) from error
+        raise UserError(f"{error.name} is not installed", where=extra, do=f"install the extra {extra!r}") from error

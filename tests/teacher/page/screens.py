@@ -1,4 +1,4 @@
-"""What holds on each screen: readable in the sun, touched with a thumb, STOP and GO in reach."""
+"""Rules of each screen: readable in the sun, touched with a thumb, STOP and GO in reach."""
 
 from collections.abc import Callable
 

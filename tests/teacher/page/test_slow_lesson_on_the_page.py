@@ -11,7 +11,7 @@ speed.dispatchEvent(new Event('input'));
 _CHOSEN = "return document.querySelector('#lesson-speed').value;"
 
 
-def test_lesson_speed_is_chosen_and_shown_in_place_of_the_phase_s_name(a_lesson: Lesson) -> None:
+def test_chosen_lesson_speed_is_shown_in_place_of_the_phase(a_lesson: Lesson) -> None:
     a_lesson.begin(standing=Standing(), phase=2)
     a_lesson.phone.touch("#tab-more")
     assert a_lesson.phone.run(_CHOSEN) == "100"
