@@ -199,15 +199,6 @@ def test_place_without_name_is_named_by_its_rla() -> None:
     assert not again.run().decision.asking
 
 
-def test_pursue_overrides_the_plan_until_the_next_junction(block: Block) -> None:
-    block.teach("straight_on", next_to=True)
-    block.seek()
-    assert block.run().behaviour == "turn_left"
-    assert block.say(Pursue, "straight_on").behaviour == "straight_on"
-    block.go()
-    assert block.plan().course is GoalStatus.LOST
-
-
 def test_a_stop_goes_before_all(block: Block) -> None:
     block.seek()
     assert block.say(Stop).decision.cause is DecisionCause.STOPPED

@@ -17,12 +17,10 @@ from kurt2rt.core.teaching.commands import (
     Correct,
     DeleteRla,
     Drive,
-    HandOver,
     Pursue,
     ReplaceAction,
     Resume,
     Stop,
-    Take,
     Teach,
     Undo,
 )
@@ -30,7 +28,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.channel_fixture import ROBOT, WideRobot
-from tests.core.rla.helpers import created, deleted, replaced
+from tests.core.rla.helpers import created, deleted
 
 STREETS = load_task("streets")
 ROUTE = STREETS.model_copy(update={"mid": "turns"})
@@ -265,18 +263,6 @@ def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
     assert record.decision.cause is DecisionCause.BLIND
 
 
-def test_stop_with_mid_level_holds_and_next_teacher_continues(town: Town) -> None:
-    record = town.run(Stop("s", "Ann"))
-    assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, DecisionCause.STOPPED)
-    assert told(town.run(another_way("turn_left"))).accepted
-    assert town.run().decision.cause is DecisionCause.STOPPED
-    town.run(HandOver("h", "Ann"))
-    town.run(Take("take", "Bob"))
-    assert town.run().decision.cause is DecisionCause.STOPPED
-    record = town.run(Resume("go", "Bob"))
-    assert (record.behaviour, record.decision.driving) == ("turn_left", True)
-
-
 def test_manual_drive_passes_junctions_without_counting_uses(town: Town) -> None:
     uses = dict(town.runtime.statistics.uses)
     town.robot.counts = OPEN
@@ -313,38 +299,14 @@ def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
     assert (4, 4) not in saved.transitions
 
 
-def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
-    town.junction(1)
-    town.runtime.reposition()
-    town.run()
-    assert not town.history
-    town.way_to_the_first_junction()
-    record = town.junction()
-    assert record.mid is not None
-    assert record.mid.rla_id == 4
-    assert town.history == ("straight",)
-    assert town.runtime.snapshot().uses[4] == 2
-    assert (4, 4) not in town.runtime.snapshot().transitions
-
-
 @pytest.mark.parametrize(
     ("of_an_older_task", "lesson", "fields"),
     [
         ((created(9, (0.0,) * LENGTH, "fly", level=MID), deleted(9)), "deletion-9", {"rla": 9, "level": MID}),
         (
-            (created(9, (0.0,) * LENGTH, "fly", level=MID), replaced(9, "turn_left", "fly")),
-            "correction-9",
-            {"rla": 9, "level": MID},
-        ),
-        (
             (created(9, (0.0,) * 72, "fly", behaviour="turn_left"), deleted(9)),
             "deletion-9",
             {"rla": 9, "behaviour": "turn_left"},
-        ),
-        (
-            (created(9, (0.0,) * 72, "fly", behaviour="soaring"), deleted(9)),
-            "deletion-9",
-            {"rla": 9, "behaviour": "soaring"},
         ),
     ],
 )

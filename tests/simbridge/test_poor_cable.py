@@ -7,14 +7,13 @@ from contextlib import closing, contextmanager
 import pytest
 
 from hal.bus import CONTROL_ID, CanBus
-from hal.frame import Frame
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.can_line import CanLine
 from simbridge.kurt2_simulation import Kurt2Simulation
-from tests.faults.cable import SOUND, Cable, CableFaults, CableInterface
+from tests.faults.cable import SOUND, Cable, CableFaults
 from tests.simbridge.rig import CODEC, ROBOT
 
 TURN = WheelSpeeds(0.2, -0.2)
@@ -123,35 +122,6 @@ def test_robot_over_a_cable_of_many_ticks_stands() -> None:
         drive.until(1.0)
         assert drive.grant.reasons == (GuardReason.BUS_BLOCKED,)
         assert drive.simulation.simulated_robot.wheel_speeds == (0.0, 0.0)
-
-
-class Ends:
-    """A sender and two receivers, a millisecond of time between frames."""
-
-    def __init__(self, faults: CableFaults) -> None:
-        self.now_s = 0.0
-        cable = Cable(lambda: self.now_s, faults, random.Random(7))
-        self.sender, *self.receivers = (cable.open() for _ in range(3))
-
-    def send(self, frames: int, frame_id: int = 0x09) -> None:
-        for number in range(frames):
-            self.sender.send(Frame(frame_id, number.to_bytes(8, "big")))
-            self.now_s += 0.001
-
-
-def heard(end: CableInterface) -> list[int]:
-    """Return the numbers of the frames that wait at an end."""
-    return [int.from_bytes(frame.data, "big") for frame in iter(lambda: end.recv(0), None)]
-
-
-def test_frame_loss_is_confirmed_and_drawn_for_each_receiver() -> None:
-    ends = Ends(CableFaults(lost=0.5))
-    ends.send(1000)
-    assert heard(ends.sender) == list(range(1000))
-    first, second = (set(heard(end)) for end in ends.receivers)
-    assert all(450 < len(each) < 550 for each in (first, second))
-    assert first - second
-    assert second - first
 
 
 @pytest.mark.deep

@@ -26,7 +26,6 @@ from kurt2rt.core.decision.standing_text import (
     standing_headline,
 )
 from kurt2rt.core.teaching.commands import Teach, Watch
-from kurt2rt.core.teaching.question import FeatureDifference, Question
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
 from kurt2rt.service.post_tick import ProgramStatus
@@ -36,7 +35,6 @@ from kurt2rt.teacher.page.views import state_view
 from kurt2rt.teacher.scripted.channel_teacher import view_of_state
 from kurt2rt.teacher.terminal.terminal_text import build_question, expects_answer, format_state
 from tests.channel.channel_fixture import ChannelFixture
-from tests.channel.states import state
 
 FORWARD = WheelSpeeds(0.3, 0.3)
 BY_RLA = Decision(FORWARD, DecisionCause.RLA, "forward", 1, None, True)
@@ -182,16 +180,3 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert picture.question == ()  # the situation is known: nothing differs
     assert not expects_answer(picture)  # an action that is typed corrects the RLA
     assert view_of_state(picture).asking  # and so a scripted teacher answers
-
-
-def test_a_doubting_robot_asks_for_an_answer() -> None:
-    doubts = Standing(StandReason.DOUBTS, asks=True)
-    told = {"nearest": 1, "nearest_action": "forward", "distance": 90.0, "radius": 900.0, "doubt": 3.4}
-    picture = state(cause="doubt", standing=doubts, question=(FeatureDifference("s9", 440.0, 108.0),), **told)
-    assert decode_state(encode_state(picture)) == picture
-    asked = build_question(picture)
-    assert isinstance(asked, Question)
-    assert (asked.doubts, asked.nearest_rla, asked.action) == (True, 1, "forward")
-    assert asked.differing == picture.question
-    assert expects_answer(picture)
-    assert view_of_state(picture).asking

@@ -3,8 +3,6 @@
 import pytest
 
 from kurt2rt.core.decision.errors import UnknownBehaviourError
-from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
 from tests.core.rla.helpers import created, deleted, replaced, undone
 
@@ -48,24 +46,6 @@ def test_mid_level_lesson_counts_at_once() -> None:
     small.system.apply(undone("deletion-4"))
     small.system.apply(undone("correction-4"))
     assert small.commanded().behaviour == "turn_left"
-
-
-def test_mid_level_unchanged_situation_no_search(monkeypatch: pytest.MonkeyPatch) -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    looked_up = 0
-    match = RlaSystem.match
-
-    def counting(*args: object, **options: object) -> Match | None:
-        nonlocal looked_up
-        looked_up += options.get("level") == "mid"
-        return match(*args, **options)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(RlaSystem, "match", counting)
-    decided = [small.commanded() for _ in range(50)]
-    assert looked_up == 1
-    assert all(each is decided[0] for each in decided)
-    small.commanded(1.0)
-    assert looked_up == 2
 
 
 def test_mid_level_override_lasts_to_next_junction() -> None:

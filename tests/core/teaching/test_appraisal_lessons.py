@@ -9,11 +9,9 @@ from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
-from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Appraise, CommandResult, ReplaceAction, Reward, Undo
 from tests.core.critic.helpers import appraisal
-from tests.core.helpers import SmallLevel, situation
+from tests.core.helpers import situation
 from tests.core.reinforcement.helpers import CALM, CRASHED, QUICK, Track
 from tests.core.rla.helpers import created
 from tests.teacher.helpers import delete
@@ -140,12 +138,3 @@ def test_an_appraisal_does_not_end_the_action_that_is_held() -> None:
     robot.go(1.0, 2)
     assert appraise(robot, "good").lesson
     assert robot.go(3.0).cause is DecisionCause.HELD
-
-
-def test_a_robot_without_a_critic_says_so() -> None:
-    small = SmallLevel()
-    school = CommandHandler(
-        small.level, ControlAuthority(small.actions, attended=False), insert_beyond_share=0.5, handled_command_ids=()
-    )
-    result, events = school.handle(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
-    assert (result.outcome, events) == (Outcome(RefusalCode.NO_CRITIC), ())

@@ -22,7 +22,6 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.experiments.helpers import ROBOT, short_task
 from tests.knowledge.lessons import (
     BINDING,
-    CIRCUMSTANCES,
     STAMP,
     WITH_CRITIC,
     append,
@@ -120,11 +119,6 @@ def test_open_missing_level_is_added_and_extra_level_kept(path: Path) -> None:
     ("features", "differing"),
     [
         (LevelFeatures("0", ("left_m", "speed_m_s", "bump")), [("file", "'bumped'"), ("robot", "'bump'")]),
-        (
-            LevelFeatures("0", CIRCUMSTANCES.feature_names),
-            [],
-        ),
-        (LevelFeatures("fedcba", CIRCUMSTANCES.feature_names[::-1]), []),
     ],
 )
 def test_open_other_level_features_are_refused_with_difference(

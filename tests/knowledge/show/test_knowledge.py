@@ -77,29 +77,6 @@ def test_render_knowledge_has_teacher_time_and_former_action(path: Path) -> None
     assert second[:7] == ["2", "left", "forward", when, "2", "200", "7"]
 
 
-def test_render_knowledge_counts_rewards_undos_and_sessions(path: Path) -> None:
-    events: list[TeachingEvent] = [
-        *session(6000, "morning"),
-        *(created(number) for number in (1, 2, 3, 4)),
-        rewarded(1, -1, "blame"),
-        *(rewarded(1, 1, f"praise-{number}") for number in range(3)),
-        rewarded(2, -1),
-        *session(1234, "evening"),
-        deleted(3),
-        undone("praise-2"),
-        undone("delete-3", teacher="Ann"),
-        undone("create-4"),
-    ]
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(event, STAMP) for event in events])
-        lines = printed(render_knowledge(journal))
-
-    assert numbers(lines[1])[:6] == [3, 7, 0, 1, 5, 3]
-    assert re.search(r"Ann, Joachim\b.* Hertha,", lines[1])
-    assert numbers(lines[1])[-3:] == [2, 1, 12]
-    assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]
-
-
 def test_render_knowledge_has_withdrawals_values_appraisals(path: Path) -> None:
     critics = replace(rewarded(1, -1), origin=replace(rewarded(1).origin, teacher=CRITIC))
     events: list[TeachingEvent] = [

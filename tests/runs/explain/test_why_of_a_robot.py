@@ -3,11 +3,9 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.picture import draw_why
@@ -76,31 +74,6 @@ def test_why_tells_teacher_time_and_usage(taught_lesson: Lesson) -> None:
     assert (story.rla_id, story.action, act.changes) == (2, "bear_right", True)
     assert (act.teacher, act.phase, act.tick, act.stamp[:19]) == ("Ann", 2, 122, "2026-11-22T03:10:05")
     assert (story.uses, story.uses_since) == (1, 1)
-
-
-def test_counterfactual_is_the_least_change_of_its_reading(
-    taught_lesson: Lesson,
-) -> None:
-    facts, runtime = taught_lesson.facts, taught_lesson.runtime
-    extract = FeatureExtractor(runtime.definition, ROBOT.infrared.names)
-
-    def says(sensor: str, counts: int) -> str | None:
-        place = ROBOT.infrared.names.index(sensor)
-        changed = (*facts.infrared_counts[:place], counts, *facts.infrared_counts[place + 1 :])
-        vector = np.array(facts.basic.vector)
-        vector[: len(vector) // 2] = extract(changed, facts.decided)
-        match = runtime.level.system.match(vector)
-        return match.rla.action if match is not None and match.known else None
-
-    found = taught_lesson.counterfactuals
-    assert found
-    for tip in found:
-        step = 1 if tip.needed_counts > tip.counts else -1
-        assert says(tip.sensor, tip.counts) == facts.action
-        assert says(tip.sensor, tip.needed_counts) == (None if tip.rla is None else tip.rla.action)
-        assert says(tip.sensor, tip.needed_counts - step) == facts.action
-    changes = [abs(tip.needed_counts - tip.counts) for tip in found]
-    assert changes == sorted(changes)
 
 
 def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:

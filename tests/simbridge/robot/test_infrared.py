@@ -48,20 +48,6 @@ def test_sensors_look_in_the_directions_of_the_table() -> None:
             assert rig.reading(sensor.name) == pytest.approx(294, abs=1)
 
 
-def test_sensors_measure_at_periods_of_their_own(rig: Rig) -> None:
-    rig.robot.place(facing_wall(0.15))
-    changes = {"s9": 0, "s10": 0, "s11": 0}
-    before = dict.fromkeys(changes, 0)
-    for _ in range(400):
-        rig.step(STAND)
-        for sensor in changes:
-            changes[sensor] += rig.reading(sensor) != before[sensor]
-            before[sensor] = rig.reading(sensor)
-    # 4 s at 28.7 to 47.9 ms, less the few new measurements that happen to equal the last.
-    assert all(70 <= count <= 140 for count in changes.values())
-    assert len(set(changes.values())) > 1
-
-
 @pytest.mark.parametrize(("rays", "sees"), [(1, False), (3, True)])
 def test_three_rays_see_a_wire_that_one_ray_misses(rays: int, sees: bool) -> None:
     wire = post(2.0 + 0.217 + 0.4, 2.0 + 0.012, 0.004)

@@ -100,13 +100,3 @@ def test_thin_wall_stops_the_robot_at_any_speed(speed_cm_s: int) -> None:
             rig.drive(speed_cm_s, speed_cm_s, 3.0)
             assert rig.robot.pose.x_m < 2.99 - ROBOT.geometry.outline_width_m / 2 + 0.01
             assert 0.0 < rig.robot.pose.y_m < 4.0
-
-
-def test_place_stops_the_wheels_and_counts_nothing(rig: Rig) -> None:
-    rig.drive(30, 30, 1.0)
-    laps = rig.robot.laps
-    rig.robot.place(Pose(1.0, 3.0, 1.0))
-    rig.step()
-    assert rig.robot.pose[:2] == pytest.approx((1.0, 3.0), abs=0.001)
-    assert abs(rig.speed_m_s) < 0.02
-    assert (rig.robot.collisions, rig.robot.laps) == (0, laps)
