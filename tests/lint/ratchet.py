@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from tests.lint.last_bits import last_bits_findings
-from tests.lint.rules import RUFF_RULES, Finding, python_findings, text_findings
+from tests.lint.rules import RUFF_RULES, Finding, python_findings, sentence_findings, text_findings
 
 ROOT = Path(__file__).parents[2]
 TABLE = Path(__file__).parent / "allowed.toml"
@@ -23,15 +23,17 @@ Counts = Mapping[tuple[str, str], int]
 def folder_of(path: str) -> str:
     """Return the key of a path in the table: two levels of kurt2rt and tests, one of the others."""
     folders = path.split("/")[:-1]
-    return "/".join(folders[: 2 if folders[:1] in (["kurt2rt"], ["tests"]) else 1]) or "."
+    return "/".join(folders[: 2 if folders[:1] in (["kurt2rt"], ["tests"]) else 1]) or path
 
 
 def findings(root: Path) -> Iterator[Finding]:
     """Yield all findings of a tree. Raises SyntaxError, and CalledProcessError if ruff fails."""
     files = [path for room in _ROOMS for path in (root / room).rglob("*") if path.suffix in _SUFFIXES]
-    for path in [root / "README.md", *sorted(files)]:
+    for path in [*sorted(root.glob("*.md")), *sorted(files)]:
         name, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
         yield from text_findings(name, text)
+        if path.suffix == ".md":
+            yield from sentence_findings(name, text)
         if path.suffix == ".py":
             yield from python_findings(name, text)
             yield from last_bits_findings(name, text)

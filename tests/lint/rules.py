@@ -17,6 +17,7 @@ _SHAPE = re.compile(r"\bshapes?\b|\([\w*+ ]+,(?: *[\w*+ ]+,?)* *\)")  # "shape",
 _ARRAY = re.compile(r"\b(?:NDArray|ndarray|Floats|Flags|Vector|Shades|Ring|Points)\b")
 _QUESTION_TEST = re.compile(r"test_(?:what|who|whose|where|how|when)_")
 LONGEST_TEST_NAME = 60
+LONGEST_SENTENCE = 22
 _BLOCKS = ("body", "handlers", "orelse", "finalbody", "cases")
 """Fields of a syntax node that hold statements, in the order of the text."""
 RUFF_RULES = ("D102", "D205", "D209", "D400", "D401", "D403")
@@ -43,6 +44,16 @@ def text_findings(path: str, text: str) -> Iterator[Finding]:
     for number, line in enumerate(text.splitlines(), 1):
         for word in _BANNED.findall(line):
             yield Finding(path, number, "banned-word", word.lower())
+
+
+def sentence_findings(path: str, text: str) -> Iterator[Finding]:
+    """Yield each sentence of a Markdown text that has more than LONGEST_SENTENCE words; tables and code have none."""
+    blank = re.sub(r"^```.*?^```$", lambda code: "\n" * code[0].count("\n"), text, flags=re.MULTILINE | re.DOTALL)
+    plain = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"^(?:\||#|    ).*$", "", blank, flags=re.MULTILINE))
+    for sentence in re.finditer(r"(?:(?!\n\s*\n|\n *[-*\d]\.? |[.!?:]\*{0,2}\s).)+", plain, re.DOTALL):
+        if len(words := sentence[0].split()) > LONGEST_SENTENCE:
+            start = sentence.start() + len(sentence[0]) - len(sentence[0].lstrip())
+            yield Finding(path, plain.count("\n", 0, start) + 1, "long-sentence", " ".join(words[:8]))
 
 
 def python_findings(path: str, text: str) -> Iterator[Finding]:

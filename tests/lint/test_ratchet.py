@@ -13,7 +13,7 @@ PROPERTY = '"""Module."""\n\n\nclass X:\n    """Thing."""\n\n    @property\n    
 @pytest.mark.parametrize(
     ("path", "folder"),
     [
-        ("README.md", "."),
+        ("README.md", "README.md"),
         ("docs/handbook.md", "docs"),
         ("hal/can/bus.py", "hal"),
         ("kurt2rt/core/tick.py", "kurt2rt/core"),
@@ -47,7 +47,7 @@ def test_findings_of_tree_are_counted_by_folder(tmp_path: Path) -> None:
     (tmp_path / "README.md").write_text(WORDS["banned"][0])
     (tmp_path / "hal" / "x.py").write_text('"""What there is."""\n')
     (tmp_path / "hal" / "x.bin").write_bytes(b"\xff")
-    assert counted(findings(tmp_path)) == {(".", "banned-word"): 1, ("hal", "first-word"): 1}
+    assert counted(findings(tmp_path)) == {("README.md", "banned-word"): 1, ("hal", "first-word"): 1}
 
 
 @pytest.mark.parametrize(("name", "found"), [("test_x", 0), ("tested_x", 1)])
