@@ -438,15 +438,6 @@ def test_printed_demos_of_streets_name_one_seed() -> None:
     assert {seed_of(line) for line in printed_demos() if "streets" in line} == {2}
 
 
-def test_my_task_differs_from_the_shipped_one_by_its_teacher(tmp_path: Path) -> None:
-    mine, shipped = load_task(str(printed_task(PRINTED_TASKS[0], tmp_path))), load_task("wall_following")
-    for section in ("what", "learning", "plain", "policy", "course", "exam", "paper"):
-        assert getattr(mine, section) == getattr(shipped, section)
-    quick = shipped.teaching.teacher
-    assert mine.teaching.teacher == quick.model_copy(update={"reaction_s": 2.0})
-    assert mine.teaching.model_copy(update={"teacher": quick}) == shipped.teaching
-
-
 def printed_demos() -> set[str]:
     """Return every `kurt2rt demo ...` of the documents as it stands there, without its output folder."""
     texts = (path.read_text(encoding="utf-8") for path in DOCUMENTS)

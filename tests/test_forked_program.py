@@ -2,7 +2,6 @@
 
 import os
 import signal
-import sys
 from pathlib import Path
 
 from tests.cli.helpers import started
@@ -45,20 +44,3 @@ def test_it_can_be_killed_and_others_live_on(tmp_path: Path) -> None:
         assert other.poll() is None
         other.terminate()
         assert other.wait(60) == -signal.SIGTERM
-
-
-def test_uncaught_error_of_a_forked_program_prints_a_traceback(tmp_path: Path) -> None:
-    (tmp_path / "fails.py").write_text("1 / 0", encoding="utf-8")
-    with started("fails", folder=tmp_path) as forked, started("fails", folder=tmp_path, fresh=True) as fresh:
-        for program in (forked, fresh):
-            said, complaints = program.communicate()
-            assert (said, program.returncode) == ("", 1)
-            assert complaints.endswith("ZeroDivisionError: division by zero\n")
-
-
-def test_it_does_not_change_this_program(tmp_path: Path) -> None:
-    (tmp_path / "changes.py").write_text("import os, sys; os.chdir('/'); sys.path.clear()", encoding="utf-8")
-    before = Path.cwd(), list(sys.path)
-    with started("changes", folder=tmp_path) as program:
-        assert program.wait(60) == 0
-    assert (Path.cwd(), list(sys.path)) == before

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.many_runs import Run, parse, row
+from tests.many_runs import Run, parse
 
 WELL = "........ [100%]\n8190 passed, 2 skipped in 250.10s (0:04:10)\n"
 ILL = "FAILED tests/a.py::test_b[c] - AssertionError\nERROR tests/d.py::test_e\n1 failed, 7 passed, 1 error in 3.00s\n"
@@ -18,7 +18,3 @@ ILL = "FAILED tests/a.py::test_b[c] - AssertionError\nERROR tests/d.py::test_e\n
 )
 def test_parse_output_counts_failures_and_broken_runs(output: str, exit_code: int, run: Run) -> None:
     assert parse(output, exit_code, 3.0) == run
-
-
-def test_row_names_the_failed_tests() -> None:
-    assert row(3, 4, Run(7, 1, 12.4, ("tests/a.py::test_b",))) == "| 3 | 4 | 7 | 1 | 12 | `tests/a.py::test_b` |"

@@ -13,21 +13,19 @@ import pytest
 import yaml
 
 from behaviors.policies.policy import PolicySettings
-from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
-from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
+from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import Settings, SettingsError, content_of, load_settings
 from hal.settings_by_kind import find_kind
 from hal.settings_files import find_config
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
-from kurt2rt.core.perception.definition import SituationDefinition, load_situation
+from kurt2rt.core.perception.definition import SituationDefinition
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teacher_settings import TeacherProfile
 from kurt2rt.experiments.search.settings import SearchSettings
-from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 
 SCHEMAS: dict[str, type[Settings]] = {
@@ -65,15 +63,6 @@ def test_every_shipped_file_loads(kind: str) -> None:
     assert paths
     for path in paths:
         load_settings(path, SCHEMAS[kind])
-
-
-def test_shipped_files_are_found_by_name_and_fit_together() -> None:
-    robot = load_kurt2("kurt2")
-    task = load_task("wall_following")
-    assert robot.can.speed_mode is SpeedMode.SPEED_CM
-    assert load_situation(task.situation, robot.infrared.names).dimensions == 72
-    assert "forward" in load_repertoire(task.repertoire, robot)
-    assert {load_world(world, robot).name for world in task.exam.worlds} == {"A", "B", "C"}
 
 
 def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) -> None:
@@ -338,14 +327,6 @@ def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None
     path = tmp_path / "task.yaml"
     path.write_text(f"{TASK}mid: turns\n")
     assert refusal(path, TaskSettings).startswith("mid: ")
-
-
-def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
-    shared: dict[str, set[tuple[str, frozenset[str]]]] = {}
-    for path in sorted((CONFIG_DIR / "tasks").glob("*.yaml")):
-        task = load_task(path.stem)
-        shared.setdefault(task.system_name, set()).add((task.situation, frozenset(task.behaviours)))
-    assert all(len(taught) == 1 for taught in shared.values()), shared
 
 
 @pytest.mark.parametrize("key", ["learning.radius", "learning"])

@@ -75,33 +75,6 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
     assert actions_in(copy)[0] == actions_in(knowledge)[0] == "stand"
 
 
-@pytest.mark.deep
-def test_run_starts_and_ends_scripted_teacher_and_page(tmp_path: Path) -> None:
-    words = ("run", "--auto", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
-    with running(*words, folder=tmp_path) as robot:
-        said = [robot.wait_for("http://127.0.0.1:"), robot.wait_for("RLAs | ")]
-        while "  0 RLAs" in said[-1]:
-            said.append(robot.wait_for("RLAs | "))
-        end = robot.end(signal.SIGTERM)
-    assert (end.exit_code, end.err) == (0, "")
-    assert "/pair?token=" in said[0]
-    assert actions_in(tmp_path / "mine.knowledge")
-
-
-@pytest.mark.deep
-def test_the_terminal_and_the_page_are_open_side_by_side(tmp_path: Path) -> None:
-    words = ("run", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
-    with running(*words, folder=tmp_path) as robot:
-        port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
-        robot.wait_for("/pair?token=")
-        with running("teach", "--terminal", "--port", port, folder=tmp_path) as person:
-            person.wait_for("terminal teaches")
-            person.type("quit")
-            person.wait_for("the robot has no teacher now")
-        end = robot.end(signal.SIGTERM)
-    assert (end.exit_code, end.err) == (0, "")
-
-
 def test_the_page_behind_a_proxy_is_opened_at_the_proxys_address(tmp_path: Path) -> None:
     words = ("teach", "--page-port", "0", "--port", "9", "--public-address", "https://robot.example")
     with running(*words, folder=tmp_path) as page:
@@ -129,18 +102,6 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
     assert short_text(Standing(StandReason.UNSAVED)) in line
     assert f"mine.knowledge: {KnowledgeCode.DISK_FAILS.what}" in line
     person.wait_for("refused: not saved yet; it may still count")
-
-
-@pytest.mark.deep
-def test_full_disk_stops_the_robot_until_there_is_room(tmp_path: Path) -> None:
-    with lesson(tmp_path) as (robot, person, knowledge):
-        fill_the_disk(robot, person, knowledge)
-        limit_files(robot, resource.RLIM_INFINITY)
-        robot.wait_for("back by RLA 1")
-        said = robot.end(signal.SIGINT)
-    assert (said.exit_code, said.err) == (0, "")
-    with Journal.read_only(knowledge) as journal:
-        assert len(journal.events()) == 2
 
 
 @pytest.mark.deep

@@ -1,6 +1,5 @@
 """The line that the program prints once a second tells what is wrong with the robot and what to do."""
 
-import re
 from dataclasses import replace
 
 import pytest
@@ -10,7 +9,6 @@ from hal.guard_reason import GuardReason
 from hal.health import Health
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.standing_text import short_text
-from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import status_line
 from tests.channel.channel_fixture import ChannelFixture
@@ -43,16 +41,6 @@ def test_status_line_of_a_stopped_robot_names_the_stop() -> None:
     status = ProgramStatus(desk.run(), desk.runtime, 0, None, "")
     assert short_text(status.record.standing) in status_line(status, WELL)
     assert status.record.standing.stop == STARTED
-
-
-def test_status_line_names_the_rla_with_the_active_behaviour() -> None:
-    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
-    desk.runtime.active_behaviour.select("turn_left")
-    assert "about turn_left " in status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
-    desk.runtime.handler.authority.attended = False
-    desk.runtime.inbox.put(Teach("t", "Ann", "forward"))
-    line = status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
-    assert re.findall(r"forward|RLA \d+|turn_left|at \d+", line) == ["forward", "RLA 1", "turn_left", "at 0"]
 
 
 def test_status_line_shows_the_error_of_the_knowledge_updater() -> None:

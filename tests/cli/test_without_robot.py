@@ -4,20 +4,10 @@ import os
 import signal
 from pathlib import Path
 
-import pytest
-
-from kurt2rt.channel.security.pairing import ONLOOKER
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.rla.programs import AUTO
 from tests.cli.helpers import CommandLine, running
 from tests.teacher.page.test_teach_command import free_udp_port
-
-
-@pytest.mark.deep  # waits as long as the one below
-def test_why_live_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
-    port = free_udp_port()
-    line = kurt2rt.refused("why", "--live", "--port", str(port))
-    assert line.endswith(f": {no_robot('127.0.0.1', port, ONLOOKER)}")
 
 
 def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:

@@ -50,14 +50,6 @@ def test_level_drives_the_command_unless_it_is_blocked() -> None:
     assert decide(level).wheel_speeds == AHEAD
 
 
-def test_level_starts_a_finished_action_at_the_next_command() -> None:
-    level = CommandedLevel({"twice": TwoSteps()})
-    level.command("twice")
-    assert [decide(level).wheel_speeds for _ in range(3)] == [AHEAD, AHEAD, STANDSTILL]
-    level.command("twice")
-    assert decide(level).wheel_speeds == AHEAD
-
-
 def test_level_goes_on_with_an_unfinished_action() -> None:
     action = TwoSteps()
     level = CommandedLevel({"twice": action})

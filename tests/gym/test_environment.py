@@ -40,11 +40,6 @@ def test_environment_passes_the_checker_without_warning(name: str) -> None:
         check_env(made.unwrapped)
 
 
-def test_environment_in_the_batch_passes_the_checker() -> None:
-    with environment(loop="batch") as made:
-        check_env(made, skip_render_check=True)
-
-
 def test_environment_equal_seeds_give_equal_episodes(env: TaskEnvironment) -> None:
     first, again, other = (follow_teacher(env, 50, seed=seed) for seed in (5, 5, 6))
     assert [step.observation.tobytes() for step in first] == [step.observation.tobytes() for step in again]

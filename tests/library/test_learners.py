@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 import kurt2rt
-from kurt2rt.core.learner.learner import LearnerSetting
 from kurt2rt.core.learner.neighbours import KNearest
 
 
@@ -56,15 +55,6 @@ def test_robot_without_a_learner_has_none(tmp_path: Path) -> None:
         kurt2rt.SimulatedRobot(learner=KNearest, knowledge=saved)
     with pytest.raises(kurt2rt.Error, match="leave out learner or record"):
         kurt2rt.SimulatedRobot(learner=KNearest, record=tmp_path)
-
-
-@pytest.mark.parametrize(("task", "sensors"), [("wall_following", 18), ("school/fleeing", 7)])
-def test_setting_of_a_task_has_the_features_of_its_robot(task: str, sensors: int) -> None:
-    setting = kurt2rt.learner_setting(task, seed=3, gate=0.5)
-    assert isinstance(setting, LearnerSetting)
-    assert (setting.seed, setting.gate) == (3, 0.5)
-    assert setting.dimensions == len(setting.weights) >= 2 * sensors
-    assert "forward" in setting.actions
 
 
 def test_setting_of_an_unknown_task_is_one_clear_error() -> None:

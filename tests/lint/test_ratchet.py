@@ -50,13 +50,6 @@ def test_findings_of_tree_are_counted_by_folder(tmp_path: Path) -> None:
     assert counted(findings(tmp_path)) == {("README.md", "banned-word"): 1, ("hal", "first-word"): 1}
 
 
-@pytest.mark.parametrize(("name", "found"), [("test_x", 0), ("tested_x", 1)])
-def test_test_that_is_inherited_needs_no_docstring(tmp_path: Path, name: str, found: int) -> None:
-    text = PROPERTY.replace("    @property\n", "").replace("def x", f"def {name}")
-    (tmp_path / "x.py").write_text(text.format("self.y = 1"))
-    assert [finding.rule for finding in ruff_findings(tmp_path)] == ["D102"] * found
-
-
 @pytest.mark.parametrize(("statement", "found"), [("return 1", 0), ("self.y = 1", 1)])
 def test_property_without_docstring_may_be_trivial(tmp_path: Path, statement: str, found: int) -> None:
     (tmp_path / "x.py").write_text(PROPERTY.format(statement))

@@ -61,10 +61,6 @@ def test_docstrings_of_all_kinds_are_read(source: str) -> None:
     assert rules(source.format("Answer.")) == []
 
 
-def test_text_after_a_docstring_is_no_docstring() -> None:
-    assert rules('class X:\n    """Answer."""\n    """When asked."""') == []
-
-
 SHAPED = 'def get(row: NDArray[np.float64]) -> int:\n    """Return the row{}."""'
 
 
@@ -115,12 +111,6 @@ def test_constructor_may_name_unit_and_error_in_class_docstring() -> None:
     body = "    def __init__(self, x: float) -> None:\n        raise BusError(x)"
     assert rules(f'class X:\n    """Place in m; raises BusError."""\n{body}') == []
     assert rules(f'class X:\n    """Place."""\n{body}') == ["unit", "raises"]
-
-
-def test_private_functions_need_no_contract() -> None:
-    body = 'def {}(x: float) -> None:\n    """Run."""\n    raise BusError(x)'
-    assert rules(body.format("_run")) == []
-    assert rules("class _X:\n    def run(self, x: float) -> None: ...") == []
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.ros.inbox import Inbox
-from kurt2rt.ros.messages import Header, InvalidMessageError, String, TwistStamped, encode, to_time
+from kurt2rt.ros.messages import InvalidMessageError, String, TwistStamped, encode
 from kurt2rt.ros.port import LocalTopics
 from kurt2rt.ros.settings import RosSettings
 from kurt2rt.ros.topic import topic_of
@@ -40,18 +40,6 @@ def test_inbox_age_is_of_stamp_and_waiting_together() -> None:
     topics.join().publisher(twists).publish(TwistStamped(HEADER, TWIST))  # stamped 0.25 s before its arrival
     clock.now += 0.5
     assert list(inbox.take(lambda _, age_s: age_s)) == [0.75]
-
-
-def test_inbox_own_wall_clock_that_is_set_changes_no_age() -> None:
-    topics, clock = LocalTopics(RosSettings()), SetClock()
-    twists = topic_of("twists", TwistStamped)
-    inbox = Inbox(topics.join(), twists, TwistStamped, clock, one_sender=True)
-    for number in range(3):
-        header = Header(to_time(1_700_000_000.5 + number), "")
-        topics.join().publisher(twists).publish(TwistStamped(header, TWIST))
-        assert list(inbox.take(lambda _, age_s: round(age_s, 2))) == [1.0]
-        clock.now += 1.0
-        clock.wall += 3600.0
 
 
 @pytest.mark.parametrize(("one_sender", "taken"), [(False, 2), (True, 1)])

@@ -64,11 +64,6 @@ def test_sectors_nan_is_passed_over_if_others_measure() -> None:
     assert sum(map(math.isnan, reduce(with_ray(90, 2.0, others_m=math.nan)))) == 23
 
 
-def test_sectors_zero_is_nothing_measured_or_far_as_told() -> None:
-    assert all(map(math.isnan, reduce(scan([0.0] * RAYS))))
-    assert reduce(scan([0.0] * RAYS), zero_is_far=True) == (math.inf,) * 24
-
-
 def test_sectors_scan_of_front_alone_leaves_the_rest_unmeasured() -> None:
     found = reduce(scan([1.0] * 180, first_deg=-90, step_deg=1))
     assert [math.isnan(found[index]) for index in (0, 6, 12, 18)] == [False, False, True, False]

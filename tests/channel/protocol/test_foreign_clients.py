@@ -1,18 +1,13 @@
 """Clients that are not ours: the robot speaks CoAP, Observe and OSCORE as the standards have them."""
 
-import asyncio
-import json
 import secrets
-import shutil
-import subprocess
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
 import aiocoap
 import anyio
-import pytest
 from aiocoap import oscore
 
 from kurt2rt.channel.protocol.codec import decode_answer, decode_state, encode_request
@@ -21,27 +16,6 @@ from kurt2rt.channel.security.pairing import Pairing
 from kurt2rt.core.outcome import ResultCode
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 from tests.patience import PATIENCE_S
-
-_NAMES = ("coap-client", "coap-client-notls", "coap-client-openssl", "coap-client-gnutls")
-_SECONDS = "5"
-_OSCORE_SWITCH = "-E "
-
-
-@pytest.fixture
-def oscore_client() -> str:
-    """Client of libcoap from 4.3.5 on, if built with OSCORE; Debian's is older."""
-    for found in filter(None, map(shutil.which, _NAMES)):
-        usage = subprocess.run([found, "-?"], capture_output=True, text=True, check=False)
-        if _OSCORE_SWITCH in usage.stdout + usage.stderr:
-            return found
-    pytest.skip("no coap-client with OSCORE on PATH (libcoap 4.3.5 or later, built with OSCORE)")
-
-
-async def said(client: str, *arguments: str) -> tuple[str, str]:
-    """Return standard output and standard error of the client."""
-    with anyio.fail_after(PATIENCE_S):
-        done = await anyio.run_process([client, "-B", _SECONDS, *arguments], check=False)
-    return done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
 
 
 def address(at_work: RobotAtWork, path: str) -> str:
@@ -88,50 +62,3 @@ async def test_aiocoap_oscore_client_observes_and_commands(tmp_path: Path) -> No
             assert (taken.code, decode_answer(taken.payload)["code"]) == (aiocoap.CHANGED, ResultCode.TAKEN)
             assert at_work.runtime.handler.authority.teacher == "local"
             looking.observation.cancel()
-
-
-@pytest.fixture
-def conf_of(tmp_path: Path) -> Callable[[Pairing], Path]:
-    """Write a pairing in the form of libcoap."""
-
-    def write(pairing: Pairing) -> Path:
-        read = {
-            key: value
-            for name in ("settings.json", "secret.json")
-            for key, value in json.loads((pairing.device.folder / name).read_text(encoding="utf-8")).items()
-        }
-        keys = {"master_secret": "secret_hex", "master_salt": "salt_hex", "sender_id": "sender-id_hex"}
-        lines = [f'{key},hex,"{read[mine]}"' for key, mine in {**keys, "recipient_id": "recipient-id_hex"}.items()]
-        path = tmp_path / "oscore.conf"
-        path.write_text("\n".join((*lines, "replay_window,integer,32", "")), encoding="utf-8")
-        return path
-
-    return write
-
-
-async def test_libcoap_with_oscore_looks_observes_and_commands(
-    oscore_client: str, conf_of: Callable[[Pairing], Path], tmp_path: Path
-) -> None:
-    async with robot_at_work(tmp_path) as at_work:
-        switch = ("-E", f"{conf_of(at_work.pairing)},{tmp_path / 'sequence'}")
-        out = tmp_path / "state"
-        await said(oscore_client, *switch, "-o", str(out), address(at_work, "/state"))
-        state = decode_state(out.read_bytes())
-        looked: list[int] = []
-        async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(_noted(at_work, looked))
-            _, complaints = await said(oscore_client, *switch, "-s", "2", "-o", str(out), address(at_work, "/state"))
-            looked.append(-1)
-        assert max(looked) == 1
-        assert complaints == ""
-
-        body = tmp_path / "take"
-        body.write_bytes(encode_request(TakeRequest(state.boot, secrets.token_bytes(8), at_work.tick)))
-        await said(oscore_client, *switch, "-m", "post", "-t", "60", "-f", str(body), address(at_work, "/take"))
-        assert at_work.runtime.handler.authority.teacher == "local"
-
-
-async def _noted(at_work: RobotAtWork, looked: list[int]) -> None:
-    while -1 not in looked:
-        looked.append(at_work.channel.site.observers)
-        await anyio.sleep(0.05)

@@ -1,8 +1,8 @@
 """The same command sent again gets the same reply, for as long as anybody may send it."""
 
 from kurt2rt.channel.server.pending_commands import PendingCommands
-from kurt2rt.channel.server.reply import done, refusal
-from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.channel.server.reply import done
+from kurt2rt.core.outcome import Outcome, ResultCode
 
 
 async def test_pending_command_resolves_to_its_reply() -> None:
@@ -14,14 +14,6 @@ async def test_pending_command_resolves_to_its_reply() -> None:
     outcomes.settle("x", done(7, Outcome(ResultCode.RESUMED)))
     assert (await waiting) == done(7, Outcome(ResultCode.RESUMED))
     assert outcomes.get("x") is waiting
-
-
-async def test_the_first_reply_stands() -> None:
-    outcomes = PendingCommands()
-    waiting = outcomes.begin("x")
-    outcomes.settle("x", done(7))
-    outcomes.settle("x", refusal("refused", Outcome(RefusalCode.TOO_MANY), 8))
-    assert waiting.result() == done(7)
 
 
 async def test_pending_command_is_never_dropped() -> None:

@@ -29,20 +29,6 @@ def test_the_trial_changes_nothing_that_lasts() -> None:
     assert set(threading.enumerate()) <= set(threads)
 
 
-def test_check_real_time_priority_asks_for_21_in_its_own_thread() -> None:
-    asked: list[tuple[int, int, int]] = []
-
-    def grant(pid: int, policy: int, parameters: os.sched_param) -> None:
-        assert pid == 0
-        asked.append((threading.get_native_id(), policy, parameters.sched_priority))
-
-    finding = check_real_time_priority(set_scheduler=grant)
-    ((thread, policy, priority),) = asked
-    assert thread != threading.get_native_id()
-    assert (policy, priority) == (os.SCHED_FIFO, 21)
-    assert finding.status is CheckStatus.OK
-
-
 def test_a_refusal_says_how_to_be_granted_it_next_time(tmp_path: Path) -> None:
     def refuse(pid: int, policy: int, parameters: os.sched_param) -> None:
         raise PermissionError(1, f"Operation not permitted: {pid} {policy} {parameters.sched_priority}")

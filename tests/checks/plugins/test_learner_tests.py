@@ -1,12 +1,10 @@
 """The inherited tests of a learner: the RLA system passes, and one that breaks a promise fails the test about it."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from kurt2rt.checks.plugins.learner_tests import LearnerTests, decision_time_ms, made_up
+from kurt2rt.checks.plugins.learner_tests import LearnerTests
 from kurt2rt.core.learner.learner import Learner, LearnerFactory, LearnerSetting, Why
 from kurt2rt.core.learner.rla_learner import RlaLearner
 from tests.core.learner.helpers import SETTING, Parrot
@@ -123,15 +121,3 @@ class Moody(Parrot):
 def test_broken_promise_fails_its_test(learner: LearnerFactory, promise: str) -> None:
     with pytest.raises(AssertionError):
         getattr(Made(learner), f"test_{promise}")()
-
-
-def taking(milliseconds: float) -> Iterator[int]:
-    """Yield times in ns of a clock that goes on by so much in each decision, and fifty times that in the first."""
-    now_ns = 0
-    for place in range(1_000):
-        yield now_ns
-        yield (now_ns := now_ns + round(milliseconds * 1e6) * (50 if place == 0 else 1))
-
-
-def test_time_to_decide_is_the_median_but_for_the_first() -> None:
-    assert decision_time_ms(Parrot(WIDE), made_up(WIDE), taking(0.25).__next__) == pytest.approx(0.25)

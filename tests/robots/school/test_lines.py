@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.byte_port import MemoryPort
-from kurt2rt.robots.school.lines import COUNTERS, NUMBERS, Lines, difference, encode
+from kurt2rt.robots.school.lines import NUMBERS, Lines, encode
 
 NUMBER = st.integers(-9_999_999_999, 9_999_999_999)
 
@@ -62,8 +62,3 @@ def test_lines_are_numbered_and_begin_again() -> None:
     lines = Lines(port, NUMBERS - 1)
     assert [lines.write("brake"), lines.write("brake")] == [NUMBERS - 1, 0]
     assert far_end.read() == encode("brake", NUMBERS - 1) + encode("brake", 0)
-
-
-@given(st.integers(0, COUNTERS - 1), st.integers(-(1 << 31), (1 << 31) - 1))
-def test_difference_of_counters_that_began_again(before: int, change: int) -> None:
-    assert difference((before + change) % COUNTERS, before) == change

@@ -79,24 +79,6 @@ def test_link_lines_of_a_stall_are_as_old_as_they_are() -> None:
     assert ages_s[-1] == pytest.approx(0.0, abs=0.02)
 
 
-@pytest.mark.parametrize("rate", [0.995, 1.005])
-def test_link_clock_that_goes_wrong_makes_no_line_old(rate: float) -> None:
-    far = FarEnd()
-    for second in range(1, 2000):
-        far.sense(round(1000 * rate * second))
-        (ranges, _) = far.link.receive(float(second))
-        assert second - 0.02 < ranges.at_s <= second
-
-
-def test_link_repeated_line_is_junk() -> None:
-    far = FarEnd()
-    far.sense(20)
-    far.sense(20)
-    far.sense(10)
-    assert len(far.link.receive(1.0)) == 2
-    assert far.link.junk == 2
-
-
 @pytest.mark.parametrize("numbers", [(20, 0, 0, -1), (20, 0, 0, -1, *READINGS, 1), (20, 0, 0, -1, 1024, *READINGS[1:])])
 def test_link_impossible_line_is_junk(numbers: tuple[int, ...]) -> None:
     far = FarEnd()

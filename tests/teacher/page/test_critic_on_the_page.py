@@ -6,7 +6,6 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.channel.protocol.hello import AppraisalName
-from kurt2rt.channel.protocol.lesson_list import LessonLine
 from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.screens import on_each_screen
@@ -17,9 +16,6 @@ ACTIONS = (
     *("sharp_left", "sharp_right", "flee", "whirl_left", "whirl_right"),
 )
 APPRAISALS = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
-A_CHANGE = LessonLine(
-    "c-1", "RLA 17 corrected: spin_left instead of back", "critic", 5, 9, "2026-11-21T12:04:00Z", False
-)
 
 
 def fits(lesson: Lesson) -> None:
@@ -75,27 +71,3 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> 
     lesson.reads("#gauge-text", "value \N{MINUS SIGN}0.08")
     phone.touch("#blame")
     phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
-
-
-def test_phase_5_shows_opinion_and_last_change(lesson: Lesson) -> None:
-    phone = lesson.phone
-    lesson.show(phase=5, agreement=0.87, trusted=True, signals_missing=(0, 0), value=0.52)
-    lesson.reads("#changed", "has changed nothing lately")
-    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE)
-    lesson.show(lessons=2)
-    lesson.reads("#changed", "changed last: RLA 17 corrected: spin_left instead of back, 21 Nov")
-    assert phone.text("#trusted") == "trusted"
-    lesson.show(role="measures", bad_share=0.0)
-    lesson.reads("#role", "measures the driving")
-    lesson.show(role="acts", bad_share=0.07)
-    lesson.reads("#role", "acts")
-    lesson.show(role="not needed", bad_share=0.0199)
-    lesson.reads("#role", "not needed: 1 % of the driving was bad")
-    phone.touch("#praise")
-    phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
-    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
-    lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
-    lesson.reads("#trusted", "only listens")
-    assert not phone.shows("#role")
-    fits(lesson)
-    lesson.reads("#changed", "undone: RLA 17")

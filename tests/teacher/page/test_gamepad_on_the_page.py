@@ -115,14 +115,6 @@ def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> 
     assert presses(driving) == []  # it was held before
 
 
-def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
-    driving.phone.run("pad.mapping = ''; tellPad('gamepadconnected')")
-    driving.reads("#said", "its buttons are not known")
-    driving.phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
-    polled(driving.phone)
-    assert presses(driving) == []
-
-
 CROSS_UP = "pad.buttons[12] = {pressed: %s, touched: false, value: 0}"
 
 

@@ -105,14 +105,6 @@ def test_hold_ends_with_the_page_and_does_not_come_back(lesson: Lesson, end: str
     lesson.phone.run("document.querySelector('#tab-teach').click()")
 
 
-def test_stop_ends_a_hold(lesson: Lesson) -> None:
-    finger_down(lesson)
-    lesson.phone.run("document.querySelector('#stop').click()")
-    lesson.phone.wait(lambda: lesson.robot.told_of("stop"), "STOP is sent")
-    assert not lesson.phone.has(f"{BUTTON}.held")
-    lesson.phone.finger_up()
-
-
 def test_long_touch_on_a_stopped_robot_is_a_tap(lesson: Lesson) -> None:
     lesson.show(standing=Standing(StandReason.STOPPED, True), action=None, left_m_s=0.0, right_m_s=0.0)
     lesson.phone.wait(lambda: lesson.phone.has("#go:enabled"), "it is stopped")

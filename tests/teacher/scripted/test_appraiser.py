@@ -13,7 +13,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
+from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (
     FeedbackTiming,
@@ -141,21 +141,7 @@ def test_demonstrate_runs_an_action_then_resumes() -> None:
     assert not person.may_be_refused(resume.command_id)
 
 
-def test_phase_5_gives_no_command() -> None:
-    person = appraiser(Phase.AUTONOMOUS)
-    assert not person.available
-    assert given(person, [record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(1, 300)]) == []
-
-
 def test_unknown_penalty_is_given_once_for_the_tick_before() -> None:
     person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
     seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(3, 60))]
     assert signals(given(person, seen)) == [(13, -1, 2)]
-
-
-def test_phases_1_and_2_answer_as_scripted_teacher() -> None:
-    person = appraiser(Phase.CORRECTIONS)
-    assert person.phase is Phase.CORRECTIONS
-    assert isinstance(person.begin_phase(Phase.SUPERVISED), SetPhase)
-    commands = given(person, [record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(1, 101)])
-    assert [(tick, type(command)) for tick, command in commands] == [(100, Teach)]

@@ -53,12 +53,6 @@ def said(person: ScriptedDispatcher, seen: TickRecord, ahead: WayAhead, ticks: i
     return [(tick, command) for tick, command in heard if command is not None]
 
 
-def test_on_tick_asking_answers_after_the_reaction_time() -> None:
-    for phase in (Phase.SUPERVISED, Phase.CORRECTIONS):
-        answers = said(dispatcher(phase), ASKS, BEFORE_THE_FIRST, REACTION_TICKS)
-        assert answers == [(REACTION_TICKS, Teach("s-mid-1", NAME, "turn_left", level=MID))]
-
-
 def test_on_tick_wrong_behaviour_is_corrected_after_the_patience() -> None:
     corrections = said(dispatcher(), wants("turn_right"), BEFORE_THE_FIRST, PATIENCE_TICKS)
     assert corrections == [(PATIENCE_TICKS, Correct("s-mid-1", NAME, "turn_left", level=MID))]
