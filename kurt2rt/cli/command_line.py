@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib import import_module, metadata
 from typing import Annotated, Any
 
@@ -47,6 +47,16 @@ _PANELS = {
 """Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its
 module of kurt2rt.cli. The first line of its help stands here as well."""
 
+_OPTION_PANELS = {
+    "Robot and world": ("bus", "robot_settings", "settings", "task", "world", "behaviour", "seed", "seeds", "seconds"),
+    "Teaching": ("teacher", "auto", "knowledge", "terminal", "plain", "changes"),
+    "Page and network": ("page", "phone", "no_open", "port", "page_port", "page_address", "public_address", "robot"),
+    "Recording": ("record", "no_record", "can_log", "live_view"),
+    "Study": ("jobs", "on", "lessons", "exams", "out", "quick"),
+}
+"""Options of long helps, by the title of their panel."""
+_LONG_HELP = 10
+
 _PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
 
 _HELP = (
@@ -65,6 +75,36 @@ class _CommandGroup(TyperGroup):
     def list_commands(self, ctx: Any) -> list[str]:  # noqa: ARG002 - a context of click or of typer
         """Names of the commands that were loaded."""
         return [name for name in _PANEL_OF if name in self.commands]
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Parameters of the group itself."""
+        return _arranged(super().get_params(ctx))
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Command of a name, with a help that is easy to read."""
+        command = super().get_command(ctx, cmd_name)
+        for each in _all_within(command):
+            _arranged(each.get_params(ctx))
+        return command
+
+
+def _all_within(command: Any) -> Iterator[Any]:
+    """Yield a command and those below it; None has none."""
+    if command is not None:
+        yield command
+        for each in getattr(command, "commands", {}).values():
+            yield from _all_within(each)
+
+
+def _arranged(parameters: list[Any]) -> list[Any]:
+    """Give flags no type, as they take no value, and the options of a long help their panels."""
+    panels = {name: panel for panel, names in _OPTION_PANELS.items() for name in names}
+    for each in parameters:
+        if getattr(each, "is_flag", False):
+            each.metavar = ""
+        if len(parameters) > _LONG_HELP:
+            each.rich_help_panel = panels.get(each.name)
+    return parameters
 
 
 def command_line(words: Sequence[str] | None = None) -> typer.Typer:

@@ -119,7 +119,7 @@ class _Options:
             "and for Foxglove; some 70 MB an hour. Default: as the settings say."
         ),
     ] = None
-    no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing.")] = False
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing of this run.")] = False
     live_view: Annotated[
         str | None,
         typer.Option(

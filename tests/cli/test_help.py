@@ -91,3 +91,15 @@ def test_help_imports_nothing_of_what_a_command_needs(words: list[str]) -> None:
     imported = set(done.stderr.split())
     assert "typer" in imported
     assert imported.isdisjoint({*HEAVY, *OUR_PACKAGES})
+
+
+def test_long_help_has_panels_and_flags_take_no_type(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("run", "--help").out
+    assert [line.strip("╭─╮") for line in said.splitlines() if line.startswith("╭")] == [
+        " Options ",
+        " Robot and world ",
+        " Teaching ",
+        " Page and network ",
+        " Recording ",
+    ]
+    assert "<bool>" not in said
