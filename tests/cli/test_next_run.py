@@ -222,9 +222,9 @@ async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> Non
             third = await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
             assert (await client.set_speed(3)).accepted
             # Ticks of robot time go on one by one, none is missed; and again at the speed of real time.
-            faster = await state_at(client, third.tick + 100)
+            faster = await state_at(client, third.tick + 30)
             assert (await client.set_speed(1)).accepted
-            slower = await state_at(client, faster.tick + 100)
+            slower = await state_at(client, faster.tick + 30)
             assert slower.boot == third.boot
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")
     with Journal.read_only(knowledge.with_name("wall_following.knowledge.1")) as kept:

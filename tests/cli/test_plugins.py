@@ -4,8 +4,6 @@ import re
 import sys
 from pathlib import Path
 
-import pytest
-
 from hal import plugins
 from kurt2rt import SimulatedRobot
 from kurt2rt.runs.recording.run_folder import runs_in
@@ -41,13 +39,3 @@ def test_robot_stands_and_asks_once_an_action_failed(plugin_folder: Path) -> Non
         assert str(robot.why()).startswith("wiggle\n")
         robot.run(seconds=0.5)
         assert str(robot.why()).startswith("stands and asks\n")
-
-
-@pytest.mark.deep
-def test_lesson_in_two_processes_finds_the_plugin(kurt2rt: CommandLine, plugin_folder: Path) -> None:
-    write_parts(plugin_folder, "parts_two")
-    write_task(plugin_folder, policy={"kind": "parts_two:Turning"}, course={"kind": "parts_two:Reach"})
-    short = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
-    said = kurt2rt("lesson", "--task", "mine.yaml", "--seeds", "1,2", "--jobs", "2", *short, "--set", "exam.worlds=[a]")
-    assert said.exit_code == 0, said.err
-    assert "m, median" in said.out  # the unit of the course

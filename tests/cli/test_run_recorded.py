@@ -14,7 +14,7 @@ from kurt2rt.runs.recording.topics import GROUND, SCENE, TICK, TRUTH
 from kurt2rt.runs.replay.reader import read_run
 from tests.cli.helpers import CommandLine
 
-WORDS = ("run", "--seconds", "0.5", "--teacher", "none", "--knowledge", "mine.knowledge")
+WORDS = ("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", "mine.knowledge")
 
 
 @pytest.fixture(autouse=True)
@@ -34,7 +34,7 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     assert run.name.endswith("Z-wall_following")
     assert f" {run.relative_to(folder)}\n" in said.out
     numbers = [entry.number for entry in entries_of(run)]
-    # How many of the 50 ticks there are is left to the machine: those of a stall are missed, not run.
+    # How many of the 30 ticks there are is left to the machine: those of a stall are missed, not run.
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     assert read_run(run).head.knowledge == str(folder.resolve() / "mine.knowledge")  # wherever it is read
     (segment,) = segments_in(run)

@@ -2,15 +2,22 @@
 
 import os
 import signal
+from functools import partial
 from pathlib import Path
+
+import pytest
 
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.rla.programs import AUTO
+from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import CommandLine, running
 from tests.teacher.page.test_teach_command import free_udp_port
 
 
-def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) -> None:
+def test_teach_auto_without_a_robot_names_what_starts_one(
+    kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kurt2rt.cli.teach.TeacherClient", partial(TeacherClient, patience_s=0.2))
     port = free_udp_port()
     line = kurt2rt.refused("teach", "--auto", "--port", str(port))
     assert line.endswith(f": {no_robot('127.0.0.1', port, AUTO)}")

@@ -153,21 +153,6 @@ async def test_discovery_names_every_resource(school: School) -> None:
     assert (whole.payload, whole.opt.block2) == (told, None)
 
 
-@pytest.mark.parametrize(
-    ("wanted", "given"),
-    [(None, (0, 0, 32)), ((0, False, 6), (0, 0, 32)), ((1, False, 2), (2, 64, 96)), ((3, False, 0), (3, 48, 64))],
-)
-async def test_discovery_without_keys_gives_small_blocks(
-    school: School, wanted: tuple[int, bool, int] | None, given: tuple[int, int, int]
-) -> None:
-    request = plain(CORE, aiocoap.GET)
-    request.opt.block2 = wanted
-    (event,) = await answers(school.site, carried(request))
-    number, begin, end = given
-    whole = await school.phone().call(plain(CORE, aiocoap.GET))
-    assert (event.message.opt.block2.block_number, event.message.payload) == (number, whole.payload[begin:end])
-
-
 async def test_a_block_behind_the_end_is_refused(school: School) -> None:
     request = plain(CORE, aiocoap.GET)
     request.opt.block2 = (1000, False, 1)

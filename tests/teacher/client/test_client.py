@@ -1,7 +1,6 @@
 """A teacher's device over real sockets and real keys, against a robot whose mind is the test's."""
 
 import asyncio
-import re
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -49,7 +48,6 @@ from kurt2rt.channel.protocol.requests import (
     WatchRequest,
     WorldRequest,
 )
-from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode
@@ -183,14 +181,6 @@ async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
     assert client.link.states_per_s > 0.0
     assert client.trouble == ""
     assert client.restarts == 0
-
-
-async def test_client_pairing_in_use_or_missing_raises(client: TeacherClient, pairing: Pairing, tmp_path: Path) -> None:
-    assert client.state is not None
-    with pytest.raises(CredentialsError, match=re.escape(str(pairing.device.folder))):
-        await TeacherClient(pairing.device.folder).__aenter__()
-    with pytest.raises(CredentialsError, match="missing"):
-        await TeacherClient(tmp_path / "missing").__aenter__()
 
 
 def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
@@ -590,29 +580,6 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
     assert robot.all_of(AnswerRequest)[0].seen == stopped_tick + 20
 
 
-async def test_ticks_of_earlier_start_do_not_count(pairing: Pairing) -> None:
-    teachers = pairing.teacher.parent
-    clock = Clock()
-
-    async def far_on(_: Request) -> Reply:
-        return done(1_000_000)
-
-    async with AsyncExitStack() as first_start:
-        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
-        async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
-            await first_state(client)
-            robot.mind = far_on
-            await client.stop()
-            await first_start.aclose()
-            async with stand_in_robot(teachers, port=robot.port, boot=b"next") as robot:
-                clock.ahead_s += 1.5
-                await seen(client, lambda: client.state is not None and client.state.boot == b"next")
-                await client.resume()
-                await client.answer("forward")
-                (resume,), (answer,) = robot.all_of(ResumeRequest), robot.all_of(AnswerRequest)
-                assert max(resume.seen, answer.seen) < 1_000_000
-
-
 async def test_stop_unanswered_is_resent_until_answered(pairing: Pairing, robot: StandInRobot) -> None:
     async with (
         LossyLink(robot.port) as link,
@@ -678,21 +645,6 @@ async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, 
         told = robot.state.tick
         await seen(client, lambda: client.state is not None and client.state.tick > told + 20)
         assert len(robot.all_of(StopRequest, copies=True)) == stops
-
-
-async def test_a_press_that_cannot_begin_ends_no_stop(pairing: Pairing, robot: StandInRobot) -> None:
-    clock = Clock()
-    async with (
-        LossyLink(robot.port) as link,
-        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.1, now=clock) as client,
-    ):
-        await first_state(client)
-        link.cut()
-        with pytest.raises(NoAnswerError):
-            await client.stop()
-        clock.ahead_s += 0.6
-        assert not client.press(0.1, 0.1)
-        assert client.stop_pending
 
 
 # Driving

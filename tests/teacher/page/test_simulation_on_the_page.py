@@ -1,10 +1,7 @@
 """The menu of a simulated robot on the page: world, task, start again."""
 
-from dataclasses import replace
-
 import pytest
 
-from tests.teacher.page.fake_robot import A_SIMULATION
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import Phone
 from tests.teacher.page.screens import on_each_screen
@@ -57,19 +54,3 @@ def test_back_to_start_is_one_touch_and_new_knowledge_two(lesson: Lesson) -> Non
     assert not lesson.told("next_run")
     phone.touch("#sim-fresh")
     phone.wait(lambda: ("next_run", None, None, True) in lesson.robot.told, "the next run is wanted")
-
-
-def test_speed_is_chosen_and_the_reached_one_shown(lesson: Lesson) -> None:
-    phone, robot = lesson.phone, lesson.robot
-    robot.simulated = replace(A_SIMULATION, speed=10, reached=5.04)
-    choose(phone, "#sim-speed", "10")
-    phone.wait(lambda: ("set_speed", 10) in robot.told, "it is told")
-    lesson.reads("#sim-reached", "5.0 times reached")
-    choose(phone, "#sim-task", "eight")
-    robot.simulated = replace(A_SIMULATION, speed=10, reached=7.3)
-    assert robot.state is not None
-    lesson.show(tick=robot.state.tick + 100)
-    lesson.reads("#sim-reached", "7.3 times reached")
-    assert phone.run("return document.querySelector('#sim-task').value;") == "eight"
-    phone.middle("#sim-speed")
-    phone.show("25-speed")

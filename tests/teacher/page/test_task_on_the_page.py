@@ -5,7 +5,6 @@ from dataclasses import replace
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.perception.sensor_words import infrared_law, words_for
-from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 from tests.teacher.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
 from tests.teacher.page.lesson import Lesson
@@ -54,18 +53,6 @@ def test_page_says_the_task_and_what_the_phase_changes(a_lesson: Lesson) -> None
         told.append(phone.text("#phase-says"))
     assert len(set(told)) == 5
     assert all(each.endswith(".") for each in told)
-
-
-def test_progress_is_told_with_rules_and_lessons_apart(a_lesson: Lesson) -> None:
-    a_lesson.begin(prepare, rlas=12, lessons=14, progress=Progress(0, None, 0))
-    phone = a_lesson.phone
-    a_lesson.reads("#progress", "rules 12")
-    assert phone.text("#progress") == "rules 12"
-    assert phone.text("#lesson-count") == "14"
-    a_lesson.show(progress=Progress(9, 40, 2))
-    a_lesson.reads("#progress", "by itself 40 % · asks 2 in 9 s · rules 12")
-    a_lesson.show(progress=Progress(60, 87, 3))
-    a_lesson.reads("#progress", "by itself 87 % · asks 3 a minute · rules 12")
 
 
 def test_question_has_places_centimetres_and_marks(a_lesson: Lesson) -> None:
