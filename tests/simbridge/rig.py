@@ -9,7 +9,7 @@ import pytest
 
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
-from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, control_frame
+from hal.control import Control, Mode, SpeedControl, control_frame
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.settings import SettingsError
 from hal.simulation import Pose
@@ -24,7 +24,6 @@ from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 CODEC: Codec = load_codec()
 ROBOT: Kurt2Settings = load_kurt2()
 STAND = SpeedControl(Mode.SPEED_CM, 0, 0)
-BRAKE = RawControl(RawSide(0, brake=True), RawSide(0, brake=True))
 
 _numbers = itertools.count()
 

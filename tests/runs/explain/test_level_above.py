@@ -65,14 +65,6 @@ def test_a_robot_that_is_lost_is_not_on_the_map(now: Now, tmp_path: Path) -> Non
     assert "star: here" not in text
 
 
-def test_picture_of_a_lost_robot_says_so_and_lists_no_places(now: Now, tmp_path: Path) -> None:
-    mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
-    text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
-    assert "lost" in text
-    assert "places" not in text
-    assert "to RLA 1" in text
-
-
 def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
     nearest = titled(12, (1.0, 0.0, 2.0), "turn_left", 2.0, 1.0)
     mid = replace(

@@ -7,7 +7,6 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.picture import draw_why
 from kurt2rt.runs.explain.reasons import headline
 from tests.runs.explain.helpers import ROBOT, Lesson
@@ -86,12 +85,6 @@ def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> Non
     give(lesson).notebook.saving_error = "ENOSPC"
     lesson.go_on(1)
     assert (lesson.facts.cause, lesson.facts.trouble) == (DecisionCause.UNSAVED, "ENOSPC")
-
-
-def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:
-    few = collect_facts(taught_lesson.runtime, taught_lesson.records[-1], lambda _: "", most=0)
-    assert few.basic.others == ()
-    assert few.basic.count == 2
 
 
 @pytest.mark.parametrize("ending", [pytest.param("png", marks=pytest.mark.deep), "svg"])

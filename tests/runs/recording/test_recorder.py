@@ -8,7 +8,6 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
-from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord
@@ -250,14 +249,6 @@ def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
     disk.free.set()
 
 
-def test_the_thread_writes_all_that_was_noted(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path)
-    with desk.recorder:
-        desk.run(250)
-    assert desk.recorder.trouble == ""
-    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records]
-
-
 def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path / "runs")
     desk.recorder.poll()
@@ -270,24 +261,6 @@ def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) 
     (segment,) = segments_in(tmp_path / "runs" / NAME)
     assert SegmentReader(segment).head().attachments == ATTACHMENTS
     assert desk.recorder.dropped == 200
-
-
-def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) -> None:
-    disk = FullDisk(1_000_000_000)
-    desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.poll()
-    desk.second()
-    disk.free = 100_000_000
-    desk.recorder.poll()
-    shutil.rmtree(tmp_path / NAME)
-    disk.free = 1_000_000_000
-    desk.second()
-    desk.second()
-    desk.recorder.close()
-    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records[100:]]
-    (segment,) = segments_in(tmp_path / NAME)
-    assert SegmentReader(segment).head().attachments == ATTACHMENTS
-    assert desk.recorder.dropped == 100
 
 
 def test_recorder_without_room_leaves_no_folder(tmp_path: Path) -> None:
@@ -347,25 +320,3 @@ def test_recorder_counts_an_unwritable_note_and_keeps_the_others(tmp_path: Path)
     assert len(entries_of(tmp_path / NAME)) == 100
     assert (desk.recorder.written, desk.recorder.dropped) == (100, 1)
     assert "ZeroDivisionError('unsayable')" in desk.recorder.trouble
-
-
-class Elsewhere:
-    """The ground under a simulated robot."""
-
-    def place(self) -> SimulatedPlace:
-        return SimulatedPlace(1.0, 2.0, 0.0, 0.0, 0, 0)
-
-    def world(self) -> WorldPlan:
-        corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
-        return WorldPlan(
-            0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (SimulatedPost("post", 1.0, 1.0, 0.1),)
-        )
-
-    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
-        raise AssertionError(name, dx_m, dy_m)
-
-    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
-        raise AssertionError(x_m, y_m, heading_rad)
-
-    def put_robot_back(self) -> None:
-        raise AssertionError
