@@ -1,6 +1,5 @@
 """`kurt2rt lesson`."""
 
-from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import anyio
@@ -18,13 +17,12 @@ from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
-from kurt2rt.core.task_settings import TaskSettings, taught_by
+from kurt2rt.core.task_settings import taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
-from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
-from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
+from kurt2rt.experiments.lockstep.seed_result import seed_result
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import LoopRequest
 from kurt2rt.knowledge.files.archive_existing import archive_existing
@@ -46,10 +44,6 @@ def lesson(options: LessonOptions) -> None:
     react, err and look away like a person (config/teachers):
 
         kurt2rt lesson --teacher ordinary --seeds 100-119
-
-    With --controls the same seeds are also taught in other ways, to compare: by a
-    press, a hold, a rewind, after drives by hand, with the lesson at another
-    speed, by the superhuman teacher, and by one that answers only.
 
     With --seeds results are kept in --out with hashes of what made them; a run
     that was interrupted goes on where it was. A robot of a basic task that was
@@ -146,26 +140,13 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
-    tasks = _taught_tasks(setup.task, options)
     parts = setup.parts(out)
-    plan = make_plan(tasks, options.all_seeds, parts, loops=options.requested_loops())
+    plan = make_plan(setup.task, options.all_seeds, parts, loops=options.requested_loops())
     forget_lost_robots(plan)
     with study_run(plan, parts, options):
-        by_teacher = read_results(plan)
-    _show_seeds(by_teacher, setup.task, options)
-
-
-def _taught_tasks(task: TaskSettings, options: LessonOptions) -> Mapping[str, TaskSettings]:
-    """Return the task as each teacher teaches it, by the teacher's label."""
-    return compared_tasks(task) if options.controls else {"": task}
-
-
-def _show_seeds(by_teacher: Mapping[str, Sequence[SeedResult]], task: TaskSettings, options: LessonOptions) -> None:
-    own, *controls = by_teacher.items()
+        robots = read_results(plan)
     if options.as_json:
-        robots = {label: [curriculum_as_data(each, task) for each in results] for label, results in by_teacher.items()}
-        shown = {"task": task.name, "teacher": task.teaching.profile.name, "robots": robots[own[0]]}
-        print_json(shown | ({"controls": {label: robots[label] for label, _ in controls}} if controls else {}))
-        return
-    compared = (render_teachers(by_teacher),) if controls else ()
-    print_whole(console_of(), render_seeds(own[1], task), *compared)
+        data = [curriculum_as_data(each, setup.task) for each in robots]
+        print_json({"task": setup.task.name, "teacher": setup.task.teaching.profile.name, "robots": data})
+    else:
+        print_whole(console_of(), render_seeds(robots, setup.task))

@@ -70,8 +70,7 @@ class LessonOptions(LoopOptions):
         bool,
         typer.Option(
             "--controls",
-            help="With --seeds, and of errands: also go about it in other ways, to compare; of basic tasks with other "
-            "teachers.",
+            help="Of a route with --seeds, or errands: also go about it in other ways, to compare.",
         ),
     ] = False
 

@@ -27,11 +27,10 @@ def teaches_route(task: TaskSettings) -> bool:
 
 def require_no_route_options(task: TaskSettings, options: LessonOptions) -> None:
     """Raise typer.BadParameter if the options include one that only a task with a route has."""
-    for name, value in {"--decisions": options.decisions, "--basic": options.basic}.items():
+    of_a_route = {"--decisions": options.decisions, "--basic": options.basic, "--controls": options.controls}
+    for name, value in of_a_route.items():
         if value:
             raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
-    if options.controls and options.seeds is None:
-        raise typer.BadParameter("teachers are compared over many seeds; give --seeds, too", param_hint="--controls")
 
 
 def one_route(setup: LessonSetup, options: LessonOptions) -> None:

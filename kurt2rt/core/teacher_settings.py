@@ -81,17 +81,6 @@ class LookBackSettings(Settings):
     """Standard deviation of the moment that the person takes for the begin of the mistake."""
 
 
-class ShowSettings(Settings):
-    """Demonstrations by hand at the begin of a lesson, each confirmed before the next one."""
-
-    times: Annotated[int, Field(ge=0, le=100)] = 0
-    """Number of demonstrations."""
-    seconds: Annotated[float, Field(ge=1, le=LONGEST_S)] = 8.0
-    """Length of each; the robot keeps the last 12 segments of one."""
-    speed: Annotated[float, Field(ge=SLOWEST, le=1)] = 1.0
-    """Fraction of the actions' speeds with which the person drives."""
-
-
 class LapseSettings(Settings):
     """Times in which the teacher looks away."""
 
@@ -151,8 +140,6 @@ class TeacherProfile(Settings):
     corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"
     """Tick that a press corrects: the first wrong one; the one in which the mistake was noticed; the one before the
     press by the teacher's delay, as the robot has measured it; or the present one."""
-    shows: ShowSettings = ShowSettings()
-    """Demonstrations by hand before the first answer."""
     hold_s: Annotated[float, Field(gt=0, le=60)] = 2.0
     """Time for which an action is held."""
     person: PersonSettings | None = None

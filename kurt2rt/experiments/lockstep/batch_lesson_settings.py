@@ -37,11 +37,9 @@ def build_lesson_settings(
     """
     require_known_robot(settings, task)
     require_known_task(task)
-    profile, doubt = task.teaching.profile, task.learning.doubt
+    doubt = task.learning.doubt
     if doubt is not None and doubt.asks:
         raise refused(task, "a robot that asks at a doubt")
-    if profile.shows.times:
-        raise refused(task, "a teacher who drives by hand")
     policy = task.policy.build(settings.infrared)
     if not isinstance(policy, TabledPolicy):
         raise refused(task, f"policy {task.policy.kind}")

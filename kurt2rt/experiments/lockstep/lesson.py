@@ -273,8 +273,7 @@ class TrainingRun(Episode):
 
     def _send_lessons(self, record: TickRecord) -> None:
         """Send the teacher's and the dispatcher's commands, and resume a second after the guard latched."""
-        segments = len(self.runtime.handler.demonstration.segments(record.tick))
-        for command in self._teacher.on_tick(record, touching=self.simulation.touching, segments=segments):
+        for command in self._teacher.on_tick(record, touching=self.simulation.touching):
             self._send_lesson(command, record.tick)
             if isinstance(command, Resume) and record.guard_result.latched:  # the action shown ended in an alarm
                 self._count_alarm(record.tick)

@@ -7,14 +7,11 @@ from kurt2rt.core.teaching.commands import (
     Command,
     Correct,
     DeleteRla,
-    Drive,
     HoldAction,
     ReplaceAction,
-    Resume,
     Reward,
     Stop,
     Teach,
-    TeachShown,
     Undo,
 )
 
@@ -42,13 +39,11 @@ class WorkloadMinute(NamedTuple):
     """Stops to look back (rewind)."""
     undone: int = 0
     """Undos of own wrong presses."""
-    demonstrated: int = 0
-    """Drives by hand, confirmations of their segments, and the Go after the last one."""
 
     @property
     def presses(self) -> int:
         """Number of presses: answers and corrections, with the stops, resumes and undos that they took."""
-        return self.lessons + self.corrections + self.stops + self.go + self.undone + self.demonstrated
+        return self.lessons + self.corrections + self.stops + self.go + self.undone
 
 
 Hands = Literal["set_down", "shown", "rescued", "go"]
@@ -63,7 +58,6 @@ class TeacherWorkload:
         """Count for `ticks` ticks of `period_s`; the last minute may be shorter."""
         self._ticks_per_minute = round(60.0 / period_s)
         self._held_press = 0
-        self._confirmed = False
         self.press_ticks: list[int] = []
         """Tick of each press, in order; one tick may have several."""
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
@@ -85,15 +79,6 @@ class TeacherWorkload:
             case HoldAction(press_id=press_id) if press_id != self._held_press:
                 self._held_press = press_id
                 now = now._replace(corrections=now.corrections + 1)
-            case Drive(press_id=press_id) if press_id != self._held_press:
-                self._held_press = press_id
-                now = now._replace(demonstrated=now.demonstrated + 1)
-            case TeachShown():
-                self._confirmed = True
-                now = now._replace(demonstrated=now.demonstrated + 1)
-            case Resume() if self._confirmed:
-                self._confirmed = False
-                now = now._replace(demonstrated=now.demonstrated + 1)
             case Reward():
                 now = now._replace(rewards=now.rewards + 1)
             case Stop(press_id=None):

@@ -450,7 +450,6 @@ _SAID = {
     "go": "Go",
     "stops": "stops to look back",
     "undone": "own presses undone",
-    "demonstrated": "demonstrated",
 }
 """Headings of what a teacher does, by the field of WorkloadMinute."""
 

@@ -1,6 +1,6 @@
 """Study of one task: the same curriculum for many seeds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -11,7 +11,7 @@ from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan, read_groups
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 
@@ -48,8 +48,6 @@ class SeedJob(CurriculumJob):
     """Training run and exams of one seed; an earlier knowledge file of the robot gets a new name."""
 
     replaces_others: ClassVar[bool] = True
-    label: str
-    """Way of teaching; empty for the task's own."""
 
     @property
     def knowledge_name(self) -> str:
@@ -63,40 +61,32 @@ class SeedJob(CurriculumJob):
 
 
 def make_plan(
-    tasks: Mapping[str, TaskSettings],
-    seeds: Sequence[int],
-    parts: JobParts,
-    *,
-    loops: RequestedLoops = ALL_ON_BUS,
+    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, loops: RequestedLoops = ALL_ON_BUS
 ) -> StudyPlan[None]:
     """Return the jobs.
 
     Args:
-        tasks: the task by the label of each way of teaching, its own first.
+        task: that is taught.
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         loops: requested for lessons and exams.
 
     Raises:
-        hal.settings.SettingsError: settings of a task or a world cannot be loaded.
+        hal.settings.SettingsError: settings of the task or a world cannot be loaded.
     """
-    fingerprints = Fingerprints(parts["factory"], parts["robot"])
-    jobs = []
-    for place, (label, task) in enumerate(tasks.items()):
-        made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds))
-        jobs += [
-            SeedJob(
-                **parts,
-                task=task,
-                seed=seed,
-                made_of=made,
-                name=f"{task.name}, seed {seed}",
-                stem=f"{task.name}-{seed}" + (f"-control-{place}" if place else ""),
-                robot_time_s=curriculum_time_s(task),
-                label=label,
-            )
-            for seed in seeds
-        ]
+    made = Fingerprints(parts["factory"], parts["robot"]).of(task, (task.teaching.world, *task.exam.worlds))
+    jobs = [
+        SeedJob(
+            **parts,
+            task=task,
+            seed=seed,
+            made_of=made,
+            name=f"{task.name}, seed {seed}",
+            stem=f"{task.name}-{seed}",
+            robot_time_s=curriculum_time_s(task),
+        )
+        for seed in seeds
+    ]
     return StudyPlan(None, tuple(seeds), tuple(jobs)).driven(loops, parts["robot"])
 
 
@@ -112,6 +102,6 @@ def forget_result(folder: Path, task: str, seed: int) -> None:
     (folder / f"results/{task}-{seed}.json").unlink(missing_ok=True)
 
 
-def read_results(plan: StudyPlan[None]) -> dict[str, tuple[SeedOutcome, ...]]:
-    """Return the outcomes by the label of the way of teaching. Raises StudyError if one is missing or damaged."""
-    return dict(read_groups(plan.of(SeedJob), lambda job: job.label, SeedOutcome))
+def read_results(plan: StudyPlan[None]) -> list[SeedOutcome]:
+    """Return the outcomes, in the order of the seeds. Raises StudyError if one is missing or damaged."""
+    return [job.results.read(job, SeedOutcome) for job in plan.of(SeedJob)]

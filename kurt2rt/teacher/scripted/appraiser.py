@@ -194,13 +194,12 @@ class ScriptedAppraiser:
         self._resume_at = tick + ticks + 1
         return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._demonstrated), ticks)]
 
-    def on_tick(self, record: TickRecord, *, touching: bool = False, segments: int = 0) -> list[Command]:
+    def on_tick(self, record: TickRecord, *, touching: bool = False) -> list[Command]:
         """Return the teacher's commands in response to one tick, in order; may be empty. Call it on every tick.
 
         Args:
             record: of the tick.
             touching: whether the robot touches something, as a person in the room sees.
-            segments: number of segments of the newest drive by hand that can be taught.
         """
         if self.phase is Phase.AUTONOMOUS:
             return []
@@ -208,7 +207,7 @@ class ScriptedAppraiser:
         if self._resume_at is not None and record.tick >= self._resume_at:
             self._resume_at = None
             commands.append(Resume(self._next_id("shown"), _NAME))
-        answer = self._answering.update(view_of_tick(record, touching=touching, segments=segments))
+        answer = self._answering.update(view_of_tick(record, touching=touching))
         if answer is not None:
             commands.append(answer)
         if self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) and self._rewards is not None:

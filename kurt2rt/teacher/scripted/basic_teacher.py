@@ -25,17 +25,14 @@ class TeacherView(NamedTuple):
     """Tick of the state."""
     touching: bool = False
     """The robot touches something."""
-    segments: int = 0
-    """Number of segments of the newest drive by hand that can be taught."""
 
 
-def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 0) -> TeacherView:
+def view_of_tick(record: TickRecord, *, touching: bool = False) -> TeacherView:
     """Return the teacher's view of a tick.
 
     Args:
         record: of the tick.
         touching: whether its side touches something, which no bumper tells but a person in the room sees.
-        segments: number of segments of the newest drive by hand that can be taught.
     """
     decision = record.decision
     return TeacherView(
@@ -46,7 +43,6 @@ def view_of_tick(record: TickRecord, *, touching: bool = False, segments: int = 
         behaviour=record.behaviour,
         tick=record.tick,
         touching=touching or record.readings.bumpers != 0,
-        segments=segments,
     )
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from behaviors.action_groups import action_groups
-from behaviors.primitives import primitive_speeds
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teacher_settings import (
@@ -38,7 +37,7 @@ def build_teacher(
     """
     profile, period_s = task.teaching.profile, robot.cycle_s
     person = profile.person
-    if person is None and (profile.shows.times or {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}):
+    if person is None and {profile.corrects_by, profile.answers_by} & {"hold", "rewind"}:
         person = _without_limits(task.teaching.teacher, period_s)
     if person is not None:
         sense = _task_sense(task, robot, actions)
@@ -56,7 +55,7 @@ def build_teacher(
 
 def _task_sense(task: TaskSettings, robot: RobotSettings, actions: Sequence[str]) -> TaskSense:
     policy = task.policy.build(robot.infrared)
-    return TaskSense(policy, tuple(actions), action_groups(task.repertoire), primitive_speeds(task.repertoire))
+    return TaskSense(policy, tuple(actions), action_groups(task.repertoire))
 
 
 def _without_limits(teacher: TeacherSettings, period_s: float) -> PersonSettings:

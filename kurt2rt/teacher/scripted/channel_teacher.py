@@ -220,7 +220,6 @@ def view_of_state(state: State) -> TeacherView:
         behaviour=state.behaviour,
         tick=state.tick,
         touching=state.bumpers != 0,
-        segments=0 if state.shown is None else len(state.shown.actions),
     )
 
 

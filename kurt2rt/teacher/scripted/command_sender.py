@@ -6,12 +6,10 @@ from kurt2rt.core.teaching.commands import (
     Command,
     Correct,
     DeleteRla,
-    Drive,
     HoldAction,
     Resume,
     Stop,
     Teach,
-    TeachShown,
     Undo,
 )
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
@@ -43,12 +41,6 @@ class CommandSender:
             match command:
                 case HoldAction(action=action):
                     robot.press_action(action)
-                case Drive(left_m_s=left_m_s, right_m_s=right_m_s):
-                    robot.press(left_m_s, right_m_s)
-                case TeachShown(segments=segments):
-                    if robot.state is None or robot.state.shown is None:
-                        return 0  # the robot drops a demonstration when the next press begins
-                    return self._note(command.command_id, await robot.teach_shown(segments))
                 case Stop(press_id=None):
                     await robot.stop()
                 case Resume():

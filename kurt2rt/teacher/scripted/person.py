@@ -6,15 +6,13 @@ from typing import Literal
 
 from behaviors.action_groups import STAND
 from behaviors.policies.policy import ReferencePolicy
-from hal.robot import WheelSpeeds
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
-from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, TeachShown, Undo
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
-from kurt2rt.teacher.scripted.demonstrator import Demonstrator
 from kurt2rt.teacher.scripted.hand import Hand
 from kurt2rt.teacher.scripted.human_limits import PressLimit
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
@@ -24,8 +22,6 @@ from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 _Way = Literal["press", "hold", "rewind"]
 """Way to give a press."""
-_SHOW_PRESSES = 3
-"""Presses of a demonstration: the stick, the confirmation of the segments, and Go after the last one."""
 _REWIND_PRESSES = 2
 """Presses of a correction by rewind; a person who has not both left does not begin one."""
 
@@ -40,8 +36,6 @@ class TaskSense:
     """Names of the robot's actions, of which an error names another one."""
     groups: Mapping[str, str]
     """Group of each action that looks alike."""
-    speeds: Mapping[str, WheelSpeeds]
-    """Wheel speeds with which a person drives for an action; actions of other kinds are left out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,13 +109,6 @@ class ScriptedPerson(BasicTeacher):
         self._hold_ticks = round(profile.hold_s / period_s)
         self._hand: Hand | None = None
         self._look_back: LookBack | None = None
-        self._demonstrator: Demonstrator | None = None
-        self._shows_left = profile.shows.times
-        self._show_ticks = round(profile.shows.seconds / period_s)
-        self._shown_speeds = {
-            name: WheelSpeeds(profile.shows.speed * left, profile.shows.speed * right)
-            for name, (left, right) in sense.speeds.items()
-        }
         self._press_id = 0
         self._seen: TeacherView | None = None
         self._now = 0
@@ -152,13 +139,9 @@ class ScriptedPerson(BasicTeacher):
                 self._hold_on(self._hand, picture)
             elif self._look_back is not None:
                 self._go_on_looking_back(self._look_back, picture)
-            elif self._demonstrator is not None:
-                self._go_on_showing(self._demonstrator, picture)
-            elif self._shows_left and self._presses.allows(_SHOW_PRESSES):
-                self._begin_to_show(picture)
             elif self._chance.attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
-        if self._hand is None and self._look_back is None and self._demonstrator is None:
+        if self._hand is None and self._look_back is None:
             self._press_if_due()
         return self._sent.pop(self._now)
 
@@ -180,7 +163,7 @@ class ScriptedPerson(BasicTeacher):
     @property
     def _press_due(self) -> int | None:
         """Tick of the planned press that comes first; None without one, and while a longer act lasts."""
-        if self._hand is not None or self._look_back is not None or self._demonstrator is not None:
+        if self._hand is not None or self._look_back is not None:
             return None
         planned = (self._undo, self._answer, self._correction)
         return min((each.due for each in planned if each is not None), default=None)
@@ -298,31 +281,6 @@ class ScriptedPerson(BasicTeacher):
                 self._plan_undo(look_back.slip)
             self._look_back = None
             self._ignore_until = self._now
-
-    def _begin_to_show(self, picture: TeacherView) -> None:
-        self._forget()
-        self._presses.count()
-        self._shows_left -= 1
-        self._press_id += 1
-        right, ends = self._right(picture), self._now + self._show_ticks
-        hand = Hand(self._hand_ticks, self._press_id, right, begins=self._now, ends=ends)
-        self._demonstrator = Demonstrator(hand, self._shown_speeds, self._chance.look_over)
-        self._go_on_showing(self._demonstrator, picture)
-
-    def _go_on_showing(self, demonstrator: Demonstrator, picture: TeacherView) -> None:
-        """Send the next message of a demonstration; after the last one, let the robot drive."""
-        command = demonstrator.update(self._now, picture, self._right(picture), self._next_id)
-        if command is not None:
-            if isinstance(command, TeachShown):
-                self._presses.count()
-            self._sent.put(self._now, command)
-        if not demonstrator.over:
-            return
-        self._demonstrator = None
-        self._ignore_until = self._now + self._effect_ticks
-        if not self._shows_left:
-            self._presses.count()
-            self._sent.put(self._now, Resume(self._next_id(), SCRIPTED, seen_tick=picture.tick))
 
     def _begin_hold(self, action: str, *, is_right: bool) -> None:
         self._press_id += 1

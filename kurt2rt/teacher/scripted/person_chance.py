@@ -19,7 +19,6 @@ class PersonChance:
         self.question_delay = delays(person.question_delay, "question delays")
         self.mistake_delay = delays(person.mistake_delay, "mistake delays")
         self._look_back_delay = delays(person.look_back.takes, "looks back")
-        self.look_over = delays(person.look_back.takes, "looks over what was shown")
         self.attention = Attention(person.lapses, period_s, "lapses" + of)
         self.errors = random.Random("errors" + of)
         self.slips = random.Random("slips that are noticed" + of)

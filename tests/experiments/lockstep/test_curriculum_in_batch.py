@@ -7,8 +7,7 @@ import anyio
 import pytest
 
 from hal.batch_refusal import BatchRefusedError
-from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
-from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
@@ -68,10 +67,3 @@ def test_batch_refuses_another_plan(tmp_path: Path) -> None:
 def test_batch_refuses_lessons_that_it_does_not_know(task: TaskSettings, why: str) -> None:
     with pytest.raises(BatchRefusedError, match=why):
         require_known_lesson(ROBOT, task)
-
-
-def test_batch_refuses_a_teacher_who_drives_by_hand() -> None:
-    profile = load_teacher("ordinary")
-    shows = profile.model_copy(update={"shows": profile.shows.model_copy(update={"times": 1})})
-    with pytest.raises(BatchRefusedError, match="drives by hand"):
-        require_known_lesson(ROBOT, taught_by(load_task("circle"), shows))

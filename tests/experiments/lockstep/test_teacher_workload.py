@@ -5,7 +5,6 @@ from kurt2rt.core.teaching.commands import (
     Appraise,
     Correct,
     DeleteRla,
-    Drive,
     HoldAction,
     Pursue,
     Resume,
@@ -13,7 +12,6 @@ from kurt2rt.core.teaching.commands import (
     SetPhase,
     Stop,
     Teach,
-    TeachShown,
     Undo,
 )
 from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
@@ -31,18 +29,6 @@ def test_each_kind_is_counted_in_its_minute() -> None:
         WorkloadMinute(corrections=1),
         WorkloadMinute(rewards=1, appraisals=1),
     )
-
-
-def test_demonstrations_count_stick_confirmation_and_go() -> None:
-    load = TeacherWorkload(ticks=6_000, period_s=0.01)
-    for press_id in (1, 2):
-        for tick in range(100 * press_id, 100 * press_id + 50):
-            load.count(tick, Drive("Ann", tick, press_id, 0.1, 0.1))
-        load.count(100 * press_id + 60, TeachShown(str(press_id), "Ann", press_id, (0,)))
-    load.count(300, Resume("3", "Ann"))
-    load.count(400, Resume("4", "Ann"))
-    assert load.minutes == (WorkloadMinute(demonstrated=5),)
-    assert load.minutes[0].presses == 5
 
 
 def test_the_work_of_the_hands_is_load_too() -> None:

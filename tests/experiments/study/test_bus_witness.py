@@ -24,7 +24,7 @@ IN_BATCH = LoopRequest.BATCH
 
 
 def run(folder: Path, asked: LoopRequest = IN_BATCH) -> StudyPlan[None]:
-    plan = make_plan({"": TASK}, [5], parts_in(folder), loops=RequestedLoops(asked, asked))
+    plan = make_plan(TASK, [5], parts_in(folder), loops=RequestedLoops(asked, asked))
     return carry_out(plan, folder)
 
 

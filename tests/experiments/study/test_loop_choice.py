@@ -22,7 +22,7 @@ BOTH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
 
 
 def jobs(robots: int, task: TaskSettings = KNOWN) -> tuple[StudyJob, ...]:
-    return make_plan({"": task}, range(robots), parts_in()).jobs
+    return make_plan(task, range(robots), parts_in()).jobs
 
 
 def test_known_task_is_driven_in_the_batch_with_three_witnesses() -> None:

@@ -18,7 +18,7 @@ TASK = short_task(2.5, 1.0, 1.0)
 
 
 def plan_in(folder: Path, *seeds: int, task: TaskSettings = TASK) -> StudyPlan[None]:
-    return make_plan({"": task}, seeds, parts_in(folder))
+    return make_plan(task, seeds, parts_in(folder))
 
 
 def taught(folder: Path, *seeds: int, processes: int = 1) -> StudyPlan[None]:
@@ -30,7 +30,7 @@ def taught(folder: Path, *seeds: int, processes: int = 1) -> StudyPlan[None]:
 
 def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
     plan, results = taught(tmp_path, 5), Results(tmp_path)
-    (outcome,) = read_results(plan)[""]
+    (outcome,) = read_results(plan)
     assert results.missing(plan.waves[0]) == []
     with Journal.read_only(tmp_path / "wall_following-5.knowledge") as journal:
         assert journal.events()
@@ -59,7 +59,7 @@ def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> Non
     here = taught(tmp_path / "here", 5, 6)
     results = [read_results(each) for each in (there, here)]
     assert results[0] == results[1]
-    first, second = results[0][""]
+    first, second = results[0]
     assert first.lesson.knowledge_hash != second.lesson.knowledge_hash
     for seed in (5, 6):
         file = f"wall_following-{seed}.knowledge"

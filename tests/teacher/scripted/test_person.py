@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from hal.robot import WheelSpeeds
 from kurt2rt.core.rla.lesson_history import hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
@@ -22,7 +21,7 @@ from kurt2rt.core.teacher_settings import (
     TeacherProfile,
     load_teacher,
 )
-from kurt2rt.core.teaching.commands import Command, Correct, Drive, HoldAction, Resume, Stop, Teach, TeachShown, Undo
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 
@@ -31,7 +30,6 @@ PICTURE_TICKS, LINK_TICKS = 5, 5
 QUESTION_TICKS, MISTAKE_TICKS, DIFFERENT_TICKS, SIMILAR_TICKS = 100, 60, 40, 100
 FAR, NEAR = 100, 500
 GROUPS = {"a": "ahead", "near_a": "ahead", "b": "left", "c": "right"}
-SPEEDS = {"a": WheelSpeeds(0.3, 0.3), "b": WheelSpeeds(-0.2, 0.2)}
 
 
 class NearIsB:
@@ -66,7 +64,7 @@ def person(
 ) -> ScriptedPerson:
     own = limits(**changes)
     taught = TeacherProfile(name="p", what="A person", person=own, **{"corrects_tick": "noticed", **(profile or {})})
-    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS, SPEEDS)
+    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
     teacher = ScriptedPerson(taught, own, sense, period_s=PERIOD_S, seed=seed, session="s")
     if phase is not Phase.SUPERVISED:
         teacher.begin_phase(phase)
@@ -309,43 +307,10 @@ def test_update_own_wrong_rewind_is_undone() -> None:
     assert undo.lesson == correction.command_id
 
 
-def show(views: int, *, times: int = 1) -> list[Command]:
-    """Return what a person sends who shows for 2 s, while the robot does what they send."""
-    teacher = person(Phase.SUPERVISED, profile={"shows": {"times": times, "seconds": 2.0, "speed": 0.5}})
-    view, sent = asking(), []
-    for tick in range(1, views + 1):
-        command = teacher.update(view._replace(tick=tick))
-        if command is None:
-            continue
-        sent.append(command)
-        match command:
-            case Drive():
-                view = doing("by hand")
-            case Stop():
-                view = standing()._replace(segments=2)
-            case TeachShown():
-                view = standing()
-            case Resume():
-                view = doing("a")
-    return sent
-
-
-def test_update_shows_then_confirms_then_lets_drive() -> None:
-    sent = show(1500)
-    drives = [each for each in sent if isinstance(each, Drive)]
-    assert {(each.left_m_s, each.right_m_s) for each in drives} == {(0.15, 0.15)}
-    assert 2.0 / (PICTURE_TICKS * PERIOD_S) - 1 <= len(drives) <= 2.0 / (PICTURE_TICKS * PERIOD_S) + 1
-    stop, taught, go = sent[len(drives) :]
-    assert isinstance(stop, Stop)
-    assert isinstance(taught, TeachShown)
-    assert isinstance(go, Resume)
-    assert (stop.press_id, taught.press_id, taught.segments) == (1, 1, (0, 1))
-
-
 def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:
     profile = load_teacher(name)
     assert profile.person is not None
-    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS, SPEEDS)
+    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
     teacher = ScriptedPerson(profile, profile.person, sense, period_s=PERIOD_S, seed=seed, session="s")
     teacher.begin_phase(Phase.CORRECTIONS)
     yield from given(teacher, ([asking()] * 600 + [doing("c")] * 400 + [standing()] * 1500) * 6).items()
