@@ -32,6 +32,7 @@ from tests.cli.helpers import ROOT, CommandLine
 from tests.experiments.study.test_parcel import Job
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
+ENVIRONMENT.pop("COLUMNS", None)  # many workers of pytest have one
 LESSON = (
     *("lesson", "--task", "circle", "--seeds", "3-8", "--set", "teaching.supervised_s=5"),
     *("--set", "teaching.corrections_s=5", "--set", "exam.duration_s=10"),

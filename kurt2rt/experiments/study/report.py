@@ -79,7 +79,7 @@ def spans(seeds: Sequence[int]) -> str:
 
 def _typed(text: str) -> str:
     """Return escaped text with marks around what is typed, in place of backticks."""
-    return re.sub("`(.+?)`", r"<code>\1</code>", text)
+    return re.sub("`(.+?)`", r"<code>\1</code>", str(text))  # markup would escape the marks
 
 
 def _as_uri(path: Path) -> str:

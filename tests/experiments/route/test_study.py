@@ -102,4 +102,5 @@ def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
     text = (done.folder / "report.html").read_text(encoding="utf-8")
     assert Page(text).images == [each.title for each in done.pictures]
     assert COMMAND in text
+    assert "<code>kurt2rt knowledge show</code>" in text
     assert all(table.title in text for table in all_tables(done.study))
