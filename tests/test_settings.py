@@ -443,12 +443,6 @@ def test_a_few_yaml_aliases_are_read(tmp_path: Path) -> None:
     assert content_of(path) == {"name": "x", "actions": [{"kind": "motor"}, {"kind": "motor"}]}
 
 
-def test_an_asterisk_that_is_no_alias_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "my_robot.yaml"
-    path.write_text(f"# 2 * 3 *x\n{ROBOT}", encoding="utf-8")
-    assert load_settings(path, Kurt2Settings) == load_kurt2("kurt2")
-
-
 def test_a_fifo_given_as_settings_is_refused(tmp_path: Path) -> None:
     fifo = tmp_path / "fifo.yaml"
     os.mkfifo(fifo)

@@ -86,7 +86,9 @@ def test_worker_new_makes_a_private_file_and_overwrites_none(kurt2rt: CommandLin
 async def test_program_without_the_cluster_file_reaches_no_port(cluster: Path) -> None:
     _, security = read_cluster_file(cluster)
     ready: asyncio.Future[str] = asyncio.Future()
-    async with Scheduler(protocol="tls", host="127.0.0.1", port=0, security=security, dashboard=False) as scheduler:
+    async with Scheduler(
+        protocol="tls", host="127.0.0.1", port=0, security=security, dashboard=False, dashboard_address=":0"
+    ) as scheduler:
         put_address(cluster, scheduler.address)
         before = listening()
         serving = asyncio.create_task(serve(cluster, ready.set_result))

@@ -108,13 +108,6 @@ def test_reload_of_the_priority_keeps_the_guards_above_the_loop(
     assert program.end(signal.SIGTERM).exit_code == 0
 
 
-def test_hangup_of_the_terminal_ends_a_run(tmp_path: Path) -> None:
-    words = ("run", "--port", "0", "--knowledge", "mine.knowledge")
-    with running(*words, folder=tmp_path) as program:
-        program.wait_for("teachers are listened to")
-        assert program.end(signal.SIGHUP).exit_code == 0
-
-
 @pytest.mark.parametrize("words", [("--teacher", "none"), ("--auto",)])
 def test_a_unit_has_a_person_to_say_go(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
     assert "--service" in kurt2rt.misused("run", "--service", *words)

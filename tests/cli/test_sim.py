@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.helpers import CommandLine, unknown_name
-from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, kill_and_return, teach_kill_and_return
+from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, teach_kill_and_return
 
 
 def a_bus(name: str) -> str:
@@ -16,13 +16,6 @@ def a_bus(name: str) -> str:
 async def test_killed_program_stops_within_the_watchdog_and_comes_back(tmp_path: Path) -> None:
     cycles = await teach_kill_and_return(a_bus("story"), tmp_path)
     assert cycles <= WATCHDOG_CYCLES + BRAKING_CYCLES
-
-
-@pytest.mark.deep
-async def test_sim_kill_prints_the_time_until_control(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    away_s = [await kill_and_return(a_bus("away"), tmp_path) for _ in range(5)]
-    with capsys.disabled():
-        print(f"\nfrom kill -9 to the next CONTROL: {', '.join(f'{each:.2f}' for each in away_s)} s; wanted: 2 s")
 
 
 def test_it_ends_when_its_time_or_its_input_is_over(kurt2rt: CommandLine) -> None:

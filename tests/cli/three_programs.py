@@ -1,9 +1,8 @@
 """Robot, runtime and teacher as three programs that meet on a bus and over UDP, and one that looks on at the bus."""
 
 import math
-import time
 from collections.abc import AsyncIterator, Callable, Iterator
-from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
+from contextlib import asynccontextmanager, contextmanager, suppress
 from pathlib import Path
 
 import anyio
@@ -154,21 +153,6 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
                 assert (await we.take()).accepted
                 await until_it_drives(we)
     return cycles
-
-
-async def kill_and_return(bus: str, folder: Path) -> float:
-    """Return the time from the kill of the robot's program to the first CONTROL of the next one, in s."""
-    with running("sim", "--bus", bus, folder=folder) as sim, onlooker(bus) as seen, ExitStack() as supervised:
-        await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
-        robot = supervised.enter_context(runtime(bus, folder))
-        await seen.until(is_control)
-        robot.process.kill()
-        killed_at_s = time.monotonic()
-        robot.process.wait()
-        seen.forget()
-        supervised.enter_context(runtime(bus, folder))
-        await seen.until(is_control)
-        return time.monotonic() - killed_at_s
 
 
 async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:

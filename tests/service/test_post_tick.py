@@ -137,18 +137,6 @@ def runtime_from(saved: Statistics, *events: RlaCreated) -> Runtime:
     )
 
 
-def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:
-    knows(shift, 7)
-    counted = shift.desk.runtime.statistics
-    counted.uses.update({7: 3, 8: 2})
-    counted.transitions.update({(7, 7): 1, (7, 8): 1, (8, 7): 1})
-    shift.run(CHECKPOINT)
-    shift.write()
-    with Journal.read_only(shift.path) as journal:
-        saved = journal.statistics()
-    assert (saved.uses, saved.transitions) == ({7: 3}, {(7, 7): 1})
-
-
 def test_post_tick_question_comes_once(shift: Shift) -> None:
     shift.desk.runtime.inbox.put(RobotRepositioned())
     shift.run(3 * SECOND)

@@ -379,6 +379,15 @@ async def test_command_on_an_old_state_is_refused(
     assert len(fixture.told(*NAMES)) == told
 
 
+async def test_take_on_an_old_state_is_refused(fixture: BridgeFixture) -> None:
+    first, second = Page(fixture), Page(fixture)
+    await first.see(teacher="phone")
+    await second.see()
+    fixture.clock.advance(1.1)
+    assert (await second.command("take"))["why"] == "stale"
+    assert second.last("page")["seat"] == "elsewhere"
+
+
 async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture, page: Page) -> None:
     await page.see(stopped=ActiveStop(StopReason.SAID_STOP, "phone"))
     shown = page.picture
