@@ -1,8 +1,6 @@
 """The part inside the machine runs one command as a shell would, within its time."""
 
-import errno
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -43,10 +41,6 @@ def test_the_exit_status_is_what_a_shell_would_give(command: tuple[str, ...], st
     assert run(*command).returncode == status
 
 
-def test_a_command_that_cannot_run_is_named() -> None:
-    assert f"nosuch: {os.strerror(errno.ENOENT)}\n" in run("nosuch").stderr
-
-
 def test_output_environment_and_directory_are_those_of_the_order(tmp_path: Path) -> None:
     done = run("sh", "-c", "echo $WHO in $PWD; echo oh >&2; cat", directory=str(tmp_path), prefix=["env", "WHO=you"])
     assert (done.stdout, done.stderr) == (f"you in {tmp_path}\n", "oh\n")
@@ -63,11 +57,6 @@ def test_run_command_over_its_limit_ends_with_its_children() -> None:
     done = run("sh", "-c", "sleep 1000 & wait", limit_s=0.3)
     assert done.returncode == 124
     assert " 0.3 s\n" in done.stderr
-
-
-def test_a_commands_own_124_is_no_time_limit() -> None:
-    done = run("sh", "-c", "exit 124")
-    assert (done.returncode, done.stderr) == (124, "")
 
 
 def test_run_children_left_by_a_command_end_with_it() -> None:

@@ -30,15 +30,6 @@ def test_lost_interface_latches_and_reports_one_line(drive: Drive, link: Link, a
 
 
 @AWAY
-def test_lost_interface_stays_latched_and_names_the_command(drive: Drive, link: Link, away: Away) -> None:
-    away(link)
-    drive.ticks(350)
-    assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
-    assert drive.readings.infrared_age_s > 3.0
-    assert "ip link set vcan0 up" in drive.health.trouble
-
-
-@AWAY
 def test_restored_interface_robot_waits_for_resume(drive: Drive, link: Link, away: Away) -> None:
     away(link)
     drive.ticks(50)

@@ -10,7 +10,6 @@ import pytest
 
 from tests.hil.machine.__main__ import main
 from tests.hil.machine.packages import need
-from tests.hil.machine.processor import least_busy
 from tests.hil.machine.trouble import MachineError
 
 ROOT = Path(__file__).parents[2]
@@ -57,10 +56,6 @@ def test_need_missing_packages_prints_the_install_command() -> None:
     assert " install --no-install-recommends sources toolbox " in command
 
 
-def test_the_machine_is_put_on_a_processor_that_it_may_use() -> None:
-    assert least_busy() in os.sched_getaffinity(0)
-
-
 @boots
 def test_output_and_exit_status_come_through() -> None:
     done = in_uml("--", "sh", "-c", "echo out; echo err >&2; exit 7")
@@ -87,13 +82,6 @@ def test_machine_keeps_files_of_shared_directories_only(tmp_path: Path) -> None:
     assert done.stdout == "1\n"
     assert (shared / "kept").read_text() == "1\n"
     assert list(other.iterdir()) == []
-
-
-@boots
-def test_a_command_that_takes_too_long_is_ended() -> None:
-    done = in_uml("--limit", "1", "sleep", "1000")
-    assert done.returncode == 124
-    assert " 1 s\n" in done.stderr
 
 
 @boots

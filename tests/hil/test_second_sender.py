@@ -28,16 +28,6 @@ def test_the_robot_obeys_a_stop_that_a_person_sends(drive: Drive) -> None:
     assert drive.grant == STOPPED
 
 
-def test_after_a_resume_it_stops_again_if_the_other_goes_on(drive: Drive) -> None:
-    cansend(FORWARD_30_CM_S)
-    drive.tick()
-    drive.kurt2.release()
-    drive.until_it_drives()
-    cansend(FORWARD_30_CM_S)
-    assert drive.tick() == STOPPED
-    assert drive.health.foreign_control == 2
-
-
 def test_the_other_may_be_in_the_same_program(drive: Drive, vcan0: str) -> None:
     other = open_bus(vcan0)
     other.control_port().send(encode_brake())
