@@ -52,11 +52,10 @@ def test_page_in_its_main_states_breaks_no_rule_of_axe(a_lesson: Lesson) -> None
 
 
 def assert_accessible(phone: Phone, what: str) -> None:
-    """Assert axe's rules, and contrast in both themes: all else is the same in the dark."""
+    """Assert axe's rules, and more contrast than they want in both themes: all else is the same in the dark."""
     assert violations(phone) == [], what
     assert_readable(phone.run(TEXTS), what)
     with phone.in_the_dark():
-        assert violations(phone, "color-contrast") == [], f"{what}, dark"
         assert_readable(phone.run(TEXTS), f"{what}, dark")
 
 
