@@ -71,7 +71,7 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
     with job_bars() as report:
         outcome = anyio.run(run, report)
     picture = out / f"{stem}.png"
-    draw_route(setup.factory, task.exam.worlds[0], outcome, picture)
+    draw_route(setup.factory, outcome, picture)
     table = robot_table(outcome, task)
     if options.as_json:
         print_json({"tables": tables_of([table]), "knowledge": file, "picture": picture})

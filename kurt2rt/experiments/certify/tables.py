@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from matplotlib.figure import Figure
-
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.certify.run import RunOutcome
 from kurt2rt.experiments.certify.study import Certificate
 from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.report import label_of, wilson_interval
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
-from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.drive_row import row_of
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of
 from kurt2rt.experiments.study.report import Section, write_report
 from kurt2rt.experiments.study.table import Table, collisions_text, table_of, to_text
@@ -25,8 +24,6 @@ BROKEN = "a sensor breaks"
 """Name of the summary of all runs with a broken sensor."""
 _MOST_GROUPS = 200
 """Groups of runs that an interval of clustered events is bootstrapped over; each run by itself needs 1 GB."""
-_CARRIED_M = 0.2
-"""Greater distance of two points of a trail, 0.1 s apart: the robot was repositioned."""
 
 
 class Share(NamedTuple):
@@ -226,37 +223,15 @@ def draw_worst(
     `commands`: by which a user drives each run again. Raises OSError.
     """
     for exam, command in zip(exams, commands, strict=True):
-        path = folder / f"run-{exam.seed}.png"
-        draw_run(exam, factory, path)
-        yield SavedFigure(path, f"Run {exam.seed}: {_format_run(exam)}", command)
-
-
-def draw_run(exam: ExamResult, factory: SimulationFactory, path: Path) -> None:
-    """Draw the drive of one run, its questions and its collisions, as a PNG to `path`. Raises OSError."""
-    figure = Figure(figsize=(5.6, 6.0), layout="constrained")
-    axes = figure.subplots()
-    factory.draw(axes, exam.world)
-    draw_trail(axes, exam.trail, "the robot", carried_m=_CARRIED_M)
-    marks = (
-        (exam.trail[:1], "o", START, "start"),
-        (exam.unknown_positions, "o", ASKED, "situation unknown"),
-        (exam.collision_positions, "x", COLLIDED, "collision"),
-    )
-    for places, marker, colour, label in marks:
-        if places:
-            axes.plot(*columns(places), marker, color=colour, markersize=6, zorder=5, label=label)
-    axes.set_title(f"Run {exam.seed} in world {label_of(exam.world)}")
-    legend_below(axes, columns=4)
-    save(figure, path)
-
-
-def _format_run(exam: ExamResult) -> str:
-    """Return a run in a line, such as `world A, 2 collisions, stuck after 81 s`."""
-    collisions = collisions_text(exam.collisions)
-    end = exam.alarm or ("stuck" if exam.stuck else "")
-    asked = f"{len(exam.unknown_positions)} times in the unknown" if exam.unknown_positions else ""
-    parts = (f"world {label_of(exam.world)}", collisions, asked, f"{end} after {exam.duration_s:.0f} s" if end else "")
-    return ", ".join(part for part in parts if part)
+        path, drive = folder / f"run-{exam.seed}.png", row_of(exam, ExamVerdict.NOT_JUDGED, trails=True)
+        figure, (axes,) = panels_of(1, 1, (5.6, 6.0))
+        draw_drive(axes, factory, drive)
+        axes.set_title(f"Run {exam.seed} in world {label_of(exam.world)}")
+        legend_below(axes, columns=4)
+        save(figure, path)
+        asked = f"{len(drive.asked_at)} times in the unknown" if drive.asked_at else ""
+        parts = (f"world {label_of(exam.world)}", collisions_text(drive.collisions), asked, drive.early_end)
+        yield SavedFigure(path, f"Run {exam.seed}: {', '.join(filter(None, parts))}", command)
 
 
 def write_certificate(

@@ -1,27 +1,21 @@
 """Figures of the paper, drawn from our results, and one figure of drives for each task."""
 
-import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.lockstep.report import label_of
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
 from kurt2rt.experiments.paper.tables import GrowthStudy, PaperStudy
 from kurt2rt.experiments.study.drive_row import DriveRow
-from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 
-_LIFTED_M = 0.5
-"""A robot that is so far from where it was a moment ago was set down elsewhere."""
 _COLUMNS = 3
 _MOST_UNSEEN = 1
 """Generated worlds in the picture of a task."""
@@ -33,9 +27,8 @@ def draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
 
     Writes a PNG to `path`. Raises OSError.
     """
-    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
-    axes = figure.subplots()
-    _draw_drive(axes, factory, drive)
+    figure, (axes,) = panels_of(1, 1, (7.0, 6.0))
+    draw_drive(axes, factory, drive)
     legend_below(axes, columns=4)
     save(figure, path)
 
@@ -45,18 +38,11 @@ def draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Pa
 
     Writes a PNG to `path`. Raises OSError.
     """
-    columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
-    rows = math.ceil(len(drives) / columns)
-    figure = Figure(
-        figsize=(max(5.4, 4.6 * columns), 5.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
-    )
-    panels = figure.subplots(rows, columns, squeeze=False).flatten().tolist()
-    for axes, drive in zip(panels, drives, strict=False):
-        _draw_drive(axes, factory, drive)
+    figure, panels = panels_of(len(drives), 2 if len(drives) == 4 else _COLUMNS, (5.0, 5.4))
+    for axes, drive in zip(panels, drives, strict=True):
+        draw_drive(axes, factory, drive)
         axes.set_title(_format_drive(drive), fontsize="medium")
         legend_below(axes, columns=2)
-    for axes in panels[len(drives) :]:
-        axes.set_axis_off()
     save(figure, path)
 
 
@@ -64,20 +50,6 @@ def _format_drive(drive: DriveRow) -> str:
     end = f", {drive.early_end}" if drive.early_end else ""
     progress = f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions_text(drive.collisions)}"
     return f"{progress}\n{_VERDICT_TEXTS[drive.verdict]}{end}"
-
-
-def _draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveRow) -> None:
-    factory.draw(axes, drive.world)
-    draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_LIFTED_M, width=0.9)
-    if drive.trail:
-        # Hollow, for a robot that knows nothing asks where it starts.
-        axes.plot(*columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
-    if drive.asked_at:
-        label = f"situation unknown ({len(drive.asked_at)})"
-        axes.plot(*columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
-    if drive.collided_at:
-        label = f"collided ({len(drive.collided_at)})"
-        axes.plot(*columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
 
 
 _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}
@@ -129,14 +101,10 @@ def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -
 
     Writes a PNG to `path`. Raises OSError.
     """
-    rows = math.ceil(len(worlds) / 2)
-    figure = Figure(figsize=(10.0, 5.0 * rows), layout="constrained")
-    panels = figure.subplots(rows, 2, squeeze=False).flatten().tolist()
-    for axes, world in zip(panels, worlds, strict=False):
+    figure, panels = panels_of(len(worlds), 2, (5.0, 5.0))
+    for axes, world in zip(panels, worlds, strict=True):
         factory.draw(axes, world)
         axes.set_title(f"World {label_of(world)}" if len(world) == 1 else f"{world.capitalize()} world")
-    for axes in panels[len(worlds) :]:
-        axes.set_axis_off()
     save(figure, path)
 
 

@@ -6,16 +6,14 @@ from itertools import pairwise
 from pathlib import Path
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.lockstep.trails import ASKED, columns
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteOutcome
 from kurt2rt.experiments.route.tables import RouteStudy
 from kurt2rt.experiments.study.drive_row import Place
-from kurt2rt.experiments.study.figures import COLLIDED, START, SavedFigure, legend_below, save
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 
 _ROUTE = "#e8a33d"
@@ -27,10 +25,9 @@ _BESIDE_M = 0.13
 
 def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each length and variant into the folder and yield it: route-<variant>-<decisions>.png. Raises OSError."""
-    world = study.plan.about.task.exam.worlds[0]
     for (variant, decisions), outcomes in study.routes:
         path = folder / f"route-{variant.name}-{decisions}.png"
-        draw_routes(factory, world, outcomes, path)
+        draw_routes(factory, outcomes, path)
         yield SavedFigure(
             path,
             f"Routes of {decisions} decisions: {variant.title}",
@@ -40,35 +37,30 @@ def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) ->
         )
 
 
-def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
+def draw_route(factory: SimulationFactory, outcome: RouteOutcome, path: Path) -> None:
     """Draw the route of one robot with the numbers of its decisions, and the drive.
 
     Writes a PNG to `path`. Raises OSError.
     """
-    figure = Figure(figsize=(7.2, 7.8), layout="constrained")
-    axes = figure.subplots()
-    _draw(axes, factory, world, outcome)
+    figure, (axes,) = panels_of(1, 1, (7.2, 7.8))
+    _draw(axes, factory, outcome)
     axes.set_title(_told(outcome), fontsize="medium")
     legend_below(axes, columns=3)
     save(figure, path)
 
 
-def draw_routes(factory: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
+def draw_routes(factory: SimulationFactory, outcomes: Sequence[RouteOutcome], path: Path) -> None:
     """Draw a panel for each robot: route, decisions and drive. Writes a PNG to `path`. Raises OSError."""
-    wide = min(_COLUMNS, len(outcomes))
-    rows = math.ceil(len(outcomes) / wide)
-    figure = Figure(figsize=(4.0 * wide, 4.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08))
-    panels = figure.subplots(rows, wide, squeeze=False).flatten().tolist()
-    for axes, outcome in zip(panels, outcomes, strict=False):
-        _draw(axes, factory, world, outcome)
+    figure, panels = panels_of(len(outcomes), _COLUMNS, (4.0, 4.4))
+    for axes, outcome in zip(panels, outcomes, strict=True):
+        _draw(axes, factory, outcome)
         axes.set_title(_told(outcome), fontsize="small")
-    for axes in panels[len(outcomes) :]:
-        axes.set_axis_off()
     save(figure, path)
 
 
-def _draw(axes: Axes, factory: SimulationFactory, world: str, outcome: RouteOutcome) -> None:
-    factory.draw(axes, world)
+def _draw(axes: Axes, factory: SimulationFactory, outcome: RouteOutcome) -> None:
+    # Questions are not drawn: wrong decisions have their colour.
+    draw_drive(axes, factory, outcome.drive.model_copy(update={"asked_at": ()}), width=0.8)
     route = [*outcome.route, outcome.route[0]]
     label: str | None = f"the route, {len(outcome.route)} decisions"
     for number, (here, there) in enumerate(pairwise(route), start=1):
@@ -78,17 +70,11 @@ def _draw(axes: Axes, factory: SimulationFactory, world: str, outcome: RouteOutc
         place = (from_x + 0.14 * (to_x - from_x), from_y + 0.14 * (to_y - from_y))
         axes.annotate(str(number), place, fontsize="x-small", ha="center", va="center", zorder=7, bbox=_BOX)
     axes.plot([], [], color=_ROUTE, linewidth=2.4, label=label)
-    drive = outcome.drive
-    draw_trail(axes, drive.trail, f"the drive, {drive.duration_s:.0f} s", carried_m=0.5, width=0.8)
-    axes.plot(*columns([outcome.start]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
     for layer in LAYERS:
         wrong = [(each.x_m, each.y_m) for each in outcome.wrong if each.layer == layer]
         if wrong:
             label = f"wrong: {layer} ({len(wrong)})"
             axes.plot(*columns(wrong), _MARKS[layer], color=ASKED, markersize=7, zorder=5, label=label)
-    if drive.collided_at:
-        label = f"collided ({len(drive.collided_at)})"
-        axes.plot(*columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
 
 
 _BOX = {"boxstyle": "circle,pad=0.12", "facecolor": "white", "edgecolor": _ROUTE, "linewidth": 0.8}

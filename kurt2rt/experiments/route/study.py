@@ -29,7 +29,6 @@ class RouteOutcome(TaughtOutcome):
 
     route: tuple[Place, ...]
     """Its junctions, from the first decision on."""
-    start: Place
     mid_rlas: int
     mid_asks: int
     mid_corrections: int
@@ -110,7 +109,6 @@ class RouteJob(StudyJob):
             seed=self.seed,
             lesson=counts_of(lessons[-1]).model_copy(update=counts),
             route=tuple((leg.junction.x_m, leg.junction.y_m) for leg in legs),
-            start=(legs[0].middle.x_m, legs[0].middle.y_m),
             mid_rlas=len(lessons[-1].mid_rlas),
             mid_asks=of_all("mid_asks"),
             mid_corrections=of_all("mid_corrections"),

@@ -1,14 +1,22 @@
-"""Figures in files, in the style that all of them share."""
+"""Figures in files, in the style that all of them share, and the picture of a drive."""
 
+import math
 from pathlib import Path
 from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-COLLIDED = "#111111"
+from hal.simulation import SimulationFactory
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.study.drive_row import DriveRow
+
+_COLLIDED = "#111111"
 START = "#2e8540"
 _DPI = 130
+_CARRIED_M = 0.5
+"""A robot that is so far from where it was 0.2 s ago was set down elsewhere."""
 
 
 class SavedFigure(NamedTuple):
@@ -22,6 +30,35 @@ class SavedFigure(NamedTuple):
 def save(figure: Figure, path: Path) -> None:
     """Save a figure as a PNG whose bytes depend on its content only. Raises OSError."""
     figure.savefig(path, dpi=_DPI, metadata={"Software": None})
+
+
+def panels_of(count: int, in_a_row: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
+    """Return a figure with so many panels, at most `in_a_row` beside each other; `size`: of each, in inches."""
+    wide = min(in_a_row, count)
+    rows = math.ceil(count / wide)
+    layout = ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
+    figure = Figure(figsize=(size[0] * wide, size[1] * rows), layout=layout)
+    panels = figure.subplots(rows, wide, squeeze=False).flatten().tolist()
+    for unused in panels[count:]:
+        unused.set_axis_off()
+    return figure, panels[:count]
+
+
+def draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveRow, width: float = 0.9) -> None:
+    """Draw the world and the trail of a drive, with its start, unknown situations and collisions.
+
+    `width`: of the trail's line, in points.
+    """
+    factory.draw(axes, drive.world)
+    draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_CARRIED_M, width=width)
+    # The start is hollow, for a robot that knows nothing asks there.
+    axes.plot(*columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
+    if drive.asked_at:
+        label = f"situation unknown ({len(drive.asked_at)})"
+        axes.plot(*columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
+    if drive.collided_at:
+        label = f"collided ({len(drive.collided_at)})"
+        axes.plot(*columns(drive.collided_at), "X", color=_COLLIDED, markersize=8, zorder=5, label=label)
 
 
 def legend_below(axes: Axes, columns: int = 3) -> None:
