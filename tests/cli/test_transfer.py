@@ -7,6 +7,7 @@ import pytest
 
 from tests.cli.helpers import CommandLine, results_in
 
+WORDS = ("study", "transfer", "--after", "1", "--after", "0", "--teacher", "superhuman")
 SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
     *("--seconds", "3", "--jobs", "1", "--out", "made"),
@@ -14,19 +15,7 @@ SHORT = (
 
 
 def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
-    words = (
-        "study",
-        "transfer",
-        "--seeds",
-        "1100,1101",
-        "--after",
-        "1",
-        "--after",
-        "0",
-        "--teacher",
-        "superhuman",
-        *SHORT,
-    )
+    words = (*WORDS, "--seeds", "1100,1101", *SHORT)
     said = kurt2rt(*words, "--json")
     assert said.exit_code == 0, said.err
     document = json.loads(said.out)
@@ -48,19 +37,7 @@ def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
 
 @pytest.mark.deep
 def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
-    words = (
-        "study",
-        "transfer",
-        "--seeds",
-        "1100",
-        "--after",
-        "1",
-        "--after",
-        "0",
-        "--teacher",
-        "superhuman",
-        *SHORT[:-1],
-    )
+    words = (*WORDS, "--seeds", "1100", *SHORT[:-1])
     for loop in ("batch", "bus"):
         told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
         assert told.exit_code == 0, told.err

@@ -117,17 +117,6 @@ def test_a_task_of_ones_own_is_done_and_nothing_is_asked_of_it(tmp_path: Path) -
     assert (job.task.name, job.settings.asked.rlas_at_most) == ("mine", 0)
 
 
-def test_an_unknown_task_is_refused_with_those_there_are() -> None:
-    with pytest.raises(SettingsError, match=r"sledging: .* circle, .*streets"):
-        planned("circle", "sledging")
-
-
-def test_an_unknown_world_is_refused(tmp_path: Path) -> None:
-    teaching = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())["teaching"]
-    with pytest.raises(SettingsError, match=r"nowhere: .*worlds"):
-        planned(changed_task(tmp_path, name="mine", teaching=teaching | {"world": "nowhere"}))
-
-
 @pytest.mark.parametrize("path", ["circle.yaml", "../tasks/circle.yaml"])
 def test_a_path_to_a_shipped_task_is_the_same_as_its_name(path: str) -> None:
     by_path, by_name = planned(str(CONFIG_DIR / "tasks" / path), "circle"), planned("circle")

@@ -13,11 +13,9 @@ from kurt2rt.experiments.phases.steps import (
     CRITIC_ALONE,
     INTACT,
     JUDGED,
-    LONG_RUN,
     PATH,
     PHASE_2,
     PHASE_4,
-    PHASE_5,
     REWARDS,
     SHUFFLED,
     TITLES,
@@ -65,13 +63,6 @@ def test_blame_by_chance_waits_for_what_it_is_to_be_as_often_as() -> None:
     assert rewards.plan is not None
     assert chance.plan.times == rewards.plan.times  # the most that he may blame, too
     assert chance.plan.signs == "chance"
-
-
-def test_nobody_teaches_where_the_robot_is_alone() -> None:
-    for name in (PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT, LONG_RUN):
-        plan = STEPS[name].plan
-        assert plan is not None
-        assert [phase for phase, _ in plan.phases] == [Phase.AUTONOMOUS]
 
 
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])

@@ -62,13 +62,6 @@ def test_missing_has_a_job_that_replaces_results_of_another_make(tmp_path: Path)
     assert results.missing([Job(JOBS[0].file, other, replaces_others=True), JOBS[1]]) == [0]
 
 
-def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
-    (tmp_path / "results" / "shipped").mkdir(parents=True)
-    (tmp_path / JOBS[0].file).write_text("{}")
-    with pytest.raises(StudyError, match=r"one-1\.json: .*--out"):
-        Results(tmp_path).missing(JOBS)
-
-
 def test_missing_raises_for_an_incomplete_result(tmp_path: Path) -> None:
     results = Results(tmp_path)
     results.write(JOBS[0], robot(1))
