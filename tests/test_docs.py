@@ -187,13 +187,14 @@ def folder(plugin_folder: Path, taught: Path) -> Path:
     task["exam"].update(duration_s=5.0)
     (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
     record(tmp_path, STORED / "walls.mcap")
-    write_changed_copies(tmp_path)
+    for name, text in changed_copies():
+        (tmp_path / name).write_text(text, encoding="utf-8")
     write_printed_modules(tmp_path)
     return tmp_path
 
 
-def write_changed_copies(folder: Path) -> None:
-    """Write each changed copy that a diff block of the documents describes. Each change must apply to one place."""
+def changed_copies() -> Iterator[tuple[str, str]]:
+    """Yield name and text of each changed copy in a diff block of the documents. Each change must apply to one place."""
     for block in blocks("diff"):
         names = re.match(r"--- (\S+)\n\+\+\+ (\S+)\n", block.text)
         assert names, f"{where(block)}: begin it with --- FILE and +++ COPY"
@@ -203,7 +204,7 @@ def write_changed_copies(folder: Path) -> None:
             was = "".join(line[1:] for line in lines if line[0] in " -")
             assert text.count("\n" + was) == 1, f"{where(block)}: {names[1]} has not exactly one place of:\n{was}"
             text = text.replace("\n" + was, "\n" + "".join(line[1:] for line in lines if line[0] in " +"))
-        (folder / names[2]).write_text(text, encoding="utf-8")
+        yield names[2], text
 
 
 def write_printed_modules(folder: Path) -> None:
@@ -389,27 +390,27 @@ def documented_policies(tmp_path_factory: pytest.TempPathFactory, monkeypatch: p
     monkeypatch.setattr(behaviors.policies, "__path__", [*behaviors.policies.__path__, str(folder)])
 
 
-def printed_task(beginning: str, folder: Path, **shorter: Mapping[str, object]) -> Path:
-    """Write the task whose text begins so to a file; `shorter` gives keys of its sections another value."""
-    (block,) = (block for block in blocks("yaml") if block.text.startswith(beginning))
-    content = yaml.safe_load(block.text)
+def printed_task(name: str, folder: Path, **shorter: Mapping[str, object]) -> Path:
+    """Write a printed task, or a changed copy of a shipped one; `shorter` gives keys of its sections another value."""
+    printed = (block.text for block in blocks("yaml") if block.text.startswith(f"# config/tasks/{name}\n"))
+    content = yaml.safe_load(dict(changed_copies()).get(name) or next(printed))
     for section, values in shorter.items():
         content[section].update(values)
-    path = folder / f"{content['name']}.yaml"
+    path = folder / name
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
     return path
 
 
-PRINTED_TASKS = ("# my_task.yaml", "# config/tasks/wandering.yaml")
+PRINTED_TASKS = ("my_task.yaml", "wandering.yaml")
 
 
 @pytest.mark.usefixtures("documented_policies")
-@pytest.mark.parametrize("beginning", PRINTED_TASKS)
-def test_printed_task_after_a_short_lesson_succeeds(beginning: str, tmp_path: Path) -> None:
-    world = yaml.safe_load(printed_task(beginning, tmp_path).read_text(encoding="utf-8"))["teaching"]["world"]
+@pytest.mark.parametrize("name", PRINTED_TASKS)
+def test_printed_task_after_a_short_lesson_succeeds(name: str, tmp_path: Path) -> None:
+    world = yaml.safe_load(printed_task(name, tmp_path).read_text(encoding="utf-8"))["teaching"]["world"]
     shorter = {"supervised_s": 5.0, "corrections_s": 25.0, "reposition_every_s": 0.0}
     exam: dict[str, object] = {"worlds": [world], "duration_s": 8.0}
-    task = load_task(str(printed_task(beginning, tmp_path, teaching=shorter, exam=exam)))
+    task = load_task(str(printed_task(name, tmp_path, teaching=shorter, exam=exam)))
     taught = teach(tmp_path / "knowledge", task)
     (result,) = anyio.run(
         lambda: run_exams(STAGE, ROBOT, task, taught.events, (world,), seed=1, report=lambda *_: None)
@@ -420,9 +421,9 @@ def test_printed_task_after_a_short_lesson_succeeds(beginning: str, tmp_path: Pa
 
 @pytest.mark.deep
 @pytest.mark.usefixtures("documented_policies")
-@pytest.mark.parametrize("beginning", PRINTED_TASKS)
-def test_printed_task_on_the_default_seed_succeeds(beginning: str, tmp_path: Path) -> None:
-    task = load_task(str(printed_task(beginning, tmp_path)))
+@pytest.mark.parametrize("name", PRINTED_TASKS)
+def test_printed_task_on_the_default_seed_succeeds(name: str, tmp_path: Path) -> None:
+    task = load_task(str(printed_task(name, tmp_path)))
     assert [exam.succeeded for exam in examined(task, 1, tmp_path)] == [True, True, True]
 
 
