@@ -194,7 +194,7 @@ def folder(plugin_folder: Path, taught: Path) -> Path:
 
 
 def changed_copies() -> Iterator[tuple[str, str]]:
-    """Yield name and text of each changed copy in a diff block of the documents. Each change must apply to one place."""
+    """Yield name and text of each changed copy in a diff block. Each of its changes must apply to one place."""
     for block in blocks("diff"):
         names = re.match(r"--- (\S+)\n\+\+\+ (\S+)\n", block.text)
         assert names, f"{where(block)}: begin it with --- FILE and +++ COPY"
