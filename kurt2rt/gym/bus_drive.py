@@ -1,16 +1,46 @@
 """Drive of an agent over the simulated CAN bus: the robot's runtime, with the agent in place of the RLAs."""
 
+from behaviors.repertoire import Repertoire
+from hal.robot import STANDSTILL, SensorReadings
 from hal.simulation import Simulation
+from kurt2rt.core.basic.held_action import HeldAction
+from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
-from kurt2rt.gym.commanded_level import CommandedLevel
 from kurt2rt.gym.endings import Ending
 from kurt2rt.gym.episode_setup import EpisodeSetup
 from kurt2rt.gym.moment import Moment
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
+
+
+class CommandedLevel:
+    """Level that drives the commanded action until the next command, and asks before the first one."""
+
+    def __init__(self, repertoire: Repertoire) -> None:
+        self._repertoire = repertoire
+        self._held = HeldAction(repertoire, minimum_ticks=0)
+        self._action: str | None = None
+
+    def command(self, action: str) -> None:
+        """Let an action drive from the next tick on; a finished one starts again.
+
+        Raises KeyError for an action outside the repertoire.
+        """
+        if self._repertoire[action].finished:
+            self._held.stop()
+        self._action = action
+
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:  # noqa: ARG002 - the agent sees the situation
+        """Return the decision to drive by the commanded action, or to stand for `blocking_cause`."""
+        if blocking_cause is not None or self._action is None:
+            self._held.stop()
+            return Decision(STANDSTILL, blocking_cause or DecisionCause.UNKNOWN, None, None, None)
+        self._held.select(self._action)
+        return Decision(self._held.step(readings), DecisionCause.TEACHER, self._action, None, None)
 
 
 class BusDrive(Episode):

@@ -1,36 +1,42 @@
 """Gymnasium environment of one task: the agent takes the place of the RLAs, ten times a second."""
 
-from collections.abc import Collection
-from typing import Any, TypeAlias
+import math
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, NamedTuple, TypeAlias
 
 import gymnasium
 import numpy as np
-from gymnasium.spaces import Discrete
+from gymnasium.spaces import Box, Discrete, Space
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
+from hal.robot import HIGHEST_COUNTS
+from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.task_settings import TaskSettings
+from hal.simulation import Pose, Position, SimulationFactory
+from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed, load_situation
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
-from kurt2rt.gym.agent_task import load_agent_task
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
 from kurt2rt.gym.episode_setup import EpisodeSetup
 from kurt2rt.gym.loops import open_drive, read_loop
 from kurt2rt.gym.moment import AgentDrive, Moment
-from kurt2rt.gym.picture import Picture
-from kurt2rt.gym.reset_options import read_options
 from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, build_reward
-from kurt2rt.gym.spaces import observation_space
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from simbridge.simulation import Kurt2SimulationFactory
+from simbridge.survey.drawing import draw_robot, draw_trail
+from simbridge.worlds.world_loading import load_world
 
 Observation: TypeAlias = NDArray[np.float64]
 Info: TypeAlias = dict[str, Any]
 
 _DECISION_S = 0.1
 _MOST_SEEDS = 2**31
+_SIDE_INCHES, _DOTS_PER_INCH = 6.0, 80
+Values: TypeAlias = NDArray[np.float64]
 
 
 class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
@@ -195,3 +201,90 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             "time_s": now.ticks * self._settings.cycle_s,
             "ending": "" if now.ending is None else now.ending.value,
         }
+
+
+class Picture:
+    """Drawing of one world, for the frames of one episode."""
+
+    def __init__(self, factory: SimulationFactory, world: str, robot: RobotSettings) -> None:
+        """Draw the walls. Raises hal.settings.SettingsError for an unknown world."""
+        self._robot = robot
+        figure = Figure(figsize=(_SIDE_INCHES, _SIDE_INCHES), dpi=_DOTS_PER_INCH, layout="constrained")
+        self._canvas = FigureCanvasAgg(figure)
+        self._axes = figure.subplots()
+        factory.draw(self._axes, world)
+
+    def frame(self, pose: Pose, trail: Sequence[Position]) -> NDArray[np.uint8]:
+        """Return the world with the robot at a pose and the way that it came, RGB of shape (height, width, 3)."""
+        walls = set(self._axes.get_children())
+        draw_trail(self._axes, trail)
+        draw_robot(self._axes, pose, self._robot)
+        self._canvas.draw()  # type: ignore[no-untyped-call]
+        pixels = np.array(self._canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
+        for drawn in set(self._axes.get_children()) - walls:
+            drawn.remove()
+        return pixels
+
+
+def observation_space(definition: SituationDefinition, robot: RobotSettings, *, averages: bool) -> Space[Values]:
+    """Return the float64 space of the recent values in counts, shape (n,), or with their averages, shape (2 * n,).
+
+    Sensor values lie between 0 and the converter's 1023 counts; a wheel speed between the guard's limits.
+    """
+    wheel_speed = round(definition.wheel_speed_counts_per_m_s * robot.guard.maximum_speed_m_s)
+    bounds = [
+        # Gymnasium's checker warns of a value whose bounds are equal, as those of a wheel speed of scale 0 would be.
+        (-max(1, wheel_speed), max(1, wheel_speed)) if isinstance(feature, WheelSpeed) else (0, HIGHEST_COUNTS)
+        for feature in definition.features
+    ]
+    low, high = np.array(bounds * (2 if averages else 1), dtype=np.float64).T
+    return Box(low, high, dtype=np.float64)
+
+
+class ResetOptions(NamedTuple):
+    """World and start of an episode."""
+
+    world: str
+    start: Pose | None
+    """None: where the exam of the episode's seed begins."""
+
+
+def read_options(options: Mapping[str, Any] | None, world: str, robot: RobotSettings) -> ResetOptions:
+    """Return the options of a reset; `world` is taken if they name none.
+
+    Raises hal.settings.SettingsError for an unknown option or world, and for a start at which the robot has no room.
+    """
+    given = dict(options or {})
+    world, start = given.pop("world", world), given.pop("start", None)
+    if given:
+        raise SettingsError(f"reset: unknown option (got {', '.join(sorted(given))}, allowed world, start)")
+    if start is None:
+        return ResetOptions(world, None)
+    pose = _pose(start)
+    if load_world(world, robot).clearance_m(pose, robot.geometry) == 0.0:
+        raise SettingsError(f"reset: the robot has no room at start (got {start!r} in world {world})")
+    return ResetOptions(world, pose)
+
+
+def _pose(start: Any) -> Pose:
+    try:
+        pose = Pose(*map(float, start))
+    except (TypeError, ValueError):
+        pose = Pose(math.nan, math.nan, math.nan)
+    if not all(map(math.isfinite, pose)):
+        raise SettingsError(f"reset: start is no pose (got {start!r}, allowed three numbers x_m, y_m, heading_rad)")
+    return pose
+
+
+def load_agent_task(named: str | TaskSettings) -> TaskSettings:
+    """Return a task without its mid level. `named`: its name or path, or the task itself.
+
+    Raises hal.settings.SettingsError for a missing or invalid file, or for a task with several behaviours.
+    """
+    task = load_task(named) if isinstance(named, str) else named
+    if len(task.behaviours) > 1:
+        raise SettingsError(
+            f"task {task.name}: an environment has one behaviour (got {', '.join(task.behaviours)})",
+            do="give a task with one, such as turn_left",
+        )
+    return task.model_copy(update={"mid": None})

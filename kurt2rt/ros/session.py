@@ -2,18 +2,65 @@
 
 import json
 import threading
+import time
 from collections.abc import Callable, Sequence
 from itertools import count
+from secrets import token_bytes
+from typing import NamedTuple
 
 import zenoh
+from zenoh import ZBytes
+from zenoh.ext import Int64, ZDeserializeError, z_deserialize, z_serialize
 
-from kurt2rt.ros.attachment import AttachmentSource, RequestId, read_request_id, response_attachment
 from kurt2rt.ros.messages import EMPTY_REQUEST, Message, decode_trigger_response, encode, encode_trigger_response
 from kurt2rt.ros.port import OnPayload, RosConnectionError
 from kurt2rt.ros.settings import Naming, RosSettings
 from kurt2rt.ros.topic import Topic, key_expression, liveliness_key, node_liveliness_key
 
 REMEDY = "check the address, the network, and the bridge, router or robot behind it"
+
+
+_GID_BYTES = 16
+
+
+class RequestId(NamedTuple):
+    """Sequence number and sender of a request, which its response repeats."""
+
+    sequence_number: int
+    gid: bytes
+
+
+class AttachmentSource:
+    """Attachments of one publisher, service or client: number, time and sender (rmw_zenoh 0.2.4 and newer)."""
+
+    def __init__(self) -> None:
+        """Choose an identifier of 16 bytes by chance."""
+        self._gid = token_bytes(_GID_BYTES)
+        self._numbers = count(1)
+
+    def next(self) -> ZBytes:
+        """Return the attachment of the next message or request."""
+        return _serialized(RequestId(next(self._numbers), self._gid))
+
+
+def response_attachment(request: RequestId) -> ZBytes:
+    """Return the attachment of the response to a request."""
+    return _serialized(request)
+
+
+def read_request_id(attachment: ZBytes | None) -> RequestId | None:
+    """Return the identity of a request; None without a valid attachment, as the bridge sends none."""
+    if attachment is None:
+        return None
+    try:
+        number, _, gid = z_deserialize(tuple[Int64, Int64, bytes], attachment)
+    except ZDeserializeError:
+        return None
+    return RequestId(int(number), gid) if len(gid) == _GID_BYTES else None
+
+
+def _serialized(request: RequestId) -> ZBytes:
+    return z_serialize((Int64(request.sequence_number), Int64(time.time_ns()), request.gid))
 
 
 class ZenohSession:

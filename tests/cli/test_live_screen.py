@@ -10,8 +10,8 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.channel.security.pairing import pair
-from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
+from kurt2rt.cli.terminal_screen import has_desktop, open_link
 from kurt2rt.core.teaching.question import Question
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal

@@ -8,7 +8,7 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.gym.commanded_level import CommandedLevel
+from kurt2rt.gym.bus_drive import CommandedLevel
 
 SITUATION = Situation(np.zeros(72), history_frozen=False)
 READINGS = SensorReadings(0.0, (0,) * 18, 0.0, 0, 0, 0.0, 0, math.inf)

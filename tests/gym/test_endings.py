@@ -7,9 +7,9 @@ import gymnasium
 import pytest
 
 from hal.guard_reason import GuardReason
-from kurt2rt.gym.agent_task import load_agent_task
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.endings import Ending, read_endings
+from kurt2rt.gym.environment import load_agent_task
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.gym.helpers import environment, follow_teacher, press_on

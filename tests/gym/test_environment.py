@@ -12,7 +12,7 @@ import kurt2rt.gym  # noqa: F401 - registers the environments
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
-from kurt2rt.gym.commanded_level import CommandedLevel
+from kurt2rt.gym.bus_drive import CommandedLevel
 from kurt2rt.gym.environment import TaskEnvironment
 from kurt2rt.gym.registration import ENVIRONMENTS
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire

@@ -15,11 +15,10 @@ from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.gym.agent_task import load_agent_task
 from kurt2rt.gym.batch_drive import BatchDrive, require_known
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.endings import Ending, read_endings
-from kurt2rt.gym.environment import Info, TaskEnvironment
+from kurt2rt.gym.environment import Info, TaskEnvironment, load_agent_task
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.registration import ENVIRONMENTS
 from simbridge.batch.compiled import IS_COMPILED

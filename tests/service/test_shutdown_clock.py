@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.service.shutdown_clock import ShutdownClock
+from kurt2rt.service.shutdown import ShutdownClock
 
 
 @pytest.mark.parametrize(

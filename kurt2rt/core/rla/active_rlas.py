@@ -1,6 +1,7 @@
 """Active RLAs, and the search for the one nearest to a situation (paper, section III)."""
 
 import math
+from bisect import bisect_left
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
@@ -8,11 +9,54 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.candidate_index import CandidateIndex
-from kurt2rt.core.rla.competitors import CompetitorGroups
+from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.matching import ConditionIndex
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.symbol_index import SymbolIndex
+
+
+class CandidateIndex:
+    """Ids of competing RLAs, in the row order of the index of their conditions."""
+
+    def __init__(self, space: Space) -> None:
+        self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
+        self.ids: list[int] = []
+        """Oldest first."""
+        self.index = _make_index(space)
+
+    def add(self, rla_id: int, condition: Condition) -> None:
+        """Insert an RLA in the order of ids. Raises ValueError for a wrong length or a number that is not finite."""
+        dimensions = len(self.weights)
+        if len(condition) != dimensions:
+            raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
+        position = bisect_left(self.ids, rla_id)
+        self.index.insert(position, self._weighted(condition))
+        self.ids.insert(position, rla_id)
+
+    def remove(self, rla_id: int) -> None:
+        """Remove an RLA, which must be in the index."""
+        position = bisect_left(self.ids, rla_id)
+        self.index.remove(position)
+        del self.ids[position]
+
+    def nearest_first(self, condition: Condition) -> list[int]:
+        """Return all ids, nearest to an unweighted condition first; of equally near RLAs the older first."""
+        order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
+        return [self.ids[position] for position in order.tolist()]
+
+    def _weighted(self, condition: Condition) -> NDArray[np.float64]:
+        weighted: NDArray[np.float64] = np.array(condition, dtype=np.float64) * self.weights
+        return weighted
+
+
+def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
+    if space.metric == "euclidean":
+        return ConditionIndex(space.dimensions)
+    if space.weights is not None:
+        raise ValueError(f"symbols are equal or not: a space of metric {space.metric} takes no weights")
+    return SymbolIndex(space.dimensions)
 
 
 class ActiveRlas:
@@ -157,3 +201,45 @@ class ActiveRlas:
         self._groups.remove(rla)
         self._counts[rla.level] -= 1
         return self._rlas.pop(rla.rla_id)
+
+
+class CompetitorGroups:
+    """Active RLAs, grouped by level, behaviour and equal condition."""
+
+    def __init__(self) -> None:
+        self._members: dict[tuple[str, str, Condition], tuple[Rla, ...]] = {}
+        """Oldest first."""
+        self._group: dict[int, tuple[Rla, ...]] = {}
+        """By member id: read in each tick, in which hashing a condition would cost more than the lookup."""
+
+    def for_rla(self, rla: Rla) -> tuple[Rla, ...]:
+        """Return the active RLAs on the condition of an RLA, oldest first; the RLA itself may be deleted."""
+        group = self._group.get(rla.rla_id)
+        if group is None:
+            return self._members.get(_group_key(rla), ())
+        return group
+
+    def add_or_replace(self, rla: Rla) -> None:
+        """Add an RLA, or replace the one of its id."""
+        self._regroup(rla, (*self._others(rla), rla))
+
+    def remove(self, rla: Rla) -> None:
+        """Remove an RLA from the group of its condition. Raises KeyError if it is in none."""
+        others = self._others(rla)
+        del self._group[rla.rla_id]
+        if others:
+            self._regroup(rla, others)
+        else:
+            del self._members[_group_key(rla)]
+
+    def _others(self, rla: Rla) -> tuple[Rla, ...]:
+        return tuple(each for each in self._members.get(_group_key(rla), ()) if each.rla_id != rla.rla_id)
+
+    def _regroup(self, rla: Rla, members: tuple[Rla, ...]) -> None:
+        group = self._members[_group_key(rla)] = tuple(sorted(members, key=lambda member: member.rla_id))
+        for member in group:
+            self._group[member.rla_id] = group
+
+
+def _group_key(rla: Rla) -> tuple[str, str, Condition]:
+    return rla.level, rla.behaviour, rla.condition

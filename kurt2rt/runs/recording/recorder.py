@@ -5,17 +5,16 @@ from collections import deque
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 from foxglove import Context
 
-from hal.simulation import WorldView
+from hal.simulation import SimulatedPlace, WorldPlan, WorldView
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.live_view import LiveView
-from kurt2rt.runs.recording.notes import HealthNote, Note, NoteLog, QuestionNote, TickNote
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recording_disk import Disk
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -29,6 +28,62 @@ _ROUNDS_PER_SECOND = 10
 _PLACE_EVERY_TICKS = 5
 _WORLD_EVERY_TICKS = 100
 _NS_PER_S = 1_000_000_000
+
+
+class TickNote(NamedTuple):
+    """Record of one tick."""
+
+    record: TickRecord
+    time_ns: int
+    """Time since 1970."""
+    saved: bool
+    """True if statistics were saved after the tick."""
+    truth: SimulatedPlace | None
+    world: WorldPlan | None
+
+
+class QuestionNote(NamedTuple):
+    """Question of the robot."""
+
+    question: object
+    """Object whose `str` is the question."""
+
+
+class HealthNote(NamedTuple):
+    """Health report of the program."""
+
+    report: Mapping[str, Any]
+    """Report as plain values."""
+
+
+Note = TickNote | QuestionNote | HealthNote | Acknowledgement
+
+
+class NoteLog:
+    """Logger of notes to the topics of one destination, at the time of the newest tick."""
+
+    def __init__(self, topics: Topics, began_ns: int) -> None:
+        """`began_ns`: time since 1970 of notes before the first tick."""
+        self.topics = topics
+        self._time_ns = began_ns
+        self._world: WorldPlan | None = None
+
+    def log(self, note: Note) -> None:
+        """Log one note to its topic. Raises RecordingError or KnowledgeError for a note that cannot be encoded."""
+        topics = self.topics
+        match note:
+            case TickNote(record, time_ns, saved, truth, world):
+                self._time_ns = time_ns
+                topics.tick(record, saved=saved, truth=truth, time_ns=time_ns)
+                self._world = world or self._world
+                if self._world is not None:
+                    topics.log_world(self._world, record.tick, time_ns)
+            case QuestionNote(question):
+                topics.on_question(str(question), self._time_ns)
+            case HealthNote(report):
+                topics.on_health(report, self._time_ns)
+            case Acknowledgement():
+                topics.on_acknowledged(note, self._time_ns)
 
 
 class RunRecorder:

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, TypeVar, get_args, get_type_hints
 
+from pydantic import TypeAdapter, ValidationError
+
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause
@@ -13,13 +15,17 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.teaching.commands import Command
+from kurt2rt.core.teaching.system_events import Input, SystemEvent
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 _Value = TypeVar("_Value")
+_ADAPTERS: dict[str, TypeAdapter[Any]] = {
+    kind.__name__: TypeAdapter(kind) for kind in (*get_args(Command), *get_args(SystemEvent))
+}
 
 
 def encode_tick(entry: TickEntry) -> bytes:
@@ -194,3 +200,39 @@ def _fields_of(kind: type) -> tuple[tuple[str, bool, bool], ...]:
     """Return the name of each field of a named tuple, whether it is a float, and whether it may be None."""
     hints = get_type_hints(kind)
     return tuple((name, hint is float, type(None) in get_args(hint)) for name, hint in hints.items())
+
+
+def encode_command(command: Input) -> dict[str, Any]:
+    """Return a JSON object: the name of the class as `is`, then the fields."""
+    name = type(command).__name__
+    return {"is": name, **_finite(_ADAPTERS[name].dump_python(command, mode="json"))}
+
+
+def decode_command(content: object) -> Input:
+    """Return the command that `encode_command` wrote, equal to the last bit. Raises RecordingError."""
+    if not isinstance(content, dict):
+        raise RecordingError(f"a {type(content).__name__} is no command")
+    fields = dict(content)
+    name = fields.pop("is", None)
+    adapter = _ADAPTERS.get(name) if isinstance(name, str) else None
+    if adapter is None:
+        raise RecordingError(f"there is no command {name!r}")
+    try:
+        command: Input = adapter.validate_python(fields, strict=False)
+    except ValidationError as error:
+        problem = error.errors(include_url=False)[0]
+        place = ".".join(map(str, problem["loc"]))
+        raise RecordingError(f"{place}: {problem['msg']}", where=name) from error
+    return command
+
+
+def _finite(value: Any) -> Any:
+    """JSON knows no infinity: it is a text there."""
+    match value:
+        case float():
+            return value if math.isfinite(value) else repr(value)
+        case dict():
+            return {key: _finite(each) for key, each in value.items()}
+        case list():
+            return [_finite(each) for each in value]
+    return value

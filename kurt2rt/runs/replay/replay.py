@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from hal.guard_reason import GuardReason
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.settings import SettingsError
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
@@ -10,12 +12,12 @@ from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourErr
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
 from kurt2rt.core.rla.event_error import InvalidEventError
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.replay.environment import ReplayEnvironment
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
@@ -116,3 +118,48 @@ def empty_run_error(run: Run) -> RecordingError:
     return RecordingError(
         "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
     )
+
+
+class ReplayEnvironment:
+    """Robot, Clock and LessonKeeper in one object, because they share the current tick."""
+
+    def __init__(self) -> None:
+        self.entry: TickEntry | None = None
+        """Current tick."""
+
+    @property
+    def saving_error(self) -> str | None:
+        """Recorded error of the journal (LessonKeeper); None without one."""
+        return self._entry.saving_error
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Discard the event: the record has it (LessonKeeper)."""
+
+    def now_s(self) -> float:
+        """Return the recorded time in s (Clock)."""
+        return self._entry.now_s
+
+    async def wait_until(self, deadline_s: float) -> None:
+        """Return at once: the recorded ticks tell the time (Clock)."""
+
+    def sense(self, now_s: float) -> SensorReadings:  # noqa: ARG002 - what was sensed then
+        """Return the recorded readings (Robot)."""
+        return self._entry.readings
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as applied then
+        """Return the recorded result of the guard for any wanted speeds (Robot)."""
+        return self._entry.grant
+
+    def emergency_stop(self, reason: GuardReason) -> None:
+        """Do nothing: the recorded guard results contain the stop (Robot)."""
+
+    def release(self) -> None:
+        """Do nothing: the recorded guard results contain the release (Robot)."""
+
+    def close(self) -> None:
+        """Do nothing: a replay holds no bus (Robot)."""
+
+    @property
+    def _entry(self) -> TickEntry:
+        assert self.entry is not None, "no tick is on"
+        return self.entry

@@ -11,17 +11,30 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+import psutil
+
 from hal.health import Health
-from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, JournalHealth, SensorAges, TickLateness
+from kurt2rt.channel.protocol.health import (
+    BusHealth,
+    DiskSpace,
+    Drops,
+    HealthReport,
+    JournalHealth,
+    MachineHealth,
+    SensorAges,
+    TickLateness,
+)
 from kurt2rt.core.tick_record import TickRecord
+from kurt2rt.platform.durable_files import free_bytes
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.diagnostics import Counted, Diagnostics
-from kurt2rt.service.health.free_space import DiskMonitor
-from kurt2rt.service.health.machine import MachineMonitor
 from kurt2rt.service.health.probes import JournalStats, Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
 _ENDS_WITHIN_S = 0.2
+_POWER = Path("/sys/class/power_supply")
+_EVERY_S = 1.0
+_ANSWERS_WITHIN_S = 4.0
 
 
 class HealthMonitor:
@@ -202,3 +215,98 @@ def _bus_health(bus: Health) -> BusHealth:
 
 def _finite(age_s: float) -> float | None:
     return age_s if age_s < float("inf") else None
+
+
+class MachineMonitor:
+    """Monitor of memory, processor and battery."""
+
+    def __init__(self, power: Path = _POWER) -> None:
+        """`power`: folder in which the kernel lists batteries."""
+        self._power = power
+        self._process = psutil.Process()
+        self._looked_at_s = time.monotonic()
+        self._used_s = time.process_time()
+
+    def poll(self) -> MachineHealth:
+        """Return the present values; takes some 100 µs."""
+        now_s, used_s = time.monotonic(), time.process_time()
+        share = (used_s - self._used_s) / max(now_s - self._looked_at_s, 1e-3)
+        self._looked_at_s, self._used_s = now_s, used_s
+        battery, discharging = battery_of(self._power)
+        return MachineHealth(
+            memory_bytes=self._process.memory_info().rss,
+            available_bytes=psutil.virtual_memory().available,
+            processor_share=share,
+            threads=threading.active_count(),
+            battery=battery,
+            discharging=discharging,
+        )
+
+
+def battery_of(power: Path) -> tuple[float | None, bool]:
+    """Return the charge of the emptiest battery, 0 to 1, and whether it is discharging; None and False without one.
+
+    `power`: folder of the kernel's power supplies.
+    """
+    found = []
+    for supply in sorted(power.glob("*")):
+        # Mice and keyboards have batteries as well, with the scope Device.
+        if _text(supply / "type") != "Battery" or _text(supply / "scope") == "Device":
+            continue
+        percent = _text(supply / "capacity")
+        if percent.isdecimal():
+            found.append((int(percent) / 100, _text(supply / "status") == "Discharging"))
+    return min(found) if found else (None, False)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="ascii").strip()
+    except OSError:
+        return ""
+
+
+class DiskMonitor:
+    """Threads that read the free space once a second; an answer counts for 4 s."""
+
+    def __init__(self, folders: Mapping[str, Path], now: Callable[[], float] = time.monotonic) -> None:
+        """`folders`: by the name of their content; `now`: a clock in s."""
+        self._folders = dict(folders)
+        self._now = now
+        self._said: dict[str, tuple[float, int]] = {}
+        self._ending = threading.Event()
+        self._threads = [
+            threading.Thread(target=self._run, args=(of,), name=f"room for {of}", daemon=True) for of in self._folders
+        ]
+
+    def poll(self, of: str) -> None:
+        """Read the free space of one disk; may wait for the disk."""
+        try:
+            found = free_bytes(self._folders[of])
+        except OSError:
+            return  # reported as a disk that does not answer
+        self._said[of] = self._now(), found
+
+    def spaces(self) -> tuple[DiskSpace, ...]:
+        """Return the newest space of each disk, without waiting; `free_bytes` is None if the disk does not answer."""
+        now_s = self._now()
+        found = []
+        for of in self._folders:
+            said_at_s, free_bytes = self._said.get(of, (float("-inf"), 0))
+            found.append(DiskSpace(of, free_bytes if now_s - said_at_s <= _ANSWERS_WITHIN_S else None))
+        return tuple(found)
+
+    def __enter__(self) -> Self:
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._ending.set()  # not joined: a disk that hangs would hang the end
+
+    def _run(self, of: str) -> None:
+        self.poll(of)
+        while not self._ending.wait(_EVERY_S):
+            self.poll(of)

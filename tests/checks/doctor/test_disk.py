@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.disk import check_disk, check_free_space, check_sync
+from kurt2rt.checks.doctor.checks import check_disk, check_free_space, check_sync
 
 SPACE = {FindingCode.SPACE, FindingCode.SPACE_LOW}
 SYNC = {FindingCode.SYNC, FindingCode.SYNC_SLOW}

@@ -5,7 +5,7 @@ from pathlib import Path
 from threadpoolctl import threadpool_limits
 
 from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
-from kurt2rt.checks.doctor.processor import check_blas_threads, check_cores, check_governor
+from kurt2rt.checks.doctor.checks import check_blas_threads, check_cores, check_governor
 
 
 def cpu_folder(folder: Path, *governors: str) -> Path:

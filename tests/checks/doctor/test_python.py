@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
-from kurt2rt.checks.doctor.python import check_package, check_python
+from kurt2rt.checks.doctor.checks import check_package, check_python
 
 
 def test_an_old_python_forbids_to_run() -> None:

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from kurt2rt.core.critic.turn_memory import TurnMemory
+from kurt2rt.core.critic.appraisal_features import TurnMemory
 
 
 def turned(memory: TurnMemory, total_rad: float, ticks: int = 100) -> float:

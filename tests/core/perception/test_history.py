@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kurt2rt.core.perception.history import History
+from kurt2rt.core.perception.perception import History
 
 
 def average(history: History, width: int) -> NDArray[np.float64]:

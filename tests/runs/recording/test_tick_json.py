@@ -19,10 +19,9 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.teaching.commands import Command, Seek
 from kurt2rt.core.teaching.system_events import SystemEvent
-from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.tick_json import decode_tick, encode_tick
+from kurt2rt.runs.recording.tick_json import decode_command, decode_tick, encode_command, encode_tick
 
 KINDS = (*get_args(Command), *get_args(SystemEvent))
 

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.health import HealthReport
-from kurt2rt.service.health.machine import MachineMonitor, battery_of
-from kurt2rt.service.health.monitor import HealthMonitor
+from kurt2rt.service.health.monitor import HealthMonitor, MachineMonitor, battery_of
 from kurt2rt.service.health.probes import Probes
 from tests.channel.channel_fixture import ChannelFixture
 from tests.patience import PATIENCE_S

@@ -10,7 +10,7 @@ import pytest
 from anyio.from_thread import BlockingPortal
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.teacher.page.cached_resource import CachedResource
+from kurt2rt.teacher.page.slow_state import CachedResource
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 from tests.teacher.page.page_time import PageTime, stepped_portal
 from tests.teacher.page.phone import PORTRAIT, Phone

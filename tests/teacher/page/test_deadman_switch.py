@@ -1,4 +1,4 @@
-from kurt2rt.teacher.page.deadman_switch import DeadmanSwitch
+from kurt2rt.teacher.page.page_connection import DeadmanSwitch
 
 FRESH_S = 0.05
 
