@@ -4,7 +4,7 @@ import hashlib
 import struct
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -14,7 +14,6 @@ from simbridge.robot.body import Body
 from simbridge.robot.bumpers import Bumpers, CollisionCounter
 from simbridge.robot.infrared import InfraredSensors
 from simbridge.robot.noise import Noise
-from simbridge.robot.range_sensors import RangeSensors
 from simbridge.robot.wheels import Wheels
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
@@ -26,6 +25,30 @@ _KURT2_WIDTH_M = 0.330
 
 MakeController = Callable[[Body, Wheels], Controller]
 """Make the controller of a robot with this body and these wheels."""
+
+
+class RangeSensors(Protocol):
+    """Newest readings of all range sensors, in the order of the sensor table."""
+
+    @property
+    def counts(self) -> Sequence[int]:
+        """Newest reading of each sensor, in counts."""
+        ...
+
+    @property
+    def due_s(self) -> Sequence[float]:
+        """Simulated times that the next measurements depend on, in s, for the state hash."""
+        ...
+
+    def measure(self, pose: Pose) -> Sequence[int]:
+        """Simulate one cycle at a pose and return the indexes of the sensors with new readings."""
+        ...
+
+    def measure_all(self, pose: Pose) -> None:
+        """Measure with all sensors at once, for a repositioned robot."""
+        ...
+
+
 MakeSensors = Callable[[RobotSettings, World, Noise, Noise], RangeSensors]
 """Make the range sensors of a robot in a world; the first noise selects the run, the second one the robot."""
 

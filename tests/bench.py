@@ -29,6 +29,8 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.channel import Channel
+from kurt2rt.checks.doctor.checks import fsync_ns
+from kurt2rt.checks.doctor.timer import AsyncioClock
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
@@ -47,8 +49,6 @@ from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.journal.writer import utc_now
-from kurt2rt.platform.asyncio_clock import AsyncioClock
-from kurt2rt.platform.fsync_probe import fsync_ns
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 from kurt2rt.platform.scheduler import Scheduler
 from kurt2rt.platform.timerfd_clock import TimerfdClock

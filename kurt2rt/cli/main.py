@@ -1,10 +1,12 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library, hal.errors and what is small only (interrupt, extras, terminal, foreign packages):
+Imports of the standard library, hal.errors and what is small only (interrupt, extras, foreign packages):
 Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
+import codecs
 import errno
+import io
 import os
 import sys
 import traceback
@@ -19,7 +21,6 @@ if _hidden := hidden_packages():  # before the first import of one of them, whic
 from hal.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.platform.extras import EXTRAS, extra_for
-from kurt2rt.platform.plain_terminal import adapt_to_terminal
 
 _MENDED_BY_ANOTHER_PATH = {
     errno.EACCES,
@@ -36,6 +37,10 @@ _MENDED_BY_ANOTHER_PATH = {
 
 _ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS")
 """numpy's libraries read these when they are loaded."""
+_PLAIN = {"─": "-", "█": "#", "·": ".", "✗": "x", "µ": "u", "±": "+-", "…": "..."}
+_ERRORS = "kurt2rt-plain"
+_LEAST = {"COLUMNS": 20, "LINES": 5}
+"""Smallest sizes that are those of a terminal; some programs set 0 for unknown, and rich then prints nothing."""
 
 
 def main() -> None:
@@ -119,3 +124,22 @@ def _complain(text: str, code: ExitCode = ExitCode.REFUSED) -> NoReturn:
 
 if __name__ == "__main__":
     main()
+
+
+def adapt_to_terminal() -> None:
+    """Let this process print what its terminal can show: like letters for others, and lines at widths that exist."""
+    codecs.register_error(_ERRORS, _like_letters)
+    for stream in (sys.stdin, sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors=_ERRORS)
+    for name, least in _LEAST.items():
+        size = os.environ.get(name, "")
+        if size.isdigit() and int(size) < least:
+            del os.environ[name]
+
+
+def _like_letters(error: UnicodeError) -> tuple[str, int]:
+    """Return letters for those that an encoding does not have, a question mark for bytes that are none of it."""
+    assert isinstance(error, UnicodeEncodeError | UnicodeDecodeError)
+    unknown = error.object[error.start : error.end]
+    return "".join(_PLAIN.get(str(each), "?") for each in unknown), error.end

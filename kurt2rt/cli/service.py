@@ -1,6 +1,10 @@
 """`kurt2rt service ...`."""
 
+import os
+import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import Annotated
 
@@ -8,18 +12,17 @@ import typer
 from rich.console import Console
 
 from hal.errors import ExitCode
+from hal.plugins import Plugin, is_target, loaded_plugins
 from hal.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
-from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
-from kurt2rt.service.systemd.access_text import access_text
+from kurt2rt.service.systemd.access import RequiredAccess, access_text, paths_to_chown, private_paths
 from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
 from kurt2rt.service.systemd.installation import start_command
-from kurt2rt.service.systemd.plugin_modules import plugins_of_this_folder
 from kurt2rt.service.systemd.unit import STATE, Unit, build_unit, require_name
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
@@ -182,3 +185,21 @@ def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
     if found == Path(given) and not found.is_absolute():
         raise UnitError(UnitCode.RELATIVE_PATH, where=key, given=given, state=state)
     return found.absolute()
+
+
+def plugins_of_this_folder() -> Iterator[Plugin]:
+    """Yield each plug-in loaded by `module:Name` whose module is neither installed nor part of Python.
+
+    A service runs in a folder of its own, without PYTHONPATH, so it would not find that module.
+    """
+    for plugin in loaded_plugins():
+        if is_target(plugin.name) and not _is_installed(plugin.name.partition(":")[0].partition(".")[0]):
+            yield plugin
+
+
+def _is_installed(module: str) -> bool:
+    mine = {Path.cwd(), *(Path(each).absolute() for each in os.environ.get("PYTHONPATH", "").split(os.pathsep) if each)}
+    path = [each for each in sys.path if Path(each).absolute() not in mine]
+    finders = (each for each in sys.meta_path if each is not PathFinder and hasattr(each, "find_spec"))
+    # Other finders than that of the path are those of built-in modules and of packages installed for editing.
+    return PathFinder.find_spec(module, path) is not None or any(each.find_spec(module, None) for each in finders)

@@ -15,11 +15,10 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import AUTONOMOUS
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
-from kurt2rt.core.teaching.hindrance import tell_hindrance
 from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.core.tick_steps import Choice, Motion, View
+from kurt2rt.core.tick_steps import Choice, Motion, View, tell_hindrance
 from kurt2rt.platform.ledger import Stage
 
 _KNOWLEDGE_PERIOD_TICKS = 100

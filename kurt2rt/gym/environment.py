@@ -36,7 +36,6 @@ Info: TypeAlias = dict[str, Any]
 _DECISION_S = 0.1
 _MOST_SEEDS = 2**31
 _SIDE_INCHES, _DOTS_PER_INCH = 6.0, 80
-Values: TypeAlias = NDArray[np.float64]
 
 
 class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
@@ -226,7 +225,7 @@ class Picture:
         return pixels
 
 
-def observation_space(definition: SituationDefinition, robot: RobotSettings, *, averages: bool) -> Space[Values]:
+def observation_space(definition: SituationDefinition, robot: RobotSettings, *, averages: bool) -> Space[Observation]:
     """Return the float64 space of the recent values in counts, shape (n,), or with their averages, shape (2 * n,).
 
     Sensor values lie between 0 and the converter's 1023 counts; a wheel speed between the guard's limits.

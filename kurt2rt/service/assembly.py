@@ -16,7 +16,6 @@ from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.channel import Channel, open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.level import Level
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.package import package_knowledge
 from kurt2rt.knowledge.files.backup import BackupService
@@ -74,7 +73,6 @@ def assemble_service(
     writer: JournalWriter,
     clock: Clock,
     context: RunContext,
-    level_override: Level | None = None,
 ) -> RobotService:
     """Build the runtime with the knowledge, its behaviour and its stop as `context` says.
 
@@ -85,7 +83,6 @@ def assemble_service(
         writer: thread that appends lessons to that file.
         clock: time of the ticks.
         context: boot id, stop, behaviour and attendance of the run.
-        level_override: drives in place of the basic level, as `build_runtime` says.
 
     Raises:
         SettingsError: situation, critic or mid level of the task cannot be loaded.
@@ -106,7 +103,6 @@ def assemble_service(
         clock,
         RuntimeOptions(
             statistics=knowledge.counter,
-            level_override=level_override,
             attended=context.attended,
             active_behaviour=behaviour,
             checkpoint=knowledge.saved,

@@ -1,4 +1,4 @@
-"""Dependency that the start of the program waits for; `kurt2rt.service.startup_text` has the texts."""
+"""Dependency that the start of the program waits for; `kurt2rt.service.startup` has the texts."""
 
 from dataclasses import dataclass
 from enum import StrEnum

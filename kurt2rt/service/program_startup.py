@@ -20,8 +20,7 @@ from kurt2rt.service.missing_dependency import DependencyName
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
-from kurt2rt.service.startup import Dependency, StartupGate, require_folder
-from kurt2rt.service.startup_text import missing_text
+from kurt2rt.service.startup import Dependency, StartupGate, missing_text, require_folder
 
 
 class ProgramStartup:

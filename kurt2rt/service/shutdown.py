@@ -8,13 +8,13 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import StrEnum
+from pathlib import Path
 from types import FrameType, TracebackType
 from typing import Final, Self
 
 from hal.errors import ExitCode
-from kurt2rt.platform.run_delay import run_delay_s
 from kurt2rt.platform.signal_handlers import SignalHandlers
 
 SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
@@ -37,6 +37,20 @@ _MOST = 20.0
 
 _TRUSTED_AFTER_S = 0.1
 """Time after which the slowness since `start` counts as much as that before."""
+
+
+_THREADS = Path("/proc/self/task")
+_NANOSECONDS = 1e9
+
+
+def run_delay_s() -> float:
+    """Return the time in s that the present threads have waited for a processor; 0 where the kernel does not tell."""
+    total_ns = 0
+    with suppress(OSError):
+        for thread in _THREADS.iterdir():
+            with suppress(OSError):  # it has just ended
+                total_ns += int((thread / "schedstat").read_text().split()[1])
+    return total_ns / _NANOSECONDS
 
 
 class ShutdownClock:

@@ -16,13 +16,16 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_private_folder
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.service.missing_dependency import DependencyName, MissingDependency, WaitReason
-from kurt2rt.service.startup_text import available_text, startup_text
 from kurt2rt.service.systemd.notifier import Notifier
 
 RETRY_S = 1.0
 """Time between two checks of a missing dependency, in s."""
 HOLD_S = 0.05
 """Time between two brake commands while the robot waits, in s; its controller stops by itself after 0.2 s."""
+_STARTS = "starts"
+_WAITS = "stands and waits for {missing}"
+_AVAILABLE = "{name} is there"
+_MISSING = "{name}: {says}"
 
 
 class StartError(UserError):
@@ -144,3 +147,20 @@ def require_folder(folder: Path) -> None:
         make_private_folder(folder)
     elif not folder.is_dir():
         raise StartError(f"{folder} is not there", do="it comes with its disk, or make it")
+
+
+def available_text(name: DependencyName) -> str:
+    """Return the line for a dependency that is there now."""
+    return _AVAILABLE.format(name=name)
+
+
+def startup_text(missing: Sequence[MissingDependency]) -> str:
+    """Return the line for a start with these missing dependencies; those without a known reason are left out."""
+    known = [each for each in missing if each.reason is not None]
+    return _WAITS.format(missing=missing_text(known)) if known else _STARTS
+
+
+def missing_text(missing: Sequence[MissingDependency]) -> str:
+    """Return the dependencies with a known reason in a line; without any, the names of all."""
+    known = [_MISSING.format(name=each.name, says=each.says) for each in missing if each.reason is not None]
+    return "; ".join(known or [each.name for each in missing])

@@ -20,8 +20,9 @@ from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.explain.reasons import format_reasons
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import Replay, replay_until
+from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
+from tests.runs.replay.stored_runs import replay_until
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 SENSOR = 14

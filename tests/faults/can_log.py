@@ -15,7 +15,7 @@ _ROOM_FRAMES = 500
 
 
 class _FaultyWriter:
-    """Destination of the log (kurt2rt.runs.recording.frame_writer.FrameWriter)."""
+    """Destination of the log (kurt2rt.runs.recording.can_log.FrameWriter)."""
 
     def __init__(self, injection: FaultInjection) -> None:
         self.waits_until_s: float | None = None

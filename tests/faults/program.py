@@ -79,11 +79,10 @@ class Program:
         service = load_service().model_copy(update={"knowledge": str(path), "checkpoint_period_s": _CHECKPOINT_S})
         context = RunContext(f"{number:016x}", str(path), attended=True, stopped=STARTED)
         run_settings = RunSettings(settings, TASK, service)
-        self.service = assemble_service(
-            witness, run_settings, opened, self.knowledge.writer, self._clock, context, self.level
-        )
+        self.service = assemble_service(witness, run_settings, opened, self.knowledge.writer, self._clock, context)
         self.runtime = self.service.runtime
         self.level.inner = self.runtime.level
+        self.runtime.tick._level = self.level
         # Without its thread: the loop calls it, as far as simulated time has gone.
         self._recorder = Recording(folder / "runs", budget_of(_RECORDINGS_MB), "sim").recorder(
             settings, TASK, opened, context, started=_FIRST_DAY + timedelta(seconds=self._time.now_s())

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.ros.message_age import StampedAge
+from kurt2rt.ros.inbox import StampedAge
 from kurt2rt.ros.messages import Header, Message, TwistStamped, to_time
 from tests.ros.examples import TWIST
 

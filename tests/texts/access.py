@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from kurt2rt.service.systemd.access import AccessCode, AccessFinding
-from kurt2rt.service.systemd.access_text import access_text
+from kurt2rt.service.systemd.access import AccessCode, AccessFinding, access_text
 
 
 def findings() -> Iterator[tuple[str, str]]:

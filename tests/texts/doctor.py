@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.finding_text import text_of
-from kurt2rt.checks.doctor.report import summary
+from kurt2rt.cli.doctor import summary
 
 _VALUES: dict[str, float | str] = {
     "version": "3.11.7",

@@ -8,8 +8,7 @@ from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.goal_text import goal_text
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.perception.sensor_words import NO_WORDS, words_for
-from kurt2rt.core.planning.goal_pursuit import GoalPursuit
-from kurt2rt.core.planning.plan import Plan
+from kurt2rt.core.planning.goal_pursuit import GoalPursuit, Plan
 from kurt2rt.core.planning.topological_map import Edge
 from kurt2rt.core.rla.events import Appraised, Lesson, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord, hold_text

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from kurt2rt.service.missing_dependency import DependencyName, MissingDependency, WaitReason
-from kurt2rt.service.startup_text import available_text, missing_text, startup_text
+from kurt2rt.service.startup import available_text, missing_text, startup_text
 
 
 def lines() -> Iterator[tuple[str, str]]:

@@ -1,6 +1,7 @@
 """Requests that are not for the tick: files, uploads, exams, and the simulated world."""
 
 import asyncio
+import hashlib
 from collections.abc import Awaitable, Callable, Coroutine
 from dataclasses import replace
 from functools import partial
@@ -8,7 +9,7 @@ from typing import Any
 
 from hal.world_refusal import WorldRefusedError
 from kurt2rt.channel.protocol.exam_status import EXAM
-from kurt2rt.channel.protocol.limits import PART_BYTES
+from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, PART_BYTES
 from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
@@ -32,7 +33,6 @@ from kurt2rt.channel.server.dependencies import ChannelDependencies, TeacherNow
 from kurt2rt.channel.server.failure import WORLD_REFUSALS, failure, known_failure
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, not_simulated, refusal, restarted, unsaved
-from kurt2rt.channel.server.upload import Upload
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.system_events import SpeedChanged
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
@@ -54,6 +54,45 @@ OffTickCommand = (
     | PlaceRequest
     | BackToStartRequest
 )
+
+
+class Upload:
+    """File that is being uploaded; a newer upload replaces it."""
+
+    def __init__(self, most_bytes: int = MOST_UPLOAD_BYTES) -> None:
+        self._most_bytes = most_bytes
+        self._of: tuple[str, bytes] | None = None
+        self._content = bytearray()
+
+    def add(self, device: str, upload: bytes, offset: int, part: bytes) -> int:
+        """Append a part to a device's upload and return the size so far in bytes; a repeated part changes nothing.
+
+        `upload`: id of the upload. `offset`: position of the part in bytes. Raises CommandRefusedError for a gap, too
+        many bytes, or a repeated part that differs.
+        """
+        if self._of != (device, upload):
+            if offset != 0:
+                raise CommandRefusedError(RefusalCode.UPLOAD_UNKNOWN)
+            self._of, self._content = (device, upload), bytearray()
+        if offset > len(self._content):
+            raise CommandRefusedError(RefusalCode.UPLOAD_GAP, offset=offset, size=len(self._content))
+        if offset + len(part) > self._most_bytes:
+            raise CommandRefusedError(RefusalCode.UPLOAD_TOO_LARGE, most_bytes=self._most_bytes)
+        if self._content[offset : offset + len(part)] not in (b"", part):
+            raise CommandRefusedError(RefusalCode.UPLOAD_DIFFERS, offset=offset)
+        self._content[offset : offset + len(part)] = part
+        return len(self._content)
+
+    def pop(self, device: str, upload: bytes, sha256: bytes) -> bytes:
+        """Return the whole file of a device's upload and drop it; `sha256` is the hash that it must have.
+
+        Raises CommandRefusedError if it is another upload, or not whole.
+        """
+        if self._of != (device, upload) or hashlib.sha256(self._content).digest() != sha256:
+            raise CommandRefusedError(RefusalCode.UPLOAD_INCOMPLETE)
+        content = bytes(self._content)
+        self._of, self._content = None, bytearray()
+        return content
 
 
 class OffTickRequests:

@@ -1,6 +1,6 @@
 """Test stand: the robot on its block, its frames, the clock and the operator."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from types import TracebackType
 from typing import Self
@@ -15,7 +15,6 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone
-from kurt2rt.checks.commission.test_stand_settings import test_stand_settings
 from kurt2rt.platform.clock import Clock
 
 RAN_AWAY = "the wheels ran away"
@@ -36,6 +35,45 @@ _IDENTITY_S = 0.25
 """Time for INFO_1, which comes every 0.1 s."""
 _HALT_S = 1.5
 _REST_S = 0.1
+
+
+MAXIMUM_SPEED_M_S = 0.2
+ACCELERATION_M_S2 = 0.5
+PATIENCE_S = 0.5
+"""Allowed silence of infra-red and bumpers.
+
+With the wheels in the air they are not needed, and the checklist must find controllers with other periods.
+"""
+
+
+def test_stand_settings(
+    robot: Kurt2Settings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
+) -> Kurt2Settings:
+    """Return the guard settings for wheel tests in a speed mode, with the received analog channels only.
+
+    Without any channel the sensor table stays, and the guard will not let the wheels turn.
+    """
+    sensors = tuple(sensor for sensor in robot.infrared.sensors if sensor.channel in channels)
+    limits = robot.guard
+    guard = limits.model_copy(
+        update={
+            "maximum_speed_m_s": min(MAXIMUM_SPEED_M_S, limits.maximum_speed_m_s),
+            "acceleration_m_s2": min(ACCELERATION_M_S2, limits.acceleration_m_s2),
+            "stale_infrared_s": PATIENCE_S,
+            "stale_bumper_s": PATIENCE_S,
+            # Wheels that disobey, and boards that hang, are what the checklist looks for: it must see them at work.
+            "wheel_error_m_s": 3.0,
+            "frozen_infrared_s": 3600.0,
+        }
+    )
+    return robot.model_copy(
+        update={
+            "can": robot.can.model_copy(update={"speed_mode": mode}),
+            "guard": guard,
+            "infrared": robot.infrared.model_copy(update={"sensors": sensors or robot.infrared.sensors}),
+            "bumpers": robot.bumpers if has_bumpers else (),
+        }
+    )
 
 
 @dataclass(frozen=True, slots=True)

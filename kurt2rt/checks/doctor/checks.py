@@ -2,15 +2,19 @@
 
 import os
 import shutil
+import sqlite3
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections import Counter
 from collections.abc import Mapping
+from contextlib import closing
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from threadpoolctl import threadpool_info
@@ -18,10 +22,8 @@ from threadpoolctl import threadpool_info
 from kurt2rt.checks.doctor.can_bus import check_can_interfaces, check_can_kernel, check_vcan
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.privileges import check_memory_lock, check_real_time_priority
-from kurt2rt.checks.doctor.sqlite_log import check_sqlite, check_sqlite_log
 from kurt2rt.checks.doctor.sysfs import read_attribute
 from kurt2rt.checks.doctor.timer import check_clock, check_timer
-from kurt2rt.platform.fsync_probe import fsync_ns
 
 LEAST_PYTHON = (3, 11)
 CPU_FOLDER = Path("/sys/devices/system/cpu")
@@ -31,6 +33,9 @@ SYNC_LIMIT_S = 0.02
 LEAST_BYTES = 64 * 1024 * 1024
 WANTED_BYTES = 1024 * 1024 * 1024
 """Recommended free space, most of it for recorded runs."""
+_PAGE_BYTES = 4096
+LEAST_SQLITE = (3, 37, 0)
+"""First version with STRICT tables."""
 
 
 def run_checks(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
@@ -179,3 +184,58 @@ def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> CheckResult:
     if median_s > limit_s:
         return CheckResult(FindingCode.SYNC_SLOW, CheckStatus.WARNING, values, needed=True)
     return CheckResult(FindingCode.SYNC, CheckStatus.OK, values, needed=True)
+
+
+def fsync_ns(file: BinaryIO) -> int:
+    """Return the ns until one more page of an unbuffered file is durable. Raises OSError."""
+    file.write(bytes(_PAGE_BYTES))
+    begun_ns = time.perf_counter_ns()
+    os.fsync(file.fileno())
+    return time.perf_counter_ns() - begun_ns
+
+
+def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> CheckResult:
+    """Check that Python's SQLite is new enough for the journal."""
+    name = ".".join(map(str, found))
+    if found < LEAST_SQLITE:
+        least = ".".join(map(str, LEAST_SQLITE))
+        return CheckResult(FindingCode.SQLITE_OLD, CheckStatus.MISSING, {"version": name, "least": least}, needed=True)
+    return CheckResult(FindingCode.SQLITE, CheckStatus.OK, {"version": name}, needed=True)
+
+
+def check_sqlite_log(folder: Path) -> CheckResult:
+    """Check that a write-ahead log works in this folder; on most network disks it does not."""
+    path = folder / "log.sqlite"
+    try:
+        with closing(_connect(path)) as writer, closing(_connect(path)) as reader:
+            fault = log_fault(writer, reader)
+    except sqlite3.Error as error:
+        fault = str(error)
+    if fault:
+        return CheckResult(FindingCode.SQLITE_LOG_FAILS, CheckStatus.MISSING, {"fault": fault}, needed=True)
+    return CheckResult(FindingCode.SQLITE_LOG, CheckStatus.OK, needed=True)
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    return sqlite3.connect(path, timeout=0.2, isolation_level=None)
+
+
+def log_fault(writer: sqlite3.Connection, reader: sqlite3.Connection) -> str:
+    """Return the fault of a write during another program's read, in words; empty without a fault."""
+    (mode,) = writer.execute("PRAGMA journal_mode = WAL").fetchone()
+    if mode != "wal":
+        return f"journal mode stays {mode}"
+    writer.execute("PRAGMA synchronous = FULL")
+    writer.execute("CREATE TABLE lesson (number INTEGER)")
+    reader.execute("BEGIN")
+    before = _lessons(reader)
+    writer.execute("INSERT INTO lesson VALUES (1)")  # without a log this would wait for the reader, and fail
+    during = _lessons(reader)
+    reader.execute("COMMIT")
+    seen = (before, during, _lessons(reader))
+    return "" if seen == (0, 0, 1) else f"a reader saw {seen} lessons before, during and after, not (0, 0, 1)"
+
+
+def _lessons(connection: sqlite3.Connection) -> int:
+    (count,) = connection.execute("SELECT count(*) FROM lesson").fetchone()
+    return int(count)

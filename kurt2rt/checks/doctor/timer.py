@@ -1,5 +1,6 @@
 """Checks of the timer that paces the ticks."""
 
+import asyncio
 import statistics
 import time
 from collections.abc import Callable
@@ -11,7 +12,6 @@ import anyio
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sysfs import read_attribute
-from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 
@@ -23,6 +23,18 @@ COARSE_RESOLUTION_S = 1e-6
 SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
 """Clock sources that take a microsecond or more to read."""
 CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
+
+
+class AsyncioClock:
+    """Waits by `asyncio.sleep`, as the reference for better clocks."""
+
+    def now_s(self) -> float:
+        """Return the monotonic time in s."""
+        return time.monotonic()
+
+    async def wait_until(self, deadline_s: float) -> None:
+        """Return at the deadline, rounded up to the event loop's whole milliseconds."""
+        await asyncio.sleep(deadline_s - time.monotonic())
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,13 +2,11 @@
 
 import typer
 
-from kurt2rt.cli.knowledge.contradictions import contradictions
 from kurt2rt.cli.knowledge.diff import diff
-from kurt2rt.cli.knowledge.export import export, import_, table
-from kurt2rt.cli.knowledge.graph import graph
+from kurt2rt.cli.knowledge.export import export, graph, import_, table
 from kurt2rt.cli.knowledge.listing import list_files
 from kurt2rt.cli.knowledge.merge import merge
-from kurt2rt.cli.knowledge.show import check, lessons, show
+from kurt2rt.cli.knowledge.show import check, contradictions, lessons, show
 from kurt2rt.cli.knowledge.undo import redo, undo
 
 knowledge = typer.Typer(

@@ -82,11 +82,6 @@ class Agreement:
         """Return the number of counted signals of a value, -1, 0 or +1."""
         return len(self._signals[value])
 
-    def share_for(self, value: int) -> float | None:
-        """Return the share of agreement, 0 to 1, among the signals of a value, -1, 0 or +1; None without any."""
-        heard = self._signals[value]
-        return sum(right for _, right in heard) / len(heard) if heard else None
-
     def _add(self, value: int | None, event: TeachingEvent, *, right: bool) -> None:
         if value is None or self._too_soon(event.origin.tick):  # None: an appraisal of other settings
             return

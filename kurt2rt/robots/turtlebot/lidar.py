@@ -30,7 +30,7 @@ class ScanReadings(list[int]):
 
 
 class Lidar:
-    """Lidar that measures all its rays at once in each period (simbridge.robot.range_sensors.RangeSensors)."""
+    """Lidar that measures all its rays at once in each period (simbridge.simulated_robot.RangeSensors)."""
 
     def __init__(self, settings: TurtlebotSettings, world: World, noise: Noise) -> None:
         """Draw the phase and each ray's error from `noise`."""

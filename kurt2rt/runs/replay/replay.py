@@ -96,23 +96,6 @@ class Replay:
         return runtime
 
 
-def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
-    """Return the runtime after the last tick that began by `now_s` of the runtime's clock, and that tick.
-
-    `Run.began_s` is the time of the first tick, which is also returned for an earlier time. Raises RecordingError, also
-    for a run without ticks.
-    """
-    replay = Replay(run)
-    last = None
-    for entry in run.entries():
-        if last is not None and entry.now_s > now_s:
-            break
-        last = ReplayedTick(entry, replay.step(entry))
-    if last is None:
-        raise empty_run_error(run)
-    return replay.runtime, last
-
-
 def empty_run_error(run: Run) -> RecordingError:
     """Return the error for a run without ticks, after they were searched."""
     return RecordingError(

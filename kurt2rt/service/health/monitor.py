@@ -33,8 +33,8 @@ from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
 _ENDS_WITHIN_S = 0.2
 _POWER = Path("/sys/class/power_supply")
-_EVERY_S = 1.0
-_ANSWERS_WITHIN_S = 4.0
+_DISKS_EVERY_S = 1.0
+_DISK_ANSWERS_WITHIN_S = 4.0
 
 
 class HealthMonitor:
@@ -293,7 +293,7 @@ class DiskMonitor:
         found = []
         for of in self._folders:
             said_at_s, free_bytes = self._said.get(of, (float("-inf"), 0))
-            found.append(DiskSpace(of, free_bytes if now_s - said_at_s <= _ANSWERS_WITHIN_S else None))
+            found.append(DiskSpace(of, free_bytes if now_s - said_at_s <= _DISK_ANSWERS_WITHIN_S else None))
         return tuple(found)
 
     def __enter__(self) -> Self:
@@ -308,5 +308,5 @@ class DiskMonitor:
 
     def _run(self, of: str) -> None:
         self.poll(of)
-        while not self._ending.wait(_EVERY_S):
+        while not self._ending.wait(_DISKS_EVERY_S):
             self.poll(of)

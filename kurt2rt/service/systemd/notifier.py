@@ -30,11 +30,6 @@ class Notifier:
         """Messages that the manager did not accept."""
         self._status = ""
 
-    @property
-    def has_manager(self) -> bool:
-        """Return whether there is a service manager."""
-        return self._socket is not None
-
     def ready(self) -> None:
         """Report that the service is up, or up again after a reload."""
         self._send("READY=1")

@@ -47,11 +47,6 @@ class UnitVerification:
         return not self.complaints and self.exposure <= MOST_EXPOSURE
 
 
-def has_tool() -> bool:
-    """Return whether this machine has systemd's tools."""
-    return shutil.which(TOOL) is not None
-
-
 def verify(unit: Unit) -> UnitVerification:
     """Verify the unit without installing or starting it. Raises UnitError if the tool is missing."""
     tool = shutil.which(TOOL)

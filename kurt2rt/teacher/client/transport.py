@@ -112,11 +112,6 @@ class OscoreRequests:
         number: int = self._keys.sender_sequence_number
         return self._paired_ms + number
 
-    @property
-    def open_exchanges(self) -> int:
-        """Number of requests and observations that still wait for a message."""
-        return len(self._coap.request_interfaces[0].outgoing_requests)
-
     async def find_robot(self) -> None:
         """Resolve the robot's address again, because it may have changed; a failure goes to `trouble`."""
         try:

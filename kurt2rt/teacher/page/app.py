@@ -35,7 +35,7 @@ STATIC = Path(__file__).parent / "static"
 
 _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
-MAX_BYTES = 64_000_000
+MAX_DOWNLOAD_BYTES = 64_000_000
 """Limit on a file, which is in memory meanwhile. A day of 24 hours has 4 MB of lessons."""
 _MEDIA_TYPES = {".zip": "application/zip", ".csv": "text/csv", ".png": "image/png"}
 _DISPLAYED = ".png"
@@ -188,8 +188,8 @@ class Downloads:
     async def _fetch(self, name: str) -> bytes:
         content = bytearray()
         async for part in self._robot.file_parts(name):
-            if part.size_bytes > MAX_BYTES:
-                fields = {"name": name, "size": part.size_bytes, "most": MAX_BYTES}
+            if part.size_bytes > MAX_DOWNLOAD_BYTES:
+                fields = {"name": name, "size": part.size_bytes, "most": MAX_DOWNLOAD_BYTES}
                 raise RefusedError(text_of(PageNotice.DOWNLOAD_TOO_LARGE, **fields))
             content += part.content
         return bytes(content)

@@ -1,7 +1,9 @@
 """Supervision of a simulated robot in a task of several behaviours: select each in turn, free a robot that is stuck."""
 
+import math
 import random
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from hal.simulation import SimulatedPlace
@@ -11,8 +13,104 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, BehaviourCycler
-from kurt2rt.teacher.scripted.repositioner import RobotRepositioner
+
+EACH_S = 30.0
+"""Time for each behaviour: enough for one or two junctions."""
+_REPEAT_S = 1.0
+_MAX_PLACES = 50
+
+
+class BehaviourCycler:
+    """Selection of one behaviour after another; a task of one behaviour needs no command."""
+
+    def __init__(self, behaviours: Sequence[str], period_s: float) -> None:
+        """Start with the behaviour that the robot follows in the first state; `period_s` is the length of a tick."""
+        self.selected: str | None = None
+        """None before the first state."""
+        self._behaviours = tuple(behaviours)
+        self._each_ticks = round(EACH_S / period_s)
+        self._repeat_ticks = round(_REPEAT_S / period_s)
+        self._elapsed = self._tick = 0
+        self._commanded_at: int | None = None
+
+    def update(self, state: State, *, stopped: bool) -> bool:
+        """Take a state; return whether to command `selected` now.
+
+        A command that was lost or refused is due again after a second. No time passes while a person has `stopped` the
+        robot.
+        """
+        if self.selected is None:
+            self.selected = state.behaviour if state.behaviour in self._behaviours else self._behaviours[0]
+            self._tick = state.tick
+        passed, self._tick = state.tick - self._tick, state.tick
+        if stopped:
+            return False
+        self._elapsed += passed
+        if self._elapsed >= self._each_ticks:
+            self._elapsed = 0
+            self._commanded_at = None
+            self.selected = self._behaviours[(self._behaviours.index(self.selected) + 1) % len(self._behaviours)]
+        if state.behaviour == self.selected:
+            return False
+        if self._commanded_at is not None and state.tick < self._commanded_at + self._repeat_ticks:
+            return False
+        self._commanded_at = state.tick
+        return True
+
+
+class RobotRepositioner:
+    """Places that the robot drove through, and the detection that it has stayed about one place for too long."""
+
+    def __init__(self, after_s: float, least_m: float, period_s: float, chance: random.Random) -> None:
+        """Reposition a robot that moved at most `least_m` in `after_s`, longer in a slow lesson.
+
+        `period_s` is the length of a tick.
+        """
+        self._after_ticks = round(after_s / period_s)
+        self._least_m = least_m
+        self._chance = chance
+        self._passed: deque[SimulatedPlace] = deque(maxlen=_MAX_PLACES)
+        self._from: SimulatedPlace | None = None
+        self._since = 0
+        self._clean = True
+        """Without a collision since `_from`."""
+
+    def update(self, state: State, *, waits: bool) -> SimulatedPlace | None:
+        """Process a state; return the place to put the robot now, if it made no progress; None if it shall stay.
+
+        Time in which the robot `waits` for its teacher does not count. A place counts as passed if the robot came there
+        without a collision.
+        """
+        place = state.place
+        if place is None:
+            return None
+        if self._from is None:
+            if not self._passed:  # after a repositioning, this state may still show the place where it was stuck
+                self._passed.append(place)
+            self._begin(place, state.tick)
+            return None
+        self._clean = self._clean and place.collisions == self._from.collisions
+        if _distance_m(place, self._from) > self._least_m:
+            if self._clean:
+                self._passed.append(place)
+            self._begin(place, state.tick)
+        elif waits:
+            self._begin(place, state.tick)
+        elif (state.tick - self._since) * state.speed_share >= self._after_ticks:
+            self._from = None  # the next state gives the new start
+            return self._choose(place)
+        return None
+
+    def _begin(self, place: SimulatedPlace, tick: int) -> None:
+        self._from, self._since, self._clean = place, tick, True
+
+    def _choose(self, here: SimulatedPlace) -> SimulatedPlace:
+        places = [each for each in self._passed if _distance_m(each, here) > self._least_m]
+        return self._chance.choice(places or list(self._passed))
+
+
+def _distance_m(one: SimulatedPlace, other: SimulatedPlace) -> float:
+    return math.hypot(one.x_m - other.x_m, one.y_m - other.y_m)
 
 
 class ScriptedSupervisor:

@@ -4,7 +4,7 @@ import hashlib
 
 import pytest
 
-from kurt2rt.channel.server.upload import Upload
+from kurt2rt.channel.server.off_tick_requests import Upload
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 
 ABC = hashlib.sha256(b"abc").digest()

@@ -8,8 +8,7 @@ import anyio
 import pytest
 from rich.console import Console
 
-from kurt2rt.checks.commission.console_operator import ConsoleOperator
-from kurt2rt.checks.commission.keyboard import Keyboard
+from kurt2rt.checks.commission.console_operator import ConsoleOperator, Keyboard
 from kurt2rt.checks.commission.operator import AbortedError, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 
 

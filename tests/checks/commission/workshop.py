@@ -12,14 +12,13 @@ from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2SensorSettings, Kurt2Settings, load_kurt2
-from kurt2rt.checks.commission.checklist import STEPS, Checklist, step_named
+from kurt2rt.checks.commission.checklist import STEPS, WORDS, Checklist, step_named
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, SKIP, AbortedError, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
 from kurt2rt.checks.commission.test_stand import TestStand
-from kurt2rt.checks.commission.wheels_off_ground_step import WORDS
 from kurt2rt.platform.clock import LockstepClock
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.worlds.obstacle_settings import RoundObstacleSettings

@@ -5,7 +5,7 @@ from contextlib import closing
 from pathlib import Path
 
 from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sqlite_log import check_sqlite, check_sqlite_log, log_fault
+from kurt2rt.checks.doctor.checks import check_sqlite, check_sqlite_log, log_fault
 
 
 def test_an_sqlite_without_strict_tables_forbids_to_run() -> None:

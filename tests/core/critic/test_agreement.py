@@ -68,7 +68,7 @@ def test_agreement_window_keeps_the_newest() -> None:
     assert one.share == 1.0  # it has no appraisal yet that could have said anything
     one.on_event(appraisal(1, "neutral"))
     one.replay([rewarded(1, said=None) for _ in range(3)])
-    assert (one.share, one.count_for(1), one.share_for(1)) == (0.5, 3, 0.0)
+    assert (one.share, one.count_for(1)) == (0.5, 3)
     one.replay(agreed(1, 3))
     assert one.share == 1.0
 
@@ -79,7 +79,7 @@ def test_agreement_neutral_counts_from_enough_on() -> None:
     assert one.share == 1.0
     one.on_event(appraisal(2, "neutral"))
     assert one.share == 2 / 3
-    assert (one.count_for(0), one.share_for(0)) == (2, 0.0)
+    assert one.count_for(0) == 2
 
 
 def test_agreement_lesson_to_critic_is_disagreement() -> None:
@@ -89,9 +89,9 @@ def test_agreement_lesson_to_critic_is_disagreement() -> None:
     one.on_event(ActionReplaced(1, "bad", "good", origin()))
     assert (one.count_for(1), one.count_for(-1)) == (2, 2)
     one.on_event(appraisal(2, "good"))
-    assert one.share_for(1) == 2 / 3
+    assert one.share == 5 / 6
     one.on_event(ActionReplaced(2, "bad", "good", origin()))
-    assert one.share_for(-1) == 2 / 3
+    assert one.share == 2 / 3
 
 
 def test_agreement_ignores_events_of_the_critic() -> None:
@@ -106,13 +106,13 @@ def test_agreement_undone_signal_is_removed() -> None:
     one.replay([*agreed(1, 2), *agreed(-1, 2)])
     mistaken = origin("mistaken")
     one.on_event(appraisal(1, "bad", said_by=mistaken))
-    assert one.share_for(-1) == 2 / 3
+    assert one.share == 5 / 6
     one.on_event(LessonUndone("mistaken", origin()))
     one.on_event(LessonUndone("unknown", origin()))
     assert (one.share, one.count_for(-1)) == (1.0, 2)
     one.on_event(LessonRedone("mistaken", origin()))
     one.on_event(LessonRedone("unknown", origin()))
-    assert one.share_for(-1) == 2 / 3
+    assert one.share == 5 / 6
 
 
 def said_at(tick: int, *, right: bool) -> TeachingEvent:
@@ -125,9 +125,10 @@ def test_agreement_signal_soon_after_another_is_ignored() -> None:
     one = agreement(apart_s=5.0)
     one.on_event(appraisal(1, "good", said_by=origin(tick=100)))
     one.replay([said_at(100 + after, right=after % 2 == 0) for after in range(1, 500, 50)])
-    assert (one.count_for(1), one.share_for(1)) == (1, 0.0)
+    assert one.count_for(1) == 1
     one.replay([said_at(600, right=True), said_at(1099, right=False), said_at(1100, right=False)])
-    assert (one.count_for(1), one.share_for(1)) == (3, 1 / 3)
+    one.replay(Appraised("bad", -1, tick, origin(tick=tick)) for tick in (2000, 3000))
+    assert (one.count_for(1), one.share) == (3, 2 / 3)
 
 
 def test_agreement_ticks_of_a_new_run_count() -> None:

@@ -4,7 +4,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from kurt2rt.core.planning.plan import Plan, plan_to
+from kurt2rt.core.planning.goal_pursuit import Plan, plan_to
 from kurt2rt.core.planning.target import NearTarget, Target
 from kurt2rt.core.planning.topological_map import Edge, Place, TopologicalMap
 from tests.core.planning.town import SPACE, Town

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kurt2rt.core.teaching.mid_history import MidHistory, MidSnapshot
+from kurt2rt.core.teaching.mid_lessons import MidHistory, MidSnapshot
 
 
 def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> MidHistory:

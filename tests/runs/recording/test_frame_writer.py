@@ -6,7 +6,7 @@ from pathlib import Path
 import can
 import pytest
 
-from kurt2rt.runs.recording.frame_writer import ENDINGS, LogFile
+from kurt2rt.runs.recording.can_log import ENDINGS, LogFile
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 FRAMES = (

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.runs.recording.sensor_rays import SCAN_RAYS, SensorRays
+from kurt2rt.runs.recording.foxglove_scene import SCAN_RAYS, SensorRays
 
 INFRARED = load_robot().infrared
 NOTHING = [INFRARED.floor_counts] * len(INFRARED.sensors)

@@ -7,7 +7,9 @@ from pathlib import Path
 
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run, RunSource
+from kurt2rt.runtime import Runtime
 
 STORED = Path(__file__).parent / "runs"
 NAMES = ("walls", "errand")
@@ -27,3 +29,16 @@ def stored(name: str, seconds: float = math.inf) -> Run:
 @cache
 def _entries(name: str) -> tuple[TickEntry, ...]:
     return tuple(read_run(STORED / f"{name}.mcap").entries())
+
+
+def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
+    """Return the runtime after the last tick that began by `now_s` of its clock, or after the first, and that tick."""
+    replay = Replay(run)
+    entries = run.entries()
+    last = next(entries)
+    record = replay.step(last)
+    for entry in entries:
+        if entry.now_s > now_s:
+            break
+        last, record = entry, replay.step(entry)
+    return replay.runtime, ReplayedTick(last, record)

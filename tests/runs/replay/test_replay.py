@@ -24,11 +24,11 @@ from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.run_head import RunHead
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import Replay, replay_until
+from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run, RunSource
 from tests.core.basic.helpers import keep, with_repertoire
 from tests.processors import OF_2004, OF_2013
-from tests.runs.replay.stored_runs import NAMES, STORED, stored
+from tests.runs.replay.stored_runs import NAMES, STORED, replay_until, stored
 from tests.runs.replay.stories import NAME, STORIES, Scene, record_story
 
 HERE = Path(__file__).parents[3]

@@ -7,7 +7,7 @@ import pytest
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.replay import Replay, replay_until
+from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.verify import verify
 from tests.channel.channel_fixture import ROBOT, TASK
 from tests.runs.recording.desk_recording import empty_run, late_run
@@ -40,5 +40,3 @@ def test_of_a_run_without_a_tick_nothing_is_the_same(tmp_path: Path) -> None:
     run = empty_run(tmp_path)
     with pytest.raises(RecordingError, match="no tick"):
         verify(read_run(run))
-    with pytest.raises(RecordingError, match="no tick"):
-        replay_until(read_run(run), 1.0)

@@ -9,8 +9,14 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.service.systemd import access
-from kurt2rt.service.systemd.access import AccessCode, AccessFinding, RequiredAccess, paths_to_chown, private_paths
-from kurt2rt.service.systemd.access_text import access_text
+from kurt2rt.service.systemd.access import (
+    AccessCode,
+    AccessFinding,
+    RequiredAccess,
+    access_text,
+    paths_to_chown,
+    private_paths,
+)
 from kurt2rt.service.systemd.installation import start_command
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from tests import plugin_parts

@@ -10,7 +10,6 @@ from tests.service.systemd.manager import Manager, manager
 
 def test_a_life_as_the_manager_hears_it(tmp_path: Path) -> None:
     with manager(tmp_path) as systemd, Notifier(systemd.environment(4.0)) as notifier:
-        assert notifier.has_manager
         assert notifier.watchdog_s == 4.0
         notifier.ready()
         notifier.status("waits for\nthe bus")
@@ -39,7 +38,6 @@ def test_a_socket_without_a_file_is_found() -> None:
 def test_without_a_manager_nothing_is_said() -> None:
     with Notifier({"WATCHDOG_USEC": "1000"}) as notifier:
         notifier.ready()
-        assert not notifier.has_manager
         assert notifier.watchdog_s is None
         assert notifier.lost == 0
 

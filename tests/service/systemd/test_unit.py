@@ -1,5 +1,6 @@
 """The unit says what the issue asks of it, and systemd's own tools agree."""
 
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -9,10 +10,10 @@ from config import CONFIG_DIR
 from kurt2rt.service.systemd.installation import start_command
 from kurt2rt.service.systemd.unit import Unit, build_unit
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
-from kurt2rt.service.systemd.verify import MOST_EXPOSURE, has_tool, verify
+from kurt2rt.service.systemd.verify import MOST_EXPOSURE, TOOL, verify
 
 needs_systemd = pytest.mark.skipif(
-    not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"
+    shutil.which(TOOL) is None, reason="systemd-analyze is not here; on Debian: apt-get install systemd"
 )
 
 

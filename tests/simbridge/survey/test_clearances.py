@@ -6,7 +6,7 @@ import pytest
 
 from hal.kurt2_settings import load_kurt2
 from simbridge.robot.world import World
-from simbridge.survey.clearance import Clearance
+from simbridge.robot_simulation import Clearance
 from simbridge.worlds.world_loading import load_world
 
 

@@ -8,8 +8,8 @@ import pytest
 from hal.settings import SettingsError
 from hal.simulation import Pose
 from simbridge.robot.world import World
+from simbridge.robot_simulation import Clearance
 from simbridge.survey import free_poses
-from simbridge.survey.clearance import Clearance
 from simbridge.survey.free_poses import FreePoses
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import ROBOT, post

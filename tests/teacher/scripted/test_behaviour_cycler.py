@@ -1,7 +1,7 @@
 """BehaviourCycler with ticks of 0.1 s."""
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, BehaviourCycler
+from kurt2rt.teacher.scripted.supervisor import EACH_S, BehaviourCycler
 from tests.channel.states import state
 
 TURNS = ("straight_on", "turn_left", "turn_right")

@@ -3,7 +3,7 @@
 import random
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.teacher.scripted.repositioner import RobotRepositioner
+from kurt2rt.teacher.scripted.supervisor import RobotRepositioner
 from tests.channel.states import state
 
 AFTER_S = 15.0
