@@ -158,7 +158,7 @@ def find_refusal(task: TaskSettings, knowledge: Path, run: Run, parts: JobParts)
 
 
 class Certified(NamedTuple):
-    """What is certified."""
+    """Task that is certified, and its runs."""
 
     task: TaskSettings
     extent: Extent

@@ -126,7 +126,7 @@ class PupilJob(StudyJob):
 
 
 class Compared(NamedTuple):
-    """What is compared."""
+    """Tasks that are taught, and when their robots are examined."""
 
     tasks: tuple[TaskSettings, ...]
     after: tuple[int, ...]

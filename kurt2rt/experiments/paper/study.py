@@ -89,7 +89,7 @@ class GrowthJob(StudyJob):
 
 
 class PaperExtent(NamedTuple):
-    """What is studied, and how much of it."""
+    """Experiments that are studied, and how much of each."""
 
     paper: PaperSettings
     extent: Extent

@@ -397,7 +397,7 @@ _QUICK_SHARE = 0.2
 
 
 class PhasesTask(NamedTuple):
-    """What is taught."""
+    """Task that is taught through the phases."""
 
     task: TaskSettings
     quick: bool

@@ -145,7 +145,7 @@ def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> T
 
 
 class RouteTasks(NamedTuple):
-    """What is taught."""
+    """Task with the routes that are taught."""
 
     task: TaskSettings
     """Task without the route, which each robot's seed draws."""

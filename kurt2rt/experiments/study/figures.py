@@ -33,7 +33,7 @@ def save(figure: Figure, path: Path) -> None:
 
 
 def panels_of(count: int, in_a_row: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
-    """Return a figure with so many panels, at most `in_a_row` beside each other; `size`: of each, in inches."""
+    """Return a figure with so many panels, at most `in_a_row` of them; `size`: of each, in inches."""
     wide = min(in_a_row, count)
     rows = math.ceil(count / wide)
     layout = ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
@@ -47,7 +47,7 @@ def panels_of(count: int, in_a_row: int, size: tuple[float, float]) -> tuple[Fig
 def draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveRow, width: float = 0.9) -> None:
     """Draw the world and the trail of a drive, with its start, unknown situations and collisions.
 
-    `width`: of the trail's line, in points.
+    `width`: of the trail's line, in points of 0.35 mm.
     """
     factory.draw(axes, drive.world)
     draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_CARRIED_M, width=width)

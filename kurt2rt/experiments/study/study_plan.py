@@ -76,7 +76,7 @@ class StudyPlan(Generic[AboutT]):
     """Jobs of a study, in the order of its tables."""
 
     about: AboutT
-    """What the tables tell besides the results."""
+    """Facts that the tables tell next to the results."""
     seeds: tuple[int, ...]
     jobs: tuple[StudyJob, ...]
     """Jobs without witnesses."""
@@ -103,7 +103,7 @@ class Group(NamedTuple, Generic[KeyT, OutcomeT]):
     """Robots that share a row of a table."""
 
     of: KeyT
-    """What they have in common."""
+    """Key that they have in common."""
     outcomes: tuple[OutcomeT, ...]
     """One per robot, in the order of the seeds."""
 

@@ -57,7 +57,7 @@ def as_rich(table: Table) -> RenderableType:
 
 
 def median(values: Iterable[float]) -> float:
-    """Return the median, in the unit of the values; of two middle values their mean."""
+    """Return the median of values, such as counts or seconds; of two middle values their mean."""
     return quartiles(list(values))[1]
 
 

@@ -255,7 +255,7 @@ class NewWorlds(NamedTuple):
 
 
 class Transfer(NamedTuple):
-    """What is studied."""
+    """Task that was taught at home, and when its robots are examined."""
 
     task: TaskSettings
     after: tuple[int, ...]

@@ -174,7 +174,7 @@ def intact(*after: DriveRow) -> dict[str, Verdict]:
     return {what.removeprefix(start): each for what, each in told.items() if what.startswith(start)}
 
 
-def test_intact_set_is_not_worse_unless_a_robot_is_no_longer_clean() -> None:
+def test_intact_set_is_worse_if_a_robot_is_no_longer_clean() -> None:
     told = intact(*[exam()] * 20)
     assert {each.result for each in told.values()} == {"met"}
     assert len(told) == 5
