@@ -122,10 +122,6 @@ def _complain(text: str, code: ExitCode = ExitCode.REFUSED) -> NoReturn:
     sys.exit(code)
 
 
-if __name__ == "__main__":
-    main()
-
-
 def adapt_to_terminal() -> None:
     """Let this process print what its terminal can show: like letters for others, and lines at widths that exist."""
     codecs.register_error(_ERRORS, _like_letters)
@@ -143,3 +139,7 @@ def _like_letters(error: UnicodeError) -> tuple[str, int]:
     assert isinstance(error, UnicodeEncodeError | UnicodeDecodeError)
     unknown = error.object[error.start : error.end]
     return "".join(_PLAIN.get(str(each), "?") for each in unknown), error.end
+
+
+if __name__ == "__main__":
+    main()
