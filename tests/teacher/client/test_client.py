@@ -808,7 +808,8 @@ async def test_press_continues_if_only_late_message_is_refused(client: TeacherCl
 
     robot.mind = refuses_the_first_one_late
     client.press(0.2, 0.2)
-    await robot.hears(DriveRequest, 5)
+    # On a busy machine the refusal would else overtake the answers to newer messages.
+    await eventually(lambda: client._drive._press is not None and client._drive._press.accepted >= 0)
     late.set()
     await robot.hears(DriveRequest, 10)
     assert client.pressing
