@@ -120,7 +120,7 @@ def _decision(decision: DecisionEntry) -> dict[str, Any]:
                 }
             ),
             "plan": None if decision.plan is None else _tuple(decision.plan),
-            "doubt": decision.doubt,
+            "doubt": None if decision.doubt is None else _number(decision.doubt),
         }
     )
 
@@ -191,7 +191,7 @@ def _decoded(kind: Callable[..., _Value], content: Mapping[str, Any], **decoded:
     for name, is_float, is_optional in _fields_of(kind):
         if name not in fields:
             value: Any = content.get(name) if is_optional else content[name]
-            fields[name] = float(value) if is_float else value
+            fields[name] = float(value) if is_float and value is not None else value
     return kind(**fields)
 
 
@@ -199,7 +199,7 @@ def _decoded(kind: Callable[..., _Value], content: Mapping[str, Any], **decoded:
 def _fields_of(kind: type) -> tuple[tuple[str, bool, bool], ...]:
     """Return the name of each field of a named tuple, whether it is a float, and whether it may be None."""
     hints = get_type_hints(kind)
-    return tuple((name, hint is float, type(None) in get_args(hint)) for name, hint in hints.items())
+    return tuple((name, float in (hint, *get_args(hint)), type(None) in get_args(hint)) for name, hint in hints.items())
 
 
 def encode_command(command: Input) -> dict[str, Any]:
