@@ -1,6 +1,5 @@
 """Every tick comes back from its entry as it was, to the last bit."""
 
-import math
 from typing import get_args
 
 import pytest
@@ -63,7 +62,7 @@ decisions = some.builds(
     some.sampled_from(("basic", "mid")),
     some.none() | mids,
     some.none() | plans,
-    some.sampled_from((None, math.inf)) | number,
+    some.sampled_from((None, float("inf"))) | number,
 )
 opinions = some.builds(OpinionEntry, some.integers(-1, 1), text, number, maybe_id, number, number, some.booleans())
 surprises = some.builds(
