@@ -184,7 +184,6 @@ class _Assembly:
             self.active_behaviour,
             self.reinforcement.choice,
             self._doubt(repertoire),
-            self._period_s,
         )
         self.learner: LearnerLevel | None = None
         if options.learners is not None:

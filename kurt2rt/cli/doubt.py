@@ -55,9 +55,8 @@ class _Options:
 def doubt(options: _Options) -> None:
     """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
 
-    Each robot drives without a teacher in each world once for each response:
-    doubt that is only told, doubt that stops it, and doubt that stops it and
-    lets it turn. In a world with SEED in its name each robot drives in
+    Each robot drives without a teacher in each world twice: doubt is only
+    told, and doubt stops it. In a world with SEED in its name each robot drives in
     another one.
 
     For example:

@@ -39,7 +39,6 @@ LOST = replace(level((math.nan,), replace(PLACE, distance=math.inf)), driver=Non
 STOOD = WheelSpeeds(0, 0)
 OBSTACLE = DoubtFacts(3.41, 2.8, "front left", "13 cm", "40 cm")
 CONTACT = DoubtFacts(7.2, 7.0, contact=ContactFacts("forward", 0.2, "front left (s9)", 0.45))
-AVOIDED = facts(replace(KNOWN, driver=ELSE), DecisionCause.AVOIDS.value, "back")
 
 
 def standing(cause: DecisionCause, basic: LevelFacts = KNOWN) -> DecisionFacts:
@@ -57,7 +56,6 @@ STOPPED = standing(DecisionCause.STOPPED)
 OF_CAUSE: dict[DecisionCause, DecisionFacts] = {
     DecisionCause.RLA: facts(KNOWN),
     DecisionCause.HELD: facts(replace(KNOWN, driver=ELSE), DecisionCause.HELD.value, "back"),
-    DecisionCause.AVOIDS: replace(AVOIDED, doubt=CONTACT),
     DecisionCause.TEACHER: replace(LED, teacher="Ann"),
     DecisionCause.UNKNOWN: standing(DecisionCause.UNKNOWN, OUTSIDE),
     DecisionCause.BLIND: replace(standing(DecisionCause.BLIND), infrared_age_s=0.07),
@@ -84,10 +82,7 @@ def reasons() -> Iterator[tuple[str, str]]:
         "rla, passes over a guess": facts(replace(KNOWN, passed_over=replace(ELSE, distance=3.0))),
         "rla, passes over a withdrawn one": facts(replace(KNOWN, passed_over=replace(WITHDRAWN, distance=3.0))),
         "rla, doubts a little": replace(facts(KNOWN), doubt=DoubtFacts(1.25, 2.8)),
-        "avoids, without a contact": replace(AVOIDED, doubt=OBSTACLE),
-        "avoids, by no RLA": replace(AVOIDED, basic=replace(AVOIDED.basic, driver=None), action="back", doubt=CONTACT),
         "rla, meets an obstacle": replace(facts(KNOWN), doubt=CONTACT),
-        "avoids, of an unknown doubt": AVOIDED,
         "rla, usual doubt": replace(facts(KNOWN), doubt=DoubtFacts(0.9, 2.8)),
         "rla, sensor broken": replace(facts(KNOWN), broken_sensors=("front left edge (s15)",)),
         "rla, alarm": replace(facts(KNOWN), granted=STOOD, reasons=("bus lost",), latched=True),

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle, actions_back, actions_on_the_spot
+from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -28,12 +28,8 @@ from kurt2rt.core.rla.matching import exact_square
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
-_RLA, _HELD, _AVOIDS = DecisionCause.RLA, DecisionCause.HELD, DecisionCause.AVOIDS
+_RLA, _HELD = DecisionCause.RLA, DecisionCause.HELD
 """Names for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
-
-
-_CANDIDATES = 64
-"""Nearest RLAs among which one is sought whose action meets no obstacle: 0.2 ms in a tick in which it gets away."""
 
 
 def _named(behaviour: str) -> str:
@@ -67,7 +63,6 @@ class BasicLevel:
         active_behaviour: ActiveBehaviour,
         choice: EpsilonGreedy | None = None,
         doubt: DoubtMeter | None = None,
-        period_s: float = 0.01,
     ) -> None:
         """Check the RLAs and connect them to the repertoire.
 
@@ -77,8 +72,7 @@ class BasicLevel:
             minimum_action_ticks: ticks before another RLA's action may replace the driving one.
             active_behaviour: only its RLAs compete.
             choice: chooses among RLAs on the same condition; without it the oldest answers.
-            doubt: score by which the robot stands, asks or gets away inside the radius; None: it never doubts.
-            period_s: time of a tick.
+            doubt: score by which the robot stands and asks inside the radius; None: it never doubts.
 
         Raises:
             UnknownActionError: for an RLA whose action the repertoire lacks.
@@ -92,9 +86,7 @@ class BasicLevel:
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._choice = choice
         self.doubt = doubt
-        self._doubts = None if doubt is None else DoubtWatch(doubt, period_s)
-        self._on_the_spot = actions_on_the_spot(repertoire)
-        self._ways_off = (*actions_back(repertoire), *(name for name in repertoire if name in self._on_the_spot))
+        self._doubts = None if doubt is None else DoubtWatch(doubt)
         self._memory = None if doubt is None else doubt.memory
         self.skip_withdrawn = False
         """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
@@ -102,8 +94,6 @@ class BasicLevel:
         """Whether this tick counts for the minimum time of an action; a slow lesson leaves out some."""
         self.held_action = ""
         """Action whose minimum time was not over at the last decision; empty if any action could drive."""
-        self.turning = False
-        """Whether the robot turns away, because it stood alone in doubt for long enough."""
         self._decisions = 0
         self._driver: Rla | None = None
         self._drivers_condition: NDArray[np.float64] | None = None
@@ -171,8 +161,7 @@ class BasicLevel:
                 self._driver, self._drivers_condition = rla, None
             return self._drive(situation, readings, _RLA, rla, match, answers=True)
         driver = self._driver
-        if driver is None:
-            return self._back_off(situation, readings, match)
+        assert driver is not None  # an RLA's action is held
         answers = driver.condition == rla.condition or self._inside(driver, situation)
         return self._drive(situation, readings, _HELD, driver, match, answers=answers)
 
@@ -202,75 +191,10 @@ class BasicLevel:
         if doubts is None:
             return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers)
         score = doubts.meter.score(situation.vector, match, action, self._behaviour)
-        if doubts.update(score, alone=self.skip_withdrawn) or (
-            # It looks farther before it drives on: readings flicker while it stands, too.
-            (self.turning or doubts.stood) and doubts.meter.meets_obstacle(match, action, farther=cause is not _HELD)
-        ):
-            return self._doubt(situation, readings, doubts, match, score)
-        if cause is not _HELD:
-            self.turning = False
-            doubts.drive_on()
+        if doubts.update(score, alone=self.skip_withdrawn):
+            self._held.stop()
+            return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
         return Decision(wheel_speeds, cause, action, rla.rla_id, match, answers, doubt=score)
-
-    def _doubt(
-        self, situation: Situation, readings: SensorReadings, doubts: DoubtWatch, match: Match, score: float
-    ) -> Decision:
-        """Stand in doubt; after a time, and alone, turn on the spot by the nearest RLA that does so freely."""
-        if doubts.stand(alone=self.skip_withdrawn):
-            driving = self._held.name if self.turning else ""
-            other = self._free_turn(situation, driving)
-            if other is not None:
-                self.turning = True
-                return self._turn_away(readings, other, match, score)
-            action = self._free_way_off()
-            if action is not None:
-                self.turning = True
-                self._held.allow_switch()
-                self._held.select(action)
-                self._driver = self._drivers_condition = None
-                return Decision(self._held.step(readings), _AVOIDS, action, None, match, doubt=score)
-        self.turning = False
-        self._held.stop()
-        return Decision(STANDSTILL, DecisionCause.DOUBT, None, None, match, doubt=score)
-
-    def _free_turn(self, situation: Situation, driving: str) -> Rla | None:
-        """Return the nearest RLA that turns on the spot and meets nothing, or else any that does; None without one.
-
-        `driving`: action that turns the robot already, which is preferred, because it would turn to and fro.
-        """
-        memory = self._memory
-        assert memory is not None
-        free = [rla for rla in self._nearest_rlas(situation) if memory.is_free(rla.action)]
-        return min(free, key=lambda rla: (rla.action not in self._on_the_spot, rla.action != driving), default=None)
-
-    def _free_way_off(self) -> str | None:
-        """Return an action that backs or turns on the spot and meets nothing, taught or not; None without one."""
-        memory = self._memory
-        assert memory is not None
-        return next((name for name in self._ways_off if memory.is_free(name)), None)
-
-    def _back_off(self, situation: Situation, readings: SensorReadings, match: Match) -> Decision:
-        """Go on with an action that no RLA says, unless it would meet something by now."""
-        doubts, action = self._doubts, self._held.name
-        assert doubts is not None
-        score = doubts.meter.score(situation.vector, match, action, self._behaviour)
-        if doubts.meter.meets_obstacle(match, action):
-            return self._doubt(situation, readings, doubts, match, score)
-        return Decision(self._held.step(readings), _AVOIDS, action, None, match, doubt=score)
-
-    def _nearest_rlas(self, situation: Situation) -> list[Rla]:
-        """Return the RLAs nearest to a situation, the nearest first."""
-        nearest = self.system.nearest_first(situation.vector, self._behaviour, limit=_CANDIDATES)
-        return [rla for rla in (self.system.get(rla_id) for rla_id, _ in nearest) if rla is not None]
-
-    def _turn_away(self, readings: SensorReadings, rla: Rla, match: Match, score: float) -> Decision:
-        """Drive by the action of an RLA that is not the nearest, at once."""
-        self._held.allow_switch()
-        self._held.select(rla.action)
-        self._driver, self._drivers_condition = rla, None
-        # Outside its lesson, so it gets no reward.
-        wheel_speeds = self._held.step(readings, counts=self.counts)
-        return Decision(wheel_speeds, _AVOIDS, rla.action, rla.rla_id, match, doubt=score)
 
     def new_obstacle(self, match: Match, vector: NDArray[np.float64]) -> NewObstacle | None:
         """Return the sensor that makes the robot doubt the nearest RLA in a situation (d,); None if no sensor does."""
@@ -287,7 +211,6 @@ class BasicLevel:
     def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:
         """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
-        self.turning = False
         if self._doubts is not None:
             self._doubts.end()
         return Decision(STANDSTILL, cause, None, None, match)

@@ -46,11 +46,6 @@ class DoubtSettings(Settings):
     """Stand and ask at a doubt; False only tells the score."""
     alone: bool = False
     """Stand at a doubt if no teacher can be asked, too: in phase 5 and exams."""
-    turns_after_s: Annotated[float, Field(ge=0, le=60)] | None = None
-    """Time after which a robot that stands alone in doubt turns on the spot, until it is free to drive on.
-
-    None: it stands for as long as the doubt lasts. Only with `asks`, `alone` and `contact`.
-    """
     contact: ContactSettings | None = None
     """Remembered obstacles; an action that meets one is doubted by the threshold. None: none are remembered."""
 
@@ -65,12 +60,6 @@ class DoubtSettings(Settings):
     def _rare_is_beyond_usual(self) -> Self:
         if self.rare_distance <= self.usual_distance:
             raise ValueError(f"rare_distance must be above usual_distance ({self.usual_distance:g})")
-        return self
-
-    @model_validator(mode="after")
-    def _turns_after_standing(self) -> Self:
-        if self.turns_after_s is not None and not (self.asks and self.alone and self.contact is not None):
-            raise ValueError("turns_after_s needs asks: true, alone: true and contact; give them, or leave it out")
         return self
 
 
@@ -105,28 +94,6 @@ def actions_ahead(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
     return frozenset(
         name for name, action in repertoire.items() if isinstance(action, DrivesOn) and action.forward_m_s > 0.0
     )
-
-
-def actions_on_the_spot(repertoire: Mapping[str, Behaviour]) -> frozenset[str]:
-    """Return the names of the actions that turn the robot without moving its centre."""
-    return frozenset(
-        name
-        for name, action in repertoire.items()
-        if isinstance(action, HasSetPoints) and _turns_on_the_spot(action.wheel_speeds)
-    )
-
-
-def actions_back(repertoire: Mapping[str, Behaviour]) -> tuple[str, ...]:
-    """Return the names of the actions that drive straight back, in the order of the repertoire."""
-    return tuple(
-        name
-        for name, action in repertoire.items()
-        if isinstance(action, HasSetPoints) and action.wheel_speeds.left_m_s == action.wheel_speeds.right_m_s < 0.0
-    )
-
-
-def _turns_on_the_spot(speeds: WheelSpeeds) -> bool:
-    return speeds.left_m_s == -speeds.right_m_s != 0.0
 
 
 def set_points(repertoire: Mapping[str, Behaviour]) -> dict[str, WheelSpeeds]:
@@ -193,18 +160,17 @@ class DoubtMeter:
                 most = max(map(sub, map(situation.item, self._features), limits))
                 if most > 0.0:
                     score += most * self._per_count
-        if self.meets_obstacle(match, action):
+        if self._meets_obstacle(match, action):
             score += self.settings.threshold
         return score
 
-    def meets_obstacle(self, match: Match, action: str, *, farther: bool = False) -> bool:
+    def _meets_obstacle(self, match: Match, action: str) -> bool:
         """Return whether the outline would soon meet a remembered obstacle if `action` drove.
 
         `match`: False if it is a lesson about this very situation, because its teacher saw the obstacle, too.
-        `farther`: whether to look farther ahead, as a robot does that stood in doubt or gets away.
         """
         memory = self.memory
-        if memory is None or not memory.meets(action, farther=farther):
+        if memory is None or not memory.meets(action):
             return False
         return self._share(match) > self._usual * _VERY_SITUATION
 
@@ -259,16 +225,12 @@ class DoubtMeter:
 class DoubtWatch:
     """Doubt of a level: it begins at the threshold and ends below a fraction of it."""
 
-    def __init__(self, meter: DoubtMeter, period_s: float) -> None:
-        """Begin without doubt; `period_s`: time of a tick."""
+    def __init__(self, meter: DoubtMeter) -> None:
+        """Begin without doubt."""
         self.meter = meter
         settings = meter.settings
         self._threshold, self._release = settings.threshold, settings.threshold * _RELEASE
         self._asks, self._stands_alone = settings.asks, settings.asks and settings.alone
-        turns_after_s = settings.turns_after_s
-        self._turns_after = None if turns_after_s is None else round(turns_after_s / period_s)
-        self.stood = 0
-        """Ticks of standing alone in this doubt, if the robot may turn afterwards."""
         self._doubts = False
 
     def update(self, score: float, *, alone: bool) -> bool:
@@ -279,21 +241,6 @@ class DoubtWatch:
         self._doubts = score >= (self._release if self._doubts else self._threshold)
         return self._doubts and (self._stands_alone if alone else self._asks)
 
-    def stand(self, *, alone: bool) -> bool:
-        """Count a tick in which the robot would stand; return whether it has stood for long enough, and may turn.
-
-        `alone`: whether no teacher can be asked.
-        """
-        if self._turns_after is None or not alone:
-            return False
-        self.stood += 1
-        return self.stood > self._turns_after
-
-    def drive_on(self) -> None:
-        """Begin the time of standing again, because an action drives that is not doubted."""
-        self.stood = 0
-
     def end(self) -> None:
         """End a doubt, because the robot stands for another reason."""
         self._doubts = False
-        self.stood = 0

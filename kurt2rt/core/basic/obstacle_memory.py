@@ -3,11 +3,11 @@
 import math
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Annotated, NamedTuple, Self
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, model_validator
+from pydantic import Field
 
 from hal.numerics import cos_sin, round_portable
 from hal.odometry import PlanePose, WheelOdometry
@@ -31,20 +31,12 @@ class ContactSettings(Settings):
     """Time of driving for which an obstacle is remembered; a robot that stands forgets nothing."""
     within_s: Annotated[float, Field(ge=_STEP_S, le=1)]
     """An action runs into an obstacle if its outline meets the obstacle within this time."""
-    free_s: Annotated[float, Field(ge=_STEP_S, le=2)]
-    """An action is free of obstacles, for a robot that gets away from one, if it meets none within this time."""
     farthest_m: Annotated[float, Field(gt=0, le=1)]
     """Distance from a sensor up to which a reading is an obstacle."""
     margin_m: Annotated[float, Field(ge=0, le=0.1)]
     """Distance from the outline at which an obstacle is met."""
     look_s: Annotated[float, Field(ge=0.05, le=0.2)]
     """Time between two looks."""
-
-    @model_validator(mode="after")
-    def _is_free_for_longer(self) -> Self:
-        if self.free_s < self.within_s:
-            raise ValueError(f"free_s must be at least within_s ({self.within_s:g})")
-        return self
 
 
 class Contact(NamedTuple):
@@ -97,12 +89,9 @@ class ObstacleMemory:
         self._odometry = WheelOdometry(geometry)
         self._half_length_m = geometry.outline_length_m / 2 + settings.margin_m
         self._half_width_m = geometry.outline_width_m / 2 + settings.margin_m
-        self._within, self._free = round(settings.within_s / _STEP_S), round(settings.free_s / _STEP_S)
-        motions = {name: _motion(speeds, self._free, geometry.effective_track_m) for name, speeds in actions.items()}
+        steps = round(settings.within_s / _STEP_S)
         self._sweeps = {
-            (name, steps): self._sweep(motion, steps)
-            for name, motion in motions.items()
-            for steps in (self._within, self._free)
+            name: self._sweep(_motion(speeds, steps, geometry.effective_track_m)) for name, speeds in actions.items()
         }
         self._seen_m = np.concatenate([_seen_m(law, sensor, settings.farthest_m) for sensor in law.sensors], axis=1)
         """Place of what each sensor sees at each count, ahead and aside, shape (2, sensors * counts)."""
@@ -116,8 +105,8 @@ class ObstacleMemory:
         self._products_m = np.zeros((2, *self._places_m.shape))
         self._rotation = np.zeros((2, 2, 1))
         self._shift_m = np.zeros((2, 1))
-        self._met: dict[tuple[str, int], bool] = {}
-        """Result for each action and number of steps that was asked since the last look."""
+        self._met: dict[str, bool] = {}
+        """Result for each action that was asked since the last look."""
         self.clear()
 
     def clear(self) -> None:
@@ -137,21 +126,13 @@ class ObstacleMemory:
                 self._move()
             self._look(readings.infrared_counts)
 
-    def meets(self, action: str, *, farther: bool = False) -> bool:
-        """Return whether an action meets an obstacle within `within_s`; False if it has no set points.
-
-        `farther`: within `free_s`, so that a robot that gets away from an obstacle does not turn back to it at once.
-        """
-        steps = self._free if farther else self._within
-        met = self._met.get((action, steps))
+    def meets(self, action: str) -> bool:
+        """Return whether an action meets an obstacle within `within_s`; False if it has no set points."""
+        met = self._met.get(action)
         if met is None:
-            sweep = self._sweeps.get((action, steps))
-            met = self._met[action, steps] = sweep is not None and self._is_met(sweep)
+            sweep = self._sweeps.get(action)
+            met = self._met[action] = sweep is not None and self._is_met(sweep)
         return met
-
-    def is_free(self, action: str) -> bool:
-        """Return whether an action has set points and meets no obstacle within `free_s`."""
-        return (action, self._free) in self._sweeps and not self.meets(action, farther=True)
 
     def remembers_within(self, distance_m: float) -> bool:
         """Return whether an obstacle is remembered inside the outline or this close to it."""
@@ -161,7 +142,7 @@ class ObstacleMemory:
 
     def contact(self, action: str) -> Contact | None:
         """Return the first obstacle that an action meets; None if it meets none in time."""
-        sweep = self._sweeps.get((action, self._free))
+        sweep = self._sweeps.get(action)
         if sweep is None:
             return None
         near = self._in_box(sweep)
@@ -219,9 +200,8 @@ class ObstacleMemory:
         inside: NDArray[np.bool_] = (np.abs(ahead_m) < self._half_length_m) & (np.abs(aside_m) < self._half_width_m)
         return inside
 
-    def _sweep(self, motion: _Motion, steps: int) -> _Sweep:
-        """Return the first `steps` poses of a motion with the box around the outline at all of them."""
-        poses = _Motion(*(each[:steps] for each in motion))
+    def _sweep(self, poses: _Motion) -> _Sweep:
+        """Return the poses of a motion with the box around the outline at all of them."""
         reach_x_m = np.abs(poses.cos) * self._half_length_m + np.abs(poses.sin) * self._half_width_m
         reach_y_m = np.abs(poses.sin) * self._half_length_m + np.abs(poses.cos) * self._half_width_m
         highest = np.array([(poses.x_m + reach_x_m).max(), (poses.y_m + reach_y_m).max()])[:, np.newaxis]

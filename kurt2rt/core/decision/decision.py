@@ -17,8 +17,6 @@ class DecisionCause(StrEnum):
     """The situation lies inside the radius of the nearest RLA, whose action drives."""
     HELD = "held"
     """Another RLA is nearest now, but the minimum time of the action before is not over."""
-    AVOIDS = "avoids"
-    """The robot stood alone in doubt for long enough; it gets away by an action that meets no remembered obstacle."""
     TEACHER = "teacher"
     """A teacher drives by hand, or a reference policy drives."""
     UNKNOWN = "unknown"
@@ -48,7 +46,7 @@ class DecisionCause(StrEnum):
 ASKING = frozenset({DecisionCause.UNKNOWN, DecisionCause.DOUBT, DecisionCause.TOUCHES})
 """Causes by which the robot waits for an answer."""
 
-BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.AVOIDS})
+BY_RLA = frozenset({DecisionCause.RLA, DecisionCause.HELD})
 """Causes by which an RLA drives."""
 
 BY_KNOWLEDGE = BY_RLA | {DecisionCause.LEARNER}

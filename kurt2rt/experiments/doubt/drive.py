@@ -21,8 +21,6 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.runtime import Runtime
 
-_TURNS_AFTER_S = 0.5
-"""Time for which a robot stands in doubt before it turns; it has no speed left by then."""
 _STUCK_S = 15.0
 _AT_OUTLINE_M = 0.05
 """Distance from the outline at which a remembered obstacle is what the robot touches: noise, and 2 s by encoders."""
@@ -34,8 +32,6 @@ class DoubtResponse(StrEnum):
 
     TELLS = "only told"
     STANDS = "stands"
-    TURNS = "turns"
-    """It stands for a moment, then turns on the spot until it is free to drive on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,10 +54,8 @@ def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
     doubt = task.learning.doubt
     if doubt is None:
         raise SettingsError("sets no doubt", where=f"task {task.name}: learning.doubt", do="give its scales there")
-    turns = response is DoubtResponse.TURNS
-    stands = turns or response is DoubtResponse.STANDS
-    after_s = _TURNS_AFTER_S if turns else None
-    doubt = doubt.model_copy(update={"asks": stands, "alone": stands, "turns_after_s": after_s})
+    stands = response is DoubtResponse.STANDS
+    doubt = doubt.model_copy(update={"asks": stands, "alone": stands})
     return task.model_copy(update={"learning": task.learning.model_copy(update={"doubt": doubt})})
 
 

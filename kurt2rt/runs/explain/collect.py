@@ -121,7 +121,7 @@ def _doubt(runtime: Runtime, decision: Decision, vector: NDArray[np.float64]) ->
 
 def _doubted_action(runtime: Runtime, decision: Decision, match: Match) -> str:
     """Return the action that drives, or that would drive if the robot did not doubt it."""
-    if decision.cause is DecisionCause.AVOIDS or decision.action is None:
+    if decision.action is None:
         return runtime.level.held_action or match.rla.action
     return decision.action
 

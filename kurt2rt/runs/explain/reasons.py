@@ -76,8 +76,6 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
         lines += [*_rla_drives(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
     elif facts.cause == DecisionCause.HELD:
         lines += [*_held(facts.basic), *_passed_over(facts.basic), *_doubts_a_little(facts.doubt)]
-    elif facts.cause == DecisionCause.AVOIDS:
-        lines += _avoids(facts.basic, facts.doubt, facts.action)
     elif facts.cause == DecisionCause.DOUBT:
         lines += _doubts(facts.basic, facts.doubt)
     elif facts.cause == DecisionCause.TEACHER:
@@ -177,23 +175,6 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
     return [
         f"{format_rla(leader)} would drive, at {format_nearness(leader)}, but the robot doubts it and asks: "
         f"{_why_doubt(doubt)}. Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}."
-    ]
-
-
-def _avoids(level: LevelFacts, doubt: DoubtFacts | None, action: str | None) -> list[str]:
-    leader, driver = level.leader, level.driver
-    if leader is None or doubt is None:
-        return ["The robot doubts the nearest RLA's action, so it gets away."]
-    because = _format_contact(doubt.contact) if doubt.contact else f"the robot doubts it: {_why_doubt(doubt)}"
-    if driver is None:
-        return [
-            f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
-            f"No RLA's action is free, so the robot gets away by an action that was not taught for it: {action}.",
-        ]
-    return [
-        f"{format_rla(leader)} is nearest, at {format_nearness(leader)}, but {because}.",
-        f"{format_rla(driver)} is the nearest that turns on the spot and meets nothing, "
-        f"at {format_nearness(driver)}, so it drives.",
     ]
 
 

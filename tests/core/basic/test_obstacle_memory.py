@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 from behaviors.motor_primitive import MotorPrimitive
 from hal.robot import SensorReadings, WheelSpeeds
@@ -20,7 +19,7 @@ from tests.core.rla.helpers import created
 
 ROBOT = load_robot()
 SENSORS = ROBOT.infrared.names
-SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, free_s=0.6, farthest_m=0.45, margin_m=0.0, look_s=0.05)
+SETTINGS = ContactSettings(memory_s=2.0, within_s=0.4, farthest_m=0.45, margin_m=0.0, look_s=0.05)
 REPERTOIRE = {
     "forward": MotorPrimitive(WheelSpeeds(0.3, 0.3)),
     "spin": MotorPrimitive(WheelSpeeds(0.3, -0.3)),
@@ -57,10 +56,9 @@ def test_obstacle_ahead_is_met_by_an_action_that_drives_there() -> None:
     assert not memory.meets("forward")
     look(memory, s11=0.15)
     assert not memory.meets("forward")  # 12 cm in 0.4 s
-    assert memory.meets("forward", farther=True)
     look(memory, way_m=0.07, s11=0.10)
     assert memory.meets("forward")
-    assert not memory.meets("back", farther=True)
+    assert not memory.meets("back")
 
 
 def test_obstacle_between_two_beams_is_remembered() -> None:
@@ -85,12 +83,12 @@ def test_obstacle_near_the_outline_is_remembered_there() -> None:
 
 
 def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
-    memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02}))
+    memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02, "within_s": 0.6}))
     look(memory, s1=0.10)
-    assert not memory.meets("spin", farther=True)
+    assert not memory.meets("spin")
     look(memory, way_m=0.16)
-    assert memory.meets("spin", farther=True)
-    assert not memory.meets("forward", farther=True)
+    assert memory.meets("spin")
+    assert not memory.meets("forward")
 
 
 def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
@@ -99,7 +97,7 @@ def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
     looks = []
     for _ in range(4):
         look(memory, way_m=0.001)
-        looks.append(memory.meets("forward", farther=True))
+        looks.append(memory.meets("forward"))
     assert looks == [True, True, True, False]
 
 
@@ -109,25 +107,20 @@ def test_standing_robot_forgets_nothing_until_it_is_told() -> None:
     look(memory, way_m=0.01)
     for _ in range(100):
         look(memory)
-    assert memory.meets("forward", farther=True)
+    assert memory.meets("forward")
     memory.clear()
-    assert not memory.meets("forward", farther=True)
+    assert not memory.meets("forward")
     assert memory.contact("forward") is None
 
 
 def test_far_readings_and_unknown_actions_meet_nothing() -> None:
     memory = memory_of(SETTINGS.model_copy(update={"farthest_m": 0.12}))
     look(memory, s11=0.14)
-    assert not memory.meets("forward", farther=True)
+    assert not memory.meets("forward")
     look(memory, s11=0.10)
-    assert memory.meets("forward", farther=True)
-    assert (memory.meets("dance"), memory.is_free("dance")) == (False, False)
+    assert memory.meets("forward")
+    assert not memory.meets("dance")
     assert memory.contact("dance") is None
-
-
-def test_free_time_below_the_time_to_contact_is_refused() -> None:
-    with pytest.raises(ValidationError, match="free_s must be at least within_s"):
-        ContactSettings(memory_s=2.0, within_s=0.3, free_s=0.2, farthest_m=0.45, margin_m=0.0, look_s=0.05)
 
 
 class Doubter:
@@ -138,7 +131,6 @@ class Doubter:
         *events: TeachingEvent,
         contact: ContactSettings = SETTINGS,
         asks: bool = False,
-        turns_after_s: float | None = None,
     ) -> None:
         system = RlaSystem(2, 1000.0)
         system.apply_all(events)
@@ -147,9 +139,8 @@ class Doubter:
             rare_distance=0.5,
             rare_counts=50.0,
             threshold=2.0,
-            asks=asks or turns_after_s is not None,
-            alone=asks or turns_after_s is not None,
-            turns_after_s=turns_after_s,
+            asks=asks,
+            alone=asks,
             contact=contact,
         )
         self.memory = ObstacleMemory(contact, ROBOT, ACTIONS)
@@ -181,59 +172,4 @@ def test_restarted_level_remembers_no_obstacle() -> None:
     robot = Doubter(*LESSONS)
     robot.after_a_look()
     robot.level.restart()
-    assert not robot.memory.meets("forward", farther=True)
-
-
-def turner(*events: TeachingEvent, margin_m: float = 0.0) -> Doubter:
-    """Return a level that stands alone at a doubt, and turns away after 0.05 s."""
-    contact = SETTINGS.model_copy(update={"margin_m": margin_m})
-    return Doubter(*events, contact=contact, turns_after_s=0.05)
-
-
-def test_robot_alone_stands_then_turns_until_it_is_free() -> None:
-    robot = turner(*LESSONS)
-    assert robot.after_a_look().cause is DecisionCause.DOUBT
-    standing = [robot.at(readings(s11=0.10)) for _ in range(4)]
-    assert {each.cause for each in standing} == {DecisionCause.DOUBT}
-    turning = robot.at(readings(s11=0.10))
-    assert (turning.cause, turning.action, turning.rla_id) == (DecisionCause.AVOIDS, "spin", 2)
-    assert turning.match is not None
-    assert (turning.match.rla.rla_id, turning.answers) == (1, False)
-    actions = [robot.at(readings(s11=0.15)).action for _ in range(30)]  # still met in 0.6 s
-    assert actions == ["spin"] * 30
-    robot.memory.clear()
-    assert [robot.at(readings()).action for _ in range(11)][-1] == "forward"
-    assert robot.after_a_look().cause is DecisionCause.DOUBT  # it stands again before it turns again
-
-
-def test_robot_without_a_taught_turn_backs_off() -> None:
-    robot = turner(LESSONS[0])
-    robot.after_a_look()
-    decisions = [robot.at(readings(s11=0.10)) for _ in range(60)][5:]
-    assert {(each.cause, each.action, each.rla_id) for each in decisions} == {(DecisionCause.AVOIDS, "back", None)}
-
-
-def test_robot_without_a_free_way_off_stands_on() -> None:
-    robot = turner(LESSONS[0], margin_m=0.05)
-    # Close on all sides: s1 at the front and s2 at the rear end of its left side.
-    close = {"s11": 0.10, "s14": 0.10, "s1": 0.10, "s2": 0.10, "s5": 0.10, "s6": 0.10}
-    for _ in range(2):
-        look_all(robot, close)
-    assert {robot.at(readings(**close)).cause for _ in range(100)} == {DecisionCause.DOUBT}
-
-
-def look_all(robot: Doubter, near_m: dict[str, float]) -> None:
-    for _ in range(LOOK_TICKS):
-        robot.at(readings(**near_m))
-
-
-def test_robot_with_a_teacher_does_not_turn() -> None:
-    robot = turner(*LESSONS)
-    robot.level.skip_withdrawn = False
-    robot.after_a_look()
-    assert {robot.at(readings(s11=0.10)).cause for _ in range(100)} == {DecisionCause.DOUBT}
-
-
-def test_turning_without_standing_alone_is_refused() -> None:
-    with pytest.raises(ValidationError, match="turns_after_s needs asks: true, alone: true and contact"):
-        DoubtSettings(usual_distance=0.1, rare_distance=0.5, rare_counts=50.0, threshold=2.0, turns_after_s=1.0)
+    assert not robot.memory.meets("forward")

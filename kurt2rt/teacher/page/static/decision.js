@@ -45,8 +45,6 @@ export function sentence(state) {
       return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
     case "held":
       return `RLA ${state.rla} keeps ${words(state.action)} for its shortest time; RLA ${state.nearest} is nearest now`;
-    case "avoids":
-      return `I doubt RLA ${state.nearest}${of(state)} here, so I get away: ${words(state.action)}`;
     case "teacher":
       return state.action && state.action !== "by hand"
         ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
