@@ -10,8 +10,8 @@ from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import NO_EXAM
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import FASTEST
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest
-from kurt2rt.channel.protocol.requests import AnswerRequest, DriveRequest, HoldRequest, StopRequest, WatchRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, tick_request
+from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus, TeacherNow
@@ -21,6 +21,8 @@ from kurt2rt.channel.server.resources import Keys
 from kurt2rt.core.event_store import EventStore, InMemoryEventStore
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, outcome_in
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Drive, HoldAction, Single, Teach, Watch
+from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.journal.writer import Acknowledgement
@@ -243,24 +245,29 @@ class ChannelFixture:
         assert task.done()
         return task.result()
 
-    def watch(self, *, age: int = 0, boot: bytes = BOOT) -> WatchRequest:
-        return WatchRequest(boot, self.tick - age)
+    def watch(self, *, age: int = 0, boot: bytes = BOOT) -> StreamRequest:
+        return StreamRequest(boot, Watch("", self.tick - age))
 
-    def press(self, hold: int = 1, *, age: int = 0, boot: bytes = BOOT) -> DriveRequest:
-        return DriveRequest(boot, self.tick - age, hold, 0.2, 0.1)
+    def press(self, hold: int = 1, *, age: int = 0, boot: bytes = BOOT) -> StreamRequest:
+        return StreamRequest(boot, Drive("", self.tick - age, hold, 0.2, 0.1))
 
-    def hold(self, action: str = "forward", press: int = 1, *, age: int = 0) -> HoldRequest:
-        return HoldRequest(BOOT, self.tick - age, press, action)
+    def hold(self, action: str = "forward", press: int = 1, *, age: int = 0) -> StreamRequest:
+        return StreamRequest(BOOT, HoldAction("", self.tick - age, press, action))
 
     def stop(self) -> StopRequest:
         return StopRequest(self.new_id())
 
-    def command(self, kind: type[CommandRequest], *fields: Any, age: int = 0, boot: bytes = BOOT) -> CommandRequest:
+    def command(
+        self, kind: type[Single | CommandRequest], *fields: Any, age: int = 0, boot: bytes = BOOT
+    ) -> CommandRequest:
         """Return a new command on the state of `age` ticks ago."""
-        return kind(boot, self.new_id(), self.tick - age, *fields)
+        if issubclass(kind, CommandRequest):
+            return kind(boot, self.new_id(), self.tick - age, *fields)
+        own = dict(zip(checks_of(kind), fields, strict=False))
+        return tick_request(kind, boot, self.new_id(), self.tick - age, **own)
 
     def answer(self, action: str = "forward", of: int | None = None) -> CommandRequest:
-        return self.command(AnswerRequest, action, of)
+        return self.command(Teach, action, of)
 
 
 async def turns(count: int = 5) -> None:

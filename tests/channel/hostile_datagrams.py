@@ -1,6 +1,5 @@
 """Datagrams of strangers and of a faulty device, drawn from one seed."""
 
-import dataclasses
 import random
 import struct
 from collections.abc import Callable, Sequence
@@ -10,10 +9,10 @@ import aiocoap
 import cbor2
 from aiocoap.optiontypes import OpaqueOption
 
-from kurt2rt.channel.protocol.codec import PATHS, WireError, decode_request, encode_request
+from kurt2rt.channel.protocol.codec import PATHS, WireError, body_checks, build_request, decode_request, encode_request
 from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import REQUESTS
 from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.rla.phase import Phase
 
 _MOST_BYTES = 1600
@@ -117,14 +116,14 @@ class HostileDatagrams:
                     del data[at:]
         return bytes(data[:_MOST_BYTES])
 
-    def valid(self, kind: type[Request]) -> Request:
+    def valid(self, path: str) -> Request:
         """Return a valid request with random fields."""
         boot, tick = self._now()
         chance = self._chance
         values: dict[str, Any] = {
             "boot": boot,
-            "seq": chance.randrange(2**40),
             "seen": tick,
+            "seen_tick": tick,
             "command_id": chance.randbytes(8),
             "press_id": chance.randrange(2**40),
             "left_m_s": 0.2,
@@ -138,8 +137,7 @@ class HostileDatagrams:
             "alternative": False,
             "segments": tuple(range(chance.randrange(4))),
             "late": chance.choice((True, False)),
-            "features": (("x_m", 1.0), ("wall_left", 1.0)),
-            "tolerance": 0.1,
+            "goal": PartialGoal((("x_m", 1.0), ("wall_left", 1.0)), 0.1),
             "value": 1,
             "rla_id": 1,
             "lesson": None,
@@ -164,7 +162,7 @@ class HostileDatagrams:
             "y_m": 1.0,
             "heading_rad": 0.0,
         }
-        return kind(**{each.name: values[each.name] for each in dataclasses.fields(kind)})
+        return build_request(path, {name: values[name] for name in body_checks(path)})
 
     def payload(self) -> bytes:
         """Something that may be CBOR."""
@@ -234,8 +232,8 @@ class HostileDatagrams:
         return encoded
 
     def _almost_right(self) -> tuple[tuple[str, ...], bytes]:
-        kind = self._chance.choice(REQUESTS)
-        return tuple(kind.path.strip("/").split("/")), encode_request(self.valid(kind))
+        path = self._chance.choice(list(PATHS))
+        return tuple(path.strip("/").split("/")), encode_request(self.valid(path))
 
     def _strange_path(self) -> tuple[str, ...]:
         if self._chance.random() < 0.5:

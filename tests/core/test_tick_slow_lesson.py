@@ -1,7 +1,5 @@
 """Slow lessons in the tick: the guard is asked for a share of the decided speeds, only while a teacher teaches."""
 
-import math
-
 import pytest
 
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
@@ -16,7 +14,7 @@ SLOW_FORWARD = WheelSpeeds(SHARE * FORWARD.left_m_s, SHARE * FORWARD.right_m_s)
 
 
 def slow(share: float = SHARE, teacher: str = "Ann") -> SetLessonSpeed:
-    return SetLessonSpeed(f"slow-{share}-{teacher}", teacher, share)
+    return SetLessonSpeed(f"slow-{share}-{teacher}", teacher, round(100 * share))
 
 
 @pytest.fixture
@@ -59,12 +57,10 @@ def test_stopped_robot_stands_in_a_slow_lesson(driving: Corridor) -> None:
     assert driving.robot.driven[-1] == SLOW_FORWARD
 
 
-@pytest.mark.parametrize("share", [0.0, 0.19, 1.01, -1.0, math.inf])
+@pytest.mark.parametrize("share", [0.0, 0.19, 1.01, -1.0])
 def test_lesson_speed_out_of_range_is_refused(driving: Corridor, share: float) -> None:
-    if math.isfinite(share):
-        (result,) = driving.run(100, slow(share)).results
-        expected = Outcome.of(RefusalCode.NO_LESSON_SPEED, percent=round(100 * share), least=20)
-        assert result.outcome == expected
+    (result,) = driving.run(100, slow(share)).results
+    assert result.outcome == Outcome.of(RefusalCode.NO_LESSON_SPEED, percent=round(100 * share), least=20)
     assert driving.run().lesson_speed == SHARE
 
 

@@ -21,11 +21,11 @@ import can
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
-from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import AnswerRequest, CorrectRequest, RewardRequest, UndoRequest
+from kurt2rt.channel.protocol.request_types import Request, tick_request
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.teaching.commands import Correct, Reward, Teach, Undo
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
@@ -156,14 +156,14 @@ class Life:
         request: Request
         match kind:
             case "answer":
-                request = AnswerRequest(boot, command_id, tick, action=action, decision_tick=tick)
+                request = tick_request(Teach, boot, command_id, tick, action=action, decision_tick=tick)
             case "correct":
-                request = CorrectRequest(boot, command_id, tick, action=action, decision_tick=tick)
+                request = tick_request(Correct, boot, command_id, tick, action=action, decision_tick=tick)
             case "reward":
                 value = self._chance.choice([-1, 1])
-                request = RewardRequest(boot, command_id, tick, value=value, decision_tick=tick)
+                request = tick_request(Reward, boot, command_id, tick, value=value, decision_tick=tick)
             case _:
-                request = UndoRequest(boot, command_id, tick, lesson=None)
+                request = tick_request(Undo, boot, command_id, tick, lesson=None)
         self._next_lesson.set()
         self._next_lesson = anyio.Event()
         self.asks = True

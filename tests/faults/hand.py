@@ -5,10 +5,11 @@ from collections.abc import Coroutine
 from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
-from kurt2rt.channel.protocol.limits import HIGHEST_SPEED_M_S
-from kurt2rt.channel.protocol.requests import DriveRequest
+from kurt2rt.channel.protocol.request_types import StreamRequest
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
+from kurt2rt.core.teaching.commands import Drive
+from kurt2rt.core.teaching.message_fields import HIGHEST_SPEED_M_S
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.teacher.client.manual_drive import BEAT_S
 from tests.faults.fault import FaultInjection
@@ -84,11 +85,13 @@ class Hand:
                 self._time.at(now_s + fault.delay_s, lambda: self._arrive(*message))
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:
-        return encode_request(DriveRequest(self._boot, self._handler.tick, self._press_id, left_m_s, right_m_s))
+        return encode_request(
+            StreamRequest(self._boot, Drive("", self._handler.tick, self._press_id, left_m_s, right_m_s))
+        )
 
     def _arrive(self, number: int, payload: bytes) -> None:
         try:
-            request = decode_request(DriveRequest.path, payload)
+            request = decode_request(Drive.path, payload)
         except WireError:
             self.refused += 1
             return

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import open_endpoint
@@ -19,19 +19,23 @@ from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.teaching.commands import Command, StreamCommand
 from tests.channel.states import ASKING, standing_in
 
-Mind = Callable[[Request], Awaitable[Reply]]
+Message = Request | Command
+"""Request, or the command in it: what a test of a device looks for."""
+Mind = Callable[[Any], Awaitable[Reply]]
+"""Answer to a message."""
 _PICTURE_EACH_S = 0.05
 _TICKS = 5
 _LONGEST_S = 60.0
 """Ends a test whose request never comes; none waits for it."""
 
-_Kind = TypeVar("_Kind", bound=Request)
+_Kind = TypeVar("_Kind", bound=Message)
 _Thing = TypeVar("_Thing")
 
 
-async def agrees(_: Request) -> Reply:
+async def agrees(_: object) -> Reply:
     return done(7)
 
 
@@ -49,16 +53,20 @@ class StandInRobot:
         self.standing: Standing | None = None
         self.showing = showing
         self.mind: Mind = agrees
-        self.heard: list[Request] = []
+        self.heard: list[Message] = []
+        self.boots: list[bytes] = []
+        """Start of the robot's program that each of them is meant for; empty for one that names none."""
         self._news = anyio.Event()
 
     async def answer(self, _sender: Sender, request: Request) -> Reply:
         """Answer a request, as RequestHandler does."""
-        self.heard.append(request)
+        message = request.command if isinstance(request, TickRequest | StreamRequest) else request
+        self.heard.append(message)
+        self.boots.append(getattr(request, "boot", b""))
         self._wake()
         if isinstance(request, StreamRequest | CommandRequest) and request.boot != self.state.boot:
             return refusal("boot", Outcome(RefusalCode.RESTARTED), 7)
-        return await self.mind(request)
+        return await self.mind(message)
 
     def show(self, **changes: Any) -> State:
         """Publish the next state, changed from the last one.
@@ -73,12 +81,12 @@ class StandInRobot:
 
     def all_of(self, kind: type[_Kind], *, copies: bool = False) -> list[_Kind]:
         """Return the received requests of one type."""
-        heard = [each for each in self.heard if isinstance(each, kind)]
-        return heard if copies or issubclass(kind, StreamRequest) else list(dict.fromkeys(heard))
+        heard: list[_Kind] = [each for each in self.heard if isinstance(each, kind)]
+        return heard if copies or issubclass(kind, StreamCommand) else list(dict.fromkeys(heard))
 
-    def orders(self) -> list[Request]:
+    def orders(self) -> list[Message]:
         """Return the received requests that are no streams, each once."""
-        return list(dict.fromkeys(each for each in self.heard if not isinstance(each, StreamRequest)))
+        return list(dict.fromkeys(each for each in self.heard if not isinstance(each, StreamCommand)))
 
     async def hears(self, kind: type[_Kind], count: int = 1, *, copies: bool = False) -> list[_Kind]:
         """Wait for `count` requests of a type; return all of it."""

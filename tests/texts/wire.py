@@ -7,7 +7,7 @@ import cbor2
 import pytest
 
 from kurt2rt.channel.protocol.codec import decode_request
-from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.core.teaching.message_fields import WireError
 
 _BOOT, _ID = b"boot", b"12345678"
 _BODIES: tuple[tuple[str, list[object]], ...] = (
@@ -19,8 +19,9 @@ _BODIES: tuple[tuple[str, list[object]], ...] = (
     ("/hold", [_BOOT, 0, 0]),
     ("/drive", [_BOOT, 0, 0, math.nan, 0.0]),
     ("/reward", [_BOOT, _ID, 0, 0, None]),
-    ("/seek/like", [_BOOT, _ID, 0, ["x"], 0.1]),
-    ("/seek/like", [_BOOT, _ID, 0, [["x", math.nan]], 0.1]),
+    ("/seek", [_BOOT, _ID, 0, None]),
+    ("/seek", [_BOOT, _ID, 0, [["x"], 0.1]]),
+    ("/seek", [_BOOT, _ID, 0, [[["x", math.nan]], 0.1]]),
     ("/answer", [_BOOT, _ID, 0, "turn_left", None, "high", False]),
 )
 _PAYLOADS = (

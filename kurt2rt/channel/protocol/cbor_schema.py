@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
-from kurt2rt.channel.protocol.schema import Check, Flag, Float, Int, ManyOf, OrNone, Text, WireError
+from kurt2rt.core.teaching.message_fields import Check, Flag, Float, Int, ManyOf, OrNone, Text, WireError
 
 COUNT: Final = Int(0, 2**53)
 NAME: Final = Text(128)

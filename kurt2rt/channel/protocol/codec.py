@@ -3,13 +3,23 @@
 import math
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import Any
+from typing import Any, get_args
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, SLOWEST_PERCENT
-from kurt2rt.channel.protocol.request_types import Request, checks_of
+from kurt2rt.channel.protocol.limits import BOOT_BYTES
+from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest, tick_request
 from kurt2rt.channel.protocol.requests import REQUESTS
-from kurt2rt.channel.protocol.schema import (
+from kurt2rt.channel.protocol.schema import decode_strictly, encode_plainly
+from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import Single, SingleCommand, Stop, Stream, StreamCommand
+from kurt2rt.core.teaching.message_fields import (
+    LARGEST_NUMBER,
+    LONGEST_TEXT,
+    MOST_SEGMENTS,
+    SLOWEST_PERCENT,
     Bytes,
     Check,
     Flag,
@@ -22,14 +32,9 @@ from kurt2rt.channel.protocol.schema import (
     Row,
     Text,
     WireError,
-    decode_strictly,
-    encode_plainly,
+    checks_of,
+    plain,
 )
-from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
-from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.rla.rla import BASIC, MID
-from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 
@@ -43,6 +48,7 @@ __all__ = [
     "encode_answer",
     "encode_request",
     "encode_state",
+    "path_of",
 ]
 
 CONTENT_FORMAT = 60
@@ -52,31 +58,70 @@ MOST_REQUEST_BYTES = 1024
 MOST_ANSWER_BYTES = 65_507
 """Largest UDP datagram, for worlds with many walls."""
 
+_REQUEST_DEPTH = 4
 _STATE_DEPTH = 3
 _ANSWER_DEPTH = 8
 
-PATHS: Mapping[str, type[Request]] = {kind.path: kind for kind in REQUESTS}
-"""Request of each path; /state is not among them."""
+_COMMANDS = (*get_args(Stream), *(each for each in get_args(Single) if each is not Stop))
 
-_CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
+PATHS: Mapping[str, Any] = {kind.path: kind for kind in (*REQUESTS, *_COMMANDS)}
+"""Class of the request or of the command of each path; /state is not among them."""
+
+_HEADS: Mapping[type, dict[str, Check]] = {kind: checks_of(kind) for kind in (TickRequest, StreamRequest)}
+_CHECKS = {path: checks_of(kind) for path, kind in PATHS.items()}
+
+
+def path_of(request: Request) -> str:
+    """Return the path that takes a request."""
+    return request.command.path if isinstance(request, TickRequest | StreamRequest) else request.path
+
+
+def body_checks(path: str) -> dict[str, Check]:
+    """Return name and check of each place in the body of a path, in order."""
+    return {**_HEADS.get(_wrapper(path), {}), **_CHECKS[path]}
+
+
+def _wrapper(path: str) -> type:
+    """Return the request that carries the command of a path; a request of its own carries itself."""
+    kind: type = PATHS[path]
+    if issubclass(kind, SingleCommand):
+        return TickRequest
+    return StreamRequest if issubclass(kind, StreamCommand) else kind
 
 
 def encode_request(request: Request) -> bytes:
     """Return the body of a request. Raises WireError if the robot would refuse it."""
-    return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
+    body = [check(name, getattr(request, name)) for name, check in _HEADS.get(type(request), {}).items()]
+    own = request.command if isinstance(request, TickRequest | StreamRequest) else request
+    body += [plain(check(name, getattr(own, name))) for name, check in _CHECKS[path_of(request)].items()]
+    return encode_plainly(body)
 
 
 def decode_request(path: str, payload: bytes) -> Request:
     """Return the request in a body; `path` is a key of PATHS. Raises WireError."""
-    kind = PATHS.get(path)
-    if kind is None:
+    if path not in PATHS:
         raise WireError(f"there is no {path} here")
-    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=kind.depth)
-    checks = _CHECKS[kind]
+    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
+    checks = body_checks(path)
     if not isinstance(body, list) or len(body) != len(checks):
-        names = ", ".join(name for name, _ in checks)
-        raise WireError(f"{path} takes a list of {len(checks)}: [{names}]")
-    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=True)})
+        raise WireError(f"{path} takes a list of {len(checks)}: [{', '.join(checks)}]")
+    return build_request(
+        path, {name: check(name, each) for (name, check), each in zip(checks.items(), body, strict=True)}
+    )
+
+
+def build_request(path: str, values: dict[str, Any]) -> Request:
+    """Return the request to a path with these values by the names of `body_checks`, which are taken out.
+
+    A command has no teacher yet; the id of one that counts once lacks the teacher's name.
+    """
+    kind, wrapper = PATHS[path], _wrapper(path)
+    if wrapper is TickRequest:
+        return tick_request(kind, **values)
+    if wrapper is StreamRequest:
+        return StreamRequest(values.pop("boot"), kind(teacher="", **values))
+    request: Request = kind(**values)
+    return request
 
 
 def encode_answer(answer: Mapping[str, Any]) -> bytes:

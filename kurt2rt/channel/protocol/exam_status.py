@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
-from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf
+from kurt2rt.core.teaching.message_fields import Flag, Float, ManyOf
 
 _MOST_WORLDS = 32
 

@@ -5,9 +5,9 @@ from typing import Any
 
 from hal.robot import WheelSpeeds
 from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
-from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.teaching.message_fields import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
 from kurt2rt.runs.explain.facts import (
     MOST_OTHERS,
     ContactFacts,

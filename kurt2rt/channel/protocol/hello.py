@@ -4,9 +4,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.limits import BOOT_BYTES, LARGEST_NUMBER, VERSION
-from kurt2rt.channel.protocol.schema import Bytes, Flag, Float, Int, ManyOf, OrNone, Row, Text, WireError
+from kurt2rt.channel.protocol.limits import BOOT_BYTES, VERSION
 from kurt2rt.core.perception.sensor_words import InfraredLaw, SensorWords
+from kurt2rt.core.teaching.message_fields import (
+    LARGEST_NUMBER,
+    Bytes,
+    Flag,
+    Float,
+    Int,
+    ManyOf,
+    OrNone,
+    Row,
+    Text,
+    WireError,
+)
 
 _NAME = Text(64)
 _METRES = Float(1000.0, "m")

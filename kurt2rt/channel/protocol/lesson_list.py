@@ -3,14 +3,8 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from kurt2rt.channel.protocol.limits import (
-    LARGEST_NUMBER,
-    LONGEST_TEXT,
-    MOST_CONTRADICTIONS,
-    MOST_LESSONS,
-    MOST_SITUATIONS,
-)
-from kurt2rt.channel.protocol.schema import Flag, Int, ManyOf, Row, Text, WireError
+from kurt2rt.channel.protocol.limits import MOST_CONTRADICTIONS, MOST_LESSONS, MOST_SITUATIONS
+from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, LONGEST_TEXT, Flag, Int, ManyOf, Row, Text, WireError
 
 _LINES = ManyOf(
     Row((Text(128), Text(512), Text(128), Int(1, 5), Int(0, LARGEST_NUMBER), Text(64), Flag())),

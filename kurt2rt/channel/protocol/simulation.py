@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
 from kurt2rt.channel.protocol.limits import FASTEST
-from kurt2rt.channel.protocol.schema import Float, Int, ManyOf
+from kurt2rt.core.teaching.message_fields import Float, Int, ManyOf
 
 _MOST_NAMES = 64
 

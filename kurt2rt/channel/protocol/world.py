@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hal.simulation import SimulatedPost, Wall
-from kurt2rt.channel.protocol.limits import LARGEST_NUMBER
-from kurt2rt.channel.protocol.schema import Float, Int, ManyOf, Row, Text, WireError
+from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Float, Int, ManyOf, Row, Text, WireError
 
 _NAME = Text(64)
 _METRES = Float(1000.0, "m")

@@ -2,30 +2,21 @@
 
 import asyncio
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from kurt2rt.channel.protocol.facts_codec import plain_of_facts
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.limits import MOST_SITUATIONS
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, StreamRequest, TickRequest
 from kurt2rt.channel.protocol.requests import (
-    BehaviourRequest,
-    DriveRequest,
     HealthRequest,
     HelloRequest,
-    HoldRequest,
     LessonsRequest,
-    PursueRequest,
-    ResumeRequest,
-    SeekLikeRequest,
-    SeekRequest,
-    SeekRlaRequest,
     SituationsRequest,
     StopRequest,
-    TakeRequest,
     WhyRequest,
 )
-from kurt2rt.channel.server.command_of import command_of
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.lesson_list import LessonList
 from kurt2rt.channel.server.off_tick_requests import OffTickCommand, OffTickRequests
@@ -34,7 +25,7 @@ from kurt2rt.channel.server.rate_limit import PerDeviceRateLimit
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.teaching.commands import Command, Drive, HoldAction, Stop, Stream, Watch
+from kurt2rt.core.teaching.commands import Command, Stop, Stream, Take
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runtime import Runtime
@@ -43,8 +34,6 @@ STREAM_TICKS = 40
 """Largest age of the state behind a stream message; an older one was held back by the network."""
 MOVING_TICKS = 100
 COMMAND_TICKS = 300
-_SEEKING = (SeekRequest, SeekRlaRequest, SeekLikeRequest)
-_MOVING = (BehaviourRequest, PursueRequest, ResumeRequest, TakeRequest, *_SEEKING)
 MOST_WHYS, WHY_EVERY_TICKS = 5, 10
 """Limit for /why, whose answer takes about a millisecond of the loop; a device asks again every 0.1 s."""
 LONGEST_WAIT_S = 3.0
@@ -139,16 +128,12 @@ class RequestHandler:
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
         tick, commands, device = self.tick, self._runtime.handler, sender.device
-        stale = self._stale(request.boot, request.seen, STREAM_TICKS)
+        stale = self._stale(request.boot, request.command.seen_tick, STREAM_TICKS)
         if stale is not None:
             return stale
         if not self._is_newest(sender):
             return refusal("old", Outcome(RefusalCode.OVERTAKEN), tick)
-        command: Stream = Watch(device, request.seen)
-        if isinstance(request, DriveRequest):
-            command = Drive(device, request.seen, request.press_id, request.left_m_s, request.right_m_s)
-        elif isinstance(request, HoldRequest):
-            command = HoldAction(device, request.seen, request.press_id, request.action)
+        command: Stream = replace(request.command, teacher=device)
         held = commands.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, tick)
@@ -172,7 +157,8 @@ class RequestHandler:
         if waiting is None:
             if self._runtime.handler.was_handled(command_id):  # before this start of the program, or long ago
                 return done(self.tick, Outcome(ResultCode.REPEATED), lesson=self.lesson_of(command_id))
-            longest = MOVING_TICKS if isinstance(request, _MOVING) else COMMAND_TICKS
+            moves = isinstance(request, TickRequest) and request.command.moves
+            longest = MOVING_TICKS if moves else COMMAND_TICKS
             stale = self._stale(request.boot, request.seen, longest)
             if stale is not None:
                 return stale
@@ -190,11 +176,12 @@ class RequestHandler:
         """Queue a command for the next tick, or begin it off the tick; return a refusal if there is one."""
         if isinstance(request, OffTickCommand):
             return self._off_tick.begin(device, command_id, request)
+        assert isinstance(request, TickRequest), f"{type(request).__name__} is no command for the tick"
         held = self._runtime.handler.authority.refusal_for(device)
-        if held is not None and not isinstance(request, TakeRequest):
+        if held is not None and not isinstance(request.command, Take):
             return refusal("held", held, self.tick)
         self._pending.begin(command_id)
-        if not self._enqueue(command_of(device, command_id, request)):
+        if not self._enqueue(replace(request.command, command_id=command_id, teacher=device)):
             reply = self._too_many()
             self._pending.settle(command_id, reply)
         return None

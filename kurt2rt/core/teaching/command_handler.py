@@ -8,7 +8,7 @@ from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
-from kurt2rt.core.lesson_speed import SLOWEST, LessonSpeed
+from kurt2rt.core.lesson_speed import LessonSpeed
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.perception import Situation
@@ -53,6 +53,7 @@ from kurt2rt.core.teaching.handler_parts import HandlerParts, knowledge_updater_
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
 from kurt2rt.core.teaching.late_press import LatePresses
 from kurt2rt.core.teaching.lesson_result import LessonResult
+from kurt2rt.core.teaching.message_fields import SLOWEST_PERCENT
 from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
 from kurt2rt.core.teaching.stop_record import StopRecord
@@ -324,8 +325,8 @@ class CommandHandler:
                 return LessonResult(self._control.carry_out(command, tick))
             case SetPhase():
                 return LessonResult(self._set_phase(command))
-            case SetLessonSpeed(share=share):
-                return LessonResult(self._set_lesson_speed(share))
+            case SetLessonSpeed(percent=percent):
+                return LessonResult(self._set_lesson_speed(percent))
             case Pursue():
                 return LessonResult(self._selection.select(command, tick))
             case Seek() | StopSeeking() | BeAt():
@@ -344,11 +345,10 @@ class CommandHandler:
                     self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
 
-    def _set_lesson_speed(self, share: float) -> Outcome:
-        percent = round(100 * share)
-        if not SLOWEST <= share <= 1.0:
-            raise CommandRefusedError(RefusalCode.NO_LESSON_SPEED, percent=percent, least=round(100 * SLOWEST))
-        self.lesson_speed.share = share
+    def _set_lesson_speed(self, percent: int) -> Outcome:
+        if not SLOWEST_PERCENT <= percent <= 100:
+            raise CommandRefusedError(RefusalCode.NO_LESSON_SPEED, percent=percent, least=SLOWEST_PERCENT)
+        self.lesson_speed.share = percent / 100
         return Outcome.of(ResultCode.LESSON_SPEED_SET, percent=percent)
 
     def _set_phase(self, command: SetPhase) -> Outcome:

@@ -6,50 +6,84 @@ Four kinds, as in the paper: motor commands, behaviours, reinforcements, and org
 """
 
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
 
 from kurt2rt.core.decision.goal import Goal
 from kurt2rt.core.outcome import Code, Outcome
-from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.teaching.message_fields import (
+    LARGEST_NUMBER,
+    LONGEST_BEHAVIOUR_TICKS,
+    MOST_SEGMENTS,
+    SLOWEST_PERCENT,
+    GoalField,
+    Int,
+    Level,
+    ManyOf,
+    Name,
+    NameOrNone,
+    Number,
+    NumberOrNone,
+    OneOf,
+    PhaseNumber,
+    Speed,
+    Truth,
+)
 
-MOST_SEGMENTS = 12
-"""Largest number of segments of a drive by hand that are published; older ones stay untaught."""
+
+@dataclass(frozen=True, slots=True)
+class StreamCommand:
+    """Base of the streams. The fields with a check are the body of the message at `path`, in order."""
+
+    path: ClassVar[str]
+    teacher: str
+    seen_tick: Number
+    """Tick of the newest state or answer that the device had."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleCommand:
+    """Base of the commands that count once. The fields with a check are the body of the message at `path`, in order."""
+
+    path: ClassVar[str]
+    moves: ClassVar[bool] = False
+    """True if a standing robot may drive after it: the state that the teacher saw must not be older than 1 s."""
+    command_id: str
+    teacher: str
+
 
 # Motor commands and presence: streams.
 
 
 @dataclass(frozen=True, slots=True)
-class Watch:
+class Watch(StreamCommand):
     """Sign that the teacher is present; a robot that requires a teacher stands without it."""
 
-    teacher: str
-    seen_tick: int
+    path: ClassVar[str] = "/watch"
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class Drive(StreamCommand):
     """Speeds of manual drive, which lasts while these messages come (deadman switch)."""
 
-    teacher: str
-    seen_tick: int
-    press_id: int
+    path: ClassVar[str] = "/drive"
+    press_id: Number
     """Press id, larger than that of any press before; a stop ends a press permanently."""
-    left_m_s: float
-    right_m_s: float
+    left_m_s: Speed
+    right_m_s: Speed
 
 
 @dataclass(frozen=True, slots=True)
-class HoldAction:
+class HoldAction(StreamCommand):
     """Action of the repertoire that drives while these messages come (deadman switch), and is taught on the way.
 
     After the release the robot goes on by its RLAs, unlike after `Drive`.
     """
 
-    teacher: str
-    seen_tick: int
-    press_id: int
+    path: ClassVar[str] = "/hold"
+    press_id: Number
     """Press id, larger than that of any press before; manual drive and holds count in one sequence."""
-    action: str
+    action: Name
     """Name in the repertoire; it may change within a press."""
 
 
@@ -61,51 +95,49 @@ Stream = Watch | Drive | HoldAction
 
 
 @dataclass(frozen=True, slots=True)
-class RunBehaviour:
+class RunBehaviour(SingleCommand):
     """Run one action of the repertoire for `ticks` ticks in place of the RLAs; the robot stands afterwards."""
 
-    command_id: str
-    teacher: str
-    action: str
-    ticks: int
+    path: ClassVar[str] = "/behaviour"
+    moves: ClassVar[bool] = True
+    action: Name
+    ticks: Annotated[int, Int(1, LONGEST_BEHAVIOUR_TICKS)]
     seen_tick: int | None = None
     """A stop after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
-class Teach:
+class Teach(SingleCommand):
     """Answer a situation by a new RLA with this action (phase 1)."""
 
-    command_id: str
-    teacher: str
-    action: str
+    path: ClassVar[str] = "/answer"
+    action: Name
     """Name in the repertoire; at the mid level a taught behaviour."""
-    decision_tick: int | None = None
+    decision_tick: NumberOrNone = None
     """Tick of the situation; None: the present one."""
-    level: str = BASIC
+    level: Level = BASIC
     """Level of the situation: BASIC, or MID if the robot has a mid level."""
-    alternative: bool = False
+    alternative: Truth = False
     """True at the mid level to add an alternative to the RLAs that know the situation already."""
     seen_tick: int | None = None
     """Newest state that the teacher had; from it the teacher's delay is measured."""
 
 
 @dataclass(frozen=True, slots=True)
-class Correct:
+class Correct(SingleCommand):
     """Replace the action in a situation (phase 2).
 
     Close to the nearest RLA's condition its action is replaced. Farther off a new RLA is inserted, because replacing
     would flip one RLA between situations that contradict each other.
     """
 
-    command_id: str
-    teacher: str
-    action: str
-    decision_tick: int | None = None
+    path: ClassVar[str] = "/correct"
+    action: Name
+    decision_tick: NumberOrNone = None
     """Tick of the wrong decision; None: the present one."""
-    level: str = BASIC
+    level: Level = BASIC
     """Level of the wrong decision, as in `Teach`."""
-    late: bool = False
+    late: Truth = False
     """True for a person's press: it is about the decision before `decision_tick`, or else before `seen_tick`, by the
     teacher's delay."""
     seen_tick: int | None = None
@@ -113,59 +145,54 @@ class Correct:
 
 
 @dataclass(frozen=True, slots=True)
-class TeachShown:
+class TeachShown(SingleCommand):
     """Teach what was driven by hand: segments of the newest demonstration, which its teacher has seen."""
 
-    command_id: str
-    teacher: str
-    press_id: int
+    path: ClassVar[str] = "/shown"
+    press_id: Number
     """Press of the demonstration."""
-    segments: tuple[int, ...]
+    segments: Annotated[tuple[int, ...], ManyOf(Int(0, LARGEST_NUMBER), most=MOST_SEGMENTS)]
     """Indexes of the published segments that are right."""
 
 
 @dataclass(frozen=True, slots=True)
-class ReplaceAction:
+class ReplaceAction(SingleCommand):
     """Give one RLA another action (phase 2)."""
 
-    command_id: str
-    teacher: str
-    rla_id: int
-    action: str
+    path: ClassVar[str] = "/replace"
+    rla_id: Number
+    action: Name
 
 
 @dataclass(frozen=True, slots=True)
-class DeleteRla:
+class DeleteRla(SingleCommand):
     """Delete one RLA while the robot is running (phase 2)."""
 
-    command_id: str
-    teacher: str
-    rla_id: int
+    path: ClassVar[str] = "/delete"
+    rla_id: Number
 
 
 # Reinforcements.
 
 
 @dataclass(frozen=True, slots=True)
-class Reward:
+class Reward(SingleCommand):
     """Reward of +1 or -1 for the RLAs that drove up to a tick of the last 1000 (phase 3)."""
 
-    command_id: str
-    teacher: str
-    value: int
-    decision_tick: int | None = None
+    path: ClassVar[str] = "/reward"
+    value: Annotated[int, OneOf((1, -1))]
+    decision_tick: NumberOrNone = None
     """Tick of the decision; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Appraise:
+class Appraise(SingleCommand):
     """Teach the critic the value of a situation, independent of the action (phase 4)."""
 
-    command_id: str
-    teacher: str
-    appraisal: str
+    path: ClassVar[str] = "/appraise"
+    appraisal: Name
     """Name in the critic's repertoire: bad, neutral, good."""
-    decision_tick: int | None = None
+    decision_tick: NumberOrNone = None
     """Tick of the situation; None: the present one."""
 
 
@@ -173,155 +200,143 @@ class Appraise:
 
 
 @dataclass(frozen=True, slots=True)
-class Undo:
+class Undo(SingleCommand):
     """Undo a lesson."""
 
-    command_id: str
-    teacher: str
-    lesson: str | None = None
+    path: ClassVar[str] = "/undo"
+    lesson: NameOrNone = None
     """Command id of the lesson; None: the last lesson that stands."""
 
 
 @dataclass(frozen=True, slots=True)
-class Pursue:
+class Pursue(SingleCommand):
     """Make another taught behaviour active: only its RLAs compete, and lessons are about it.
 
     It overrides a mid level until the next junction has been passed.
     """
 
-    command_id: str
-    teacher: str
-    behaviour: str
+    path: ClassVar[str] = "/pursue"
+    moves: ClassVar[bool] = True
+    behaviour: Name
     seen_tick: int | None = None
     """A stop or another `Pursue` after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
-class NameSituation:
+class NameSituation(SingleCommand):
     """Give a situation of the mid level a name, such as "door", so that it can be a goal."""
 
-    command_id: str
-    teacher: str
-    name: str
+    path: ClassVar[str] = "/name"
+    name: Name
     """New or existing name; an existing one moves to this situation."""
-    decision_tick: int | None = None
+    decision_tick: NumberOrNone = None
     """Tick of the situation; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
-class Seek:
+class Seek(SingleCommand):
     """Go to a goal on taught ways, and stand there."""
 
-    command_id: str
-    teacher: str
-    goal: Goal
+    path: ClassVar[str] = "/seek"
+    moves: ClassVar[bool] = True
+    goal: Annotated[Goal, GoalField()]
     seen_tick: int | None = None
     """A stop or another goal after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
-class StopSeeking:
+class StopSeeking(SingleCommand):
     """Drop the goal; the mid level commands by its RLAs."""
 
-    command_id: str
-    teacher: str
+    path: ClassVar[str] = "/seek/stop"
+    moves: ClassVar[bool] = True
     seen_tick: int | None = None
     """A stop or a goal after this tick refuses the command, because a robot that has arrived may drive on."""
 
 
 @dataclass(frozen=True, slots=True)
-class BeAt:
+class BeAt(SingleCommand):
     """Set the location after the robot was put down at a named place."""
 
-    command_id: str
-    teacher: str
-    name: str
+    path: ClassVar[str] = "/here"
+    name: Name
     seen_tick: int | None = None
     """A junction that was passed after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
-class SetPhase:
+class SetPhase(SingleCommand):
     """Set the training phase."""
 
-    command_id: str
-    teacher: str
-    phase: Phase
+    path: ClassVar[str] = "/phase"
+    phase: PhaseNumber
     seen_tick: int | None = None
     """A stop after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
-class SetLessonSpeed:
-    """Set the fraction of their speed at which actions drive while a teacher teaches them (slow lessons)."""
+class SetLessonSpeed(SingleCommand):
+    """Set the speed at which actions drive while a teacher teaches them (slow lessons)."""
 
-    command_id: str
-    teacher: str
-    share: float
-    """SLOWEST of kurt2rt.core.lesson_speed to 1."""
+    path: ClassVar[str] = "/lesson/speed"
+    percent: Annotated[int, Int(SLOWEST_PERCENT, 100)]
+    """Speed in per cent of their own."""
 
 
 @dataclass(frozen=True, slots=True)
-class BeginSession:
+class BeginSession(SingleCommand):
     """Begin a session; its teaching time runs."""
 
-    command_id: str
-    teacher: str
-    name: str
+    path: ClassVar[str] = "/session/begin"
+    name: Name
 
 
 @dataclass(frozen=True, slots=True)
-class EndSession:
+class EndSession(SingleCommand):
     """End the session and its teaching time; the robot stands."""
 
-    command_id: str
-    teacher: str
+    path: ClassVar[str] = "/session/end"
 
 
 @dataclass(frozen=True, slots=True)
-class Take:
+class Take(SingleCommand):
     """Take control authority, also from another teacher; refused while that one drives by hand."""
 
-    command_id: str
-    teacher: str
+    path: ClassVar[str] = "/take"
+    moves: ClassVar[bool] = True
 
 
 @dataclass(frozen=True, slots=True)
-class HandOver:
+class HandOver(SingleCommand):
     """Give up control authority."""
 
-    command_id: str
-    teacher: str
-    to: str | None = None
+    path: ClassVar[str] = "/release"
+    to: NameOrNone = None
     """Next teacher; None: the first one that commands."""
 
 
 @dataclass(frozen=True, slots=True)
-class Stop:
+class Stop(SingleCommand):
     """Stand until `Resume`. Every teacher may send it at any time."""
 
-    command_id: str
-    teacher: str
-    press_id: int | None = None
+    path: ClassVar[str] = "/stop"
+    press_id: NumberOrNone = None
     """Press id that ends; a later press goes on. None: stop all motion. After a press of `HoldAction` the robot
     goes on by its RLAs."""
 
 
 @dataclass(frozen=True, slots=True)
-class Resume:
+class Resume(SingleCommand):
     """Drive again after `Stop`, or after the guard latched an emergency stop."""
 
-    command_id: str
-    teacher: str
+    path: ClassVar[str] = "/resume"
+    moves: ClassVar[bool] = True
     seen_tick: int | None = None
     """A stop after this tick refuses the command."""
 
 
-Command = (
-    Watch
-    | Drive
-    | HoldAction
-    | RunBehaviour
+Single = (
+    RunBehaviour
     | Teach
     | Correct
     | TeachShown
@@ -344,6 +359,9 @@ Command = (
     | Stop
     | Resume
 )
+"""Command that counts once."""
+
+Command = Stream | Single
 
 
 @dataclass(frozen=True, slots=True)

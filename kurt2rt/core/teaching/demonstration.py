@@ -20,9 +20,9 @@ from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS, STEADY_TICKS
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
+from kurt2rt.core.teaching.message_fields import MOST_SEGMENTS
 
 CAPACITY = 600
 """Largest number of samples, the last minute; older ones are dropped."""

@@ -14,7 +14,7 @@ from anyio.abc import Listener, SocketStream
 
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of, report_of
-from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.core.teaching.message_fields import WireError
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 

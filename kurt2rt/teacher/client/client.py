@@ -12,8 +12,23 @@ from contextlib import asynccontextmanager
 
 import anyio
 
-from kurt2rt.channel.protocol import requests
+from kurt2rt.channel.protocol.requests import TABLE, ExamRequest, ExportRequest, SaveRequest
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.teaching.commands import (
+    BeAt,
+    BeginSession,
+    EndSession,
+    HandOver,
+    Pursue,
+    Resume,
+    RunBehaviour,
+    Seek,
+    SetLessonSpeed,
+    SetPhase,
+    StopSeeking,
+    Take,
+)
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.lesson_commands import LessonCommands
 from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
@@ -56,7 +71,7 @@ class TeacherClient(LessonCommands, SimulationCommands):
         The answer is a refusal if a stop came since the newest state.
         """
         self._open.stops.supersede()
-        return await self._move("go", requests.ResumeRequest)
+        return await self._move("go", Resume)
 
     async def run(self, action: str, seconds: float) -> Answer:
         """Run one action of the repertoire for `seconds` of robot time; the robot stands afterwards.
@@ -67,7 +82,7 @@ class TeacherClient(LessonCommands, SimulationCommands):
 
         async def begin() -> Answer:
             ticks = await self._ticks(seconds)
-            return await self._command(requests.BehaviourRequest, moves=True, action=action, ticks=ticks)
+            return await self._command(RunBehaviour, moves=True, action=action, ticks=ticks)
 
         return await self._open.stops.move(action, begin)
 
@@ -149,18 +164,18 @@ class TeacherClient(LessonCommands, SimulationCommands):
 
     async def pursue(self, behaviour: str) -> Answer:
         """Select which of the task's behaviours the robot follows and is taught. Raises NoAnswerError."""
-        return await self._move(behaviour, requests.PursueRequest, behaviour=behaviour)
+        return await self._move(behaviour, Pursue, behaviour=behaviour)
 
     async def seek(self, name: str) -> Answer:
         """Go to a named situation; the robot plans the way. Raises NoAnswerError.
 
         Without a way it stands and says so in its state.
         """
-        return await self._move(name, requests.SeekRequest, name=name)
+        return await self._move(name, Seek, goal=NamedGoal(name))
 
     async def seek_rla(self, rla: int) -> Answer:
         """Go to the situation that an RLA of the mid level knows; `rla` is its id. Raises NoAnswerError."""
-        return await self._move(f"RLA {rla}", requests.SeekRlaRequest, rla_id=rla)
+        return await self._move(f"RLA {rla}", Seek, goal=RlaGoal(rla))
 
     async def seek_like(self, features: Mapping[str, float], tolerance: float) -> Answer:
         """Go to any situation with these feature values of the mid level.
@@ -172,34 +187,32 @@ class TeacherClient(LessonCommands, SimulationCommands):
         Raises:
             NoAnswerError: The robot does not answer.
         """
-        return await self._move(
-            "a goal", requests.SeekLikeRequest, features=tuple(features.items()), tolerance=tolerance
-        )
+        return await self._move("a goal", Seek, goal=PartialGoal(tuple(features.items()), tolerance))
 
     async def stop_seeking(self) -> Answer:
         """Drop the goal; the mid level commands by its nearest RLA again. Raises NoAnswerError."""
-        return await self._move("no goal", requests.SeekRequest, name=None)
+        return await self._move("no goal", StopSeeking)
 
     async def set_location(self, name: str) -> Answer:
         """Tell the robot that it was put down at a named situation. Raises NoAnswerError."""
-        return await self._command(requests.SetLocationRequest, name=name)
+        return await self._command(BeAt, name=name)
 
     # Session
 
     async def begin_session(self, name: str) -> Answer:
         """Begin a session: the teaching clock runs. Raises NoAnswerError."""
-        return await self._command(requests.SessionRequest, name=name)
+        return await self._command(BeginSession, name=name)
 
     async def end_session(self) -> Answer:
         """End the session: the teaching clock stops. Raises NoAnswerError."""
-        return await self._command(requests.SessionRequest, name=None)
+        return await self._command(EndSession)
 
     async def take(self) -> Answer:
         """Become the robot's teacher. On return the robot knows that its teacher is there.
 
         Raises NoAnswerError.
         """
-        answer = await self._move("take", requests.TakeRequest)
+        answer = await self._move("take", Take)
         if answer.accepted:
             with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
                 async for state in self.states():
@@ -213,7 +226,7 @@ class TeacherClient(LessonCommands, SimulationCommands):
 
         Raises NoAnswerError.
         """
-        return await self._command(requests.HandOverRequest, to=to)
+        return await self._command(HandOver, to=to)
 
     async def set_phase(self, phase: Phase) -> Answer:
         """Choose the training phase. Phase 5 drives without a teacher, so a stop ends that command.
@@ -221,8 +234,8 @@ class TeacherClient(LessonCommands, SimulationCommands):
         Raises NoAnswerError.
         """
         if phase is Phase.AUTONOMOUS:
-            return await self._move("phase 5", requests.PhaseRequest, phase=phase)
-        return await self._command(requests.PhaseRequest, phase=phase)
+            return await self._move("phase 5", SetPhase, phase=phase)
+        return await self._command(SetPhase, phase=phase)
 
     async def set_lesson_speed(self, percent: int) -> Answer:
         """Set the speed of lessons (slow lessons): until the robot's program ends, or another speed is set.
@@ -230,25 +243,25 @@ class TeacherClient(LessonCommands, SimulationCommands):
         In phases 1 and 2 actions drive at so many per cent of their speed, 20 to 100, and their knowledge drives at
         full speed afterwards. Raises NoAnswerError.
         """
-        return await self._command(requests.LessonSpeedRequest, percent=percent)
+        return await self._command(SetLessonSpeed, percent=percent)
 
     async def save(self, label: str = "") -> Answer:
         """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`.
 
         `label` becomes part of the name. Raises NoAnswerError.
         """
-        return await self._command(requests.SaveRequest, label=label)
+        return await self._command(SaveRequest, label=label)
 
-    async def export(self, form: str = requests.TABLE) -> Answer:
+    async def export(self, form: str = TABLE) -> Answer:
         """Write the RLAs as a table on the robot, or with PACKAGE one file to give away.
 
         `extra` of the answer holds the file's `name` and `sha256`. Raises NoAnswerError.
         """
-        return await self._command(requests.ExportRequest, form=form)
+        return await self._command(ExportRequest, form=form)
 
     async def examine(self) -> Answer:
         """Begin an exam of a copy of the present knowledge, of a simulated robot only; `exam` tells its status.
 
         Raises NoAnswerError.
         """
-        return await self._command(requests.ExamRequest)
+        return await self._command(ExamRequest)

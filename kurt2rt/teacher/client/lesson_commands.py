@@ -2,8 +2,18 @@
 
 from collections.abc import Sequence
 
-from kurt2rt.channel.protocol import requests
 from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    Correct,
+    DeleteRla,
+    NameSituation,
+    ReplaceAction,
+    Reward,
+    Teach,
+    TeachShown,
+    Undo,
+)
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.command_client import CommandClient
 
@@ -28,9 +38,7 @@ class LessonCommands(CommandClient):
         Raises:
             NoAnswerError: The robot does not answer.
         """
-        return await self._command(
-            requests.AnswerRequest, action=action, decision_tick=of, level=level, alternative=alternative
-        )
+        return await self._command(Teach, action=action, decision_tick=of, level=level, alternative=alternative)
 
     async def correct(self, action: str, *, of: int | None = None, level: str = BASIC, late: bool = False) -> Answer:
         """Replace the decided action by another one (phase 2), at level MID the behaviour.
@@ -45,7 +53,7 @@ class LessonCommands(CommandClient):
         Raises:
             NoAnswerError: The robot does not answer.
         """
-        return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level, late=late)
+        return await self._command(Correct, action=action, decision_tick=of, level=level, late=late)
 
     async def correct_earlier(self, action: str, seconds: float) -> Answer:
         """Correct what the basic level did `seconds` before it last drove (rewind).
@@ -69,36 +77,36 @@ class LessonCommands(CommandClient):
 
         `value`: -1 or +1. `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
         """
-        return await self._command(requests.RewardRequest, value=value, decision_tick=of)
+        return await self._command(Reward, value=value, decision_tick=of)
 
     async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
         """Teach the critic the value of a situation (phase 4): a name of `Hello.appraisals`.
 
         `of`: tick of the state that is meant; None: the present decision. Raises NoAnswerError.
         """
-        return await self._command(requests.AppraiseRequest, appraisal=appraisal, decision_tick=of)
+        return await self._command(Appraise, appraisal=appraisal, decision_tick=of)
 
     async def replace(self, rla: int, action: str) -> Answer:
         """Give one RLA, named by its id, another action. Raises NoAnswerError."""
-        return await self._command(requests.ReplaceRequest, rla_id=rla, action=action)
+        return await self._command(ReplaceAction, rla_id=rla, action=action)
 
     async def delete(self, rla: int) -> Answer:
         """Delete one RLA, named by its id. Raises NoAnswerError."""
-        return await self._command(requests.DeleteRequest, rla_id=rla)
+        return await self._command(DeleteRla, rla_id=rla)
 
     async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
         """Give the mid level's situation a name, so that it can be a goal.
 
         `of`: tick of the state that is meant; None: the present situation. Raises NoAnswerError.
         """
-        return await self._command(requests.NameRequest, name=name, decision_tick=of)
+        return await self._command(NameSituation, name=name, decision_tick=of)
 
     async def undo(self, lesson: str | None = None) -> Answer:
         """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands.
 
         Raises NoAnswerError.
         """
-        return await self._command(requests.UndoRequest, lesson=lesson)
+        return await self._command(Undo, lesson=lesson)
 
     async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
         """Teach the newest drive by hand, as `State.shown` cuts it into actions; undone as one.
@@ -116,4 +124,4 @@ class LessonCommands(CommandClient):
             raise ValueError("there is no drive by hand to teach; drive by hand and let go first")
         chosen = tuple(range(len(shown.actions)) if segments is None else segments)
         press_id = shown.press_id if press_id is None else press_id
-        return await self._command(requests.ShownRequest, press_id=press_id, segments=chosen)
+        return await self._command(TeachShown, press_id=press_id, segments=chosen)

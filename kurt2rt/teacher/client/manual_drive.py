@@ -7,11 +7,11 @@ from functools import partial
 
 import anyio
 
-from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
+from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request, path_of
 from kurt2rt.channel.protocol.request_types import StreamRequest
-from kurt2rt.channel.protocol.requests import DriveRequest, HoldRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import RefusalCode
+from kurt2rt.core.teaching.commands import Drive, HoldAction, Watch
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal
 from kurt2rt.teacher.client.link_quality import LinkMeter
 from kurt2rt.teacher.client.state_stream import StateStream
@@ -137,7 +137,7 @@ class ManualDrive:
         press = self._press
         if press is None:
             if state is not None and self.watching and state.teacher == self._name:
-                self._send(WatchRequest(boot=state.boot, seen=self._stream.newest_tick), None)
+                self._send(StreamRequest(state.boot, Watch("", self._stream.newest_tick)), None)
         elif state is None:
             self.end(local_refusal(RefusalCode.PICTURE_LOST))
         elif state.boot != press.boot:
@@ -157,7 +157,7 @@ class ManualDrive:
     def _send(self, request: StreamRequest, press: _Press | None) -> None:
         sent = _Sent(self._requests.next_number, self.now_s(), request.boot, press)
         self._under_way.append(sent)
-        sent.exchange = self._requests.post(request.path, encode_request(request), partial(self._on_response, sent))
+        sent.exchange = self._requests.post(path_of(request), encode_request(request), partial(self._on_response, sent))
 
     def _on_response(self, sent: _Sent, response: Response) -> None:
         sent.answered = True
@@ -257,5 +257,5 @@ class HoldHandle(PressHandle):
 
 def _message(press: _Press, seen: int, wish: Wish) -> StreamRequest:
     if isinstance(wish, str):
-        return HoldRequest(boot=press.boot, seen=seen, press_id=press.press_id, action=wish)
-    return DriveRequest(boot=press.boot, seen=seen, press_id=press.press_id, left_m_s=wish[0], right_m_s=wish[1])
+        return StreamRequest(press.boot, HoldAction("", seen, press.press_id, wish))
+    return StreamRequest(press.boot, Drive("", seen, press.press_id, *wish))

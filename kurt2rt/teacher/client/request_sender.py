@@ -8,13 +8,14 @@ from typing import Any, TypeVar
 import anyio
 import anyio.lowlevel
 
-from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
-from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, LARGEST_NUMBER, PART_BYTES
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request
+from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request, path_of
+from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES, PART_BYTES
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, tick_request
 from kurt2rt.channel.protocol.requests import StopRequest
-from kurt2rt.channel.protocol.schema import Int
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import RefusalCode
+from kurt2rt.core.teaching.commands import Single
+from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Int
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, RefusedError, answer_of, local_refusal
 from kurt2rt.teacher.client.state_stream import StateStream
@@ -41,12 +42,12 @@ class RequestSender:
         """Reason why the robot is not reached, as far as the network tells; empty while it is."""
         return self._requests.trouble
 
-    async def command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
+    async def command(self, kind: type[Single | CommandRequest], *, moves: bool = False, **fields: Any) -> Answer:
         """Send a command for the newest state; `moves` tells that it may set the robot in motion.
 
         Args:
-            kind: class of the request.
-            fields: its fields, except boot, command id and seen tick.
+            kind: class of the command, or of a request that is none for the tick.
+            fields: its fields, except teacher, boot, command id and seen tick.
 
         Raises:
             NoAnswerError: no state or no answer comes in time.
@@ -54,7 +55,9 @@ class RequestSender:
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
         state = await self.state()
         seen = self._stream.displayed_tick if moves else self._stream.newest_tick
-        return await self.send(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
+        if issubclass(kind, CommandRequest):
+            return await self.send(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
+        return await self.send(tick_request(kind, state.boot, command_id, seen, **fields))
 
     async def state(self) -> State:
         """Return the newest state of the robot, or wait for the first one. Raises NoAnswerError."""
@@ -77,7 +80,7 @@ class RequestSender:
         # A stop names no start of the robot: the start that was seen when it was sent, or a later one, carried it out.
         newest = self._stream.newest
         boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot
-        response = await self._exchange(request.path, payload, patience_s)
+        response = await self._exchange(path_of(request), payload, patience_s)
         try:
             answer = _answer_in(response)
         except WireError as error:
@@ -110,7 +113,7 @@ class RequestSender:
         return await self._query(request, _file_part_in)
 
     async def _query(self, request: Request, read: Callable[[Response], _Read]) -> _Read:
-        response = await self._exchange(request.path, encode_request(request))
+        response = await self._exchange(path_of(request), encode_request(request))
         try:
             return read(response)
         except WireError as error:
@@ -145,7 +148,7 @@ class RequestSender:
 
 
 def _not_understood(request: Request, error: WireError) -> NoAnswerError:
-    return NoAnswerError(str(error), NoAnswer.NOT_UNDERSTOOD, path=request.path)
+    return NoAnswerError(str(error), NoAnswer.NOT_UNDERSTOOD, path=path_of(request))
 
 
 def _decode(response: Response) -> dict[str, Any]:

@@ -4,9 +4,13 @@ from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, SLOWEST_PERCENT, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.protocol.requests import PACKAGE
-from kurt2rt.channel.protocol.schema import (
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.message_fields import (
+    MOST_SEGMENTS,
+    SLOWEST_PERCENT,
     Bytes,
     Check,
     Flag,
@@ -19,9 +23,6 @@ from kurt2rt.channel.protocol.schema import (
     Text,
     WireError,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
-from kurt2rt.core.teaching.commands import MOST_SEGMENTS
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
 

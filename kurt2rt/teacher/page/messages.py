@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from kurt2rt.channel.protocol.schema import Check, Float, Int, OrNone, Text, WireError
+from kurt2rt.core.teaching.message_fields import Check, Float, Int, OrNone, Text, WireError
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand
 
 LONGEST_MESSAGE = 1024

@@ -6,7 +6,7 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
-from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.core.teaching.message_fields import WireError
 from tests.runs.explain.helpers import Lesson, facts, level, story
 from tests.teacher.helpers import teach
 

@@ -11,9 +11,10 @@ import anyio
 from aiocoap import oscore
 
 from kurt2rt.channel.protocol.codec import decode_answer, decode_state, encode_request
-from kurt2rt.channel.protocol.requests import TakeRequest
+from kurt2rt.channel.protocol.request_types import tick_request
 from kurt2rt.channel.security.pairing import Pairing
 from kurt2rt.core.outcome import ResultCode
+from kurt2rt.core.teaching.commands import Take
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 from tests.patience import PATIENCE_S
 
@@ -50,7 +51,7 @@ async def test_aiocoap_oscore_client_observes_and_commands(tmp_path: Path) -> No
                     break
             assert ticks == sorted(set(ticks))
 
-            take = TakeRequest(boot=state.boot, command_id=secrets.token_bytes(8), seen=ticks[-1])
+            take = tick_request(Take, state.boot, secrets.token_bytes(8), ticks[-1])
             taken = await client.request(
                 aiocoap.Message(
                     code=aiocoap.POST,

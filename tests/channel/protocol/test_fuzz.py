@@ -14,19 +14,11 @@ import aiocoap
 import pytest
 
 from kurt2rt.channel.protocol.codec import encode_request
-from kurt2rt.channel.protocol.requests import (
-    AnswerRequest,
-    DriveRequest,
-    HelloRequest,
-    HoldRequest,
-    LessonsRequest,
-    ResumeRequest,
-    StopRequest,
-    TakeRequest,
-)
+from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, StopRequest
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.server.datagram_filter import LONGEST_DATAGRAM, SocketAddress
 from kurt2rt.core.decision.active_stop import ActiveStop
+from kurt2rt.core.teaching.commands import Drive, HoldAction, Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from tests.channel.hostile_datagrams import HostileDatagrams
 from tests.channel.jumping_loop import run_jumping
@@ -140,16 +132,16 @@ class Target:
         captured = []
         kinds = (
             HelloRequest,
-            TakeRequest,
-            AnswerRequest,
-            HoldRequest,
-            DriveRequest,
+            Take,
+            Teach,
+            HoldAction,
+            Drive,
             StopRequest,
-            ResumeRequest,
+            Resume,
             LessonsRequest,
         )
         for kind in kinds:
-            request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.hostile.valid(kind)))
+            request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.hostile.valid(kind.path)))
             request.opt.uri_path = tuple(kind.path.strip("/").split("/"))
             captured.append(self.hostile.protected(self.device, request))
             self.feed(captured[-1], self.sender)

@@ -9,8 +9,8 @@ import pytest
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.health import HealthReport, Trouble
 from kurt2rt.channel.protocol.health_codec import MOST_ROWS, plain_of, report_of
-from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.core.teaching.message_fields import WireError
 from kurt2rt.core.teaching.progress import Progress
 from tests.service.health.reports import ILL, LATE, WELL
 

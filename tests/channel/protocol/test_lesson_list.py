@@ -4,8 +4,8 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.lesson_list import situations_of
-from kurt2rt.channel.protocol.limits import LONGEST_TEXT, MOST_SITUATIONS
-from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.channel.protocol.limits import MOST_SITUATIONS
+from kurt2rt.core.teaching.message_fields import LONGEST_TEXT, WireError
 
 
 def test_situations_longest_list_fits_into_answer() -> None:

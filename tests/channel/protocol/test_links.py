@@ -18,11 +18,11 @@ import anyio
 import pytest
 from anyio.abc import Process
 
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request
-from kurt2rt.channel.protocol.requests import AnswerRequest, ReplaceRequest, RewardRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest, Request, TickRequest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.teaching.commands import Command, ReplaceAction, Reward, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.transport import Exchange, OnResponse
@@ -285,7 +285,7 @@ class Story:
         await anyio.sleep(_HELD_S)
         self._note_standing(sent)
         assert self._at_work.moved_since(tick + REACH_TICKS) == []
-        (note,) = [note for note in self._teacher.notes[held:] if isinstance(note.request, AnswerRequest)]
+        (note,) = [note for note in self._teacher.notes[held:] if isinstance(_command(note.request), Teach)]
         assert not self._at_work.runtime.handler.was_handled(_identity(note.request))
 
     async def _keep_pressing(self, lasts_s: float) -> None:
@@ -325,6 +325,10 @@ class Story:
         assert self._at_work.moved_since(tick) == [], self._told.link.name
 
 
+def _command(request: Request) -> Command | None:
+    return request.command if isinstance(request, TickRequest) else None
+
+
 def _identity(request: Request) -> str:
     assert isinstance(request, CommandRequest)
     return f"local-{request.command_id.hex()}"
@@ -354,7 +358,7 @@ def _tell(link: BadLink, folder: Path, length: Length) -> Told:
 def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
     """Check that the journal holds the lessons that were acknowledged."""
     written = Counter(event.origin.command_id for event in events)
-    lessons = [note for note in notes if isinstance(note.request, AnswerRequest | ReplaceRequest | RewardRequest)]
+    lessons = [note for note in notes if isinstance(_command(note.request), Teach | ReplaceAction | Reward)]
     assert set(written) <= {_identity(note.request) for note in lessons}
     assert set(written.values()) <= {1}
     for note in lessons:
@@ -377,7 +381,7 @@ def _must_be_good(told: Told, folder: Path) -> None:
     if told.link.weather.loss <= 0.3:
         assert told.stops.total() <= (0 if told.link.missing <= 0.3 else 1), told.stops
     if told.link.weather.loss <= 0.1:
-        assert all(note.answer is not None for note in told.notes if isinstance(note.request, RewardRequest))
+        assert all(note.answer is not None for note in told.notes if isinstance(_command(note.request), Reward))
 
 
 @pytest.fixture(scope="module")

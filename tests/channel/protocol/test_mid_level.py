@@ -5,23 +5,15 @@ import math
 import pytest
 
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
-from kurt2rt.channel.protocol.requests import (
-    AnswerRequest,
-    LessonsRequest,
-    NameRequest,
-    SeekLikeRequest,
-    SeekRequest,
-    SeekRlaRequest,
-    SetLocationRequest,
-    SituationsRequest,
-    UndoRequest,
-)
+from kurt2rt.channel.protocol.requests import LessonsRequest, SituationsRequest
 from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking, Teach, Undo
 from tests.channel.channel_fixture import STAMP, ChannelFixture, outcome_of, why
 from tests.channel.grounds import Yard
 
@@ -43,7 +35,7 @@ def picture(desk: ChannelFixture) -> State:
 
 async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) -> Outcome | None:
     """Give a lesson of the mid level; return what becomes of it."""
-    return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, alternative)))
+    return outcome_of(await desk.ask(desk.command(Teach, way, None, MID, alternative)))
 
 
 async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> None:
@@ -80,11 +72,11 @@ async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> No
 async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
-    reply = await desk.ask(desk.command(NameRequest, "door", None))
+    reply = await desk.ask(desk.command(NameSituation, "door", None))
     assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
     assert (await desk.ask(SituationsRequest())).body == {"situations": ["door"]}
     await desk.ask(desk.answer("forward"))
-    assert (await desk.ask(desk.command(SeekRequest, "door"))).status is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(Seek, NamedGoal("door")))).status is ReplyStatus.DONE
     await desk.stream(desk.watch())
     desk.run()
     told = picture(desk)
@@ -94,20 +86,20 @@ async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixtur
     under_way = desk.record._replace(decision=desk.record.decision._replace(plan=step))
     told = desk.channel._states.build(under_way)
     assert (told.goal, told.plan, told.plan_says) == ("door", step.behaviours, step.says)
-    assert outcome_of(await desk.ask(desk.command(SeekRequest, None))) == Outcome(ResultCode.GOAL_DROPPED)
+    assert outcome_of(await desk.ask(desk.command(StopSeeking))) == Outcome(ResultCode.GOAL_DROPPED)
     desk.run()
     assert (picture(desk).goal, picture(desk).plan_says) == ("", "")
-    assert (await desk.ask(desk.command(SeekRlaRequest, 1))).status is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(Seek, RlaGoal(1)))).status is ReplyStatus.DONE
     assert "1" in picture(desk).goal
     for request in (
-        desk.command(SeekRequest, "window"),
-        desk.command(SeekRlaRequest, 77),
-        desk.command(SeekLikeRequest, (("height", 1.0),), 0.1),
-        desk.command(SetLocationRequest, "window"),
+        desk.command(Seek, NamedGoal("window")),
+        desk.command(Seek, RlaGoal(77)),
+        desk.command(Seek, PartialGoal((("height", 1.0),), 0.1)),
+        desk.command(BeAt, "window"),
     ):
         assert why(await desk.ask(request)) == "refused"
     for _ in range(2):  # how to turn left, and the name
-        await desk.ask(desk.command(UndoRequest, None))
+        await desk.ask(desk.command(Undo, None))
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
 
 

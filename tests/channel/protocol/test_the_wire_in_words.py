@@ -8,24 +8,23 @@ from typing import Any
 import cbor2
 import pytest
 
-from kurt2rt.channel.protocol.codec import PATHS, encode_state
+from kurt2rt.channel.protocol.codec import PATHS, body_checks, encode_state
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.channel.protocol.request_types import checks_of
-from kurt2rt.channel.protocol.schema import (
+from kurt2rt.core.decision.standing import Standing
+from kurt2rt.core.teaching.message_fields import (
     Bytes,
     BytesUpTo,
     Flag,
     Float,
+    GoalField,
     Int,
     ManyOf,
     OneOf,
     OneWord,
     OrNone,
-    Row,
     Text,
 )
-from kurt2rt.core.decision.standing import Standing
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import robot_at_work
 from tests.channel.states import COMMANDS, HELD, SHOWN, SURPRISED, state
@@ -63,9 +62,7 @@ def test_wire_page_rows_have_the_documented_places(key: str) -> None:
 
 
 def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
-    assert {path: len(body) for path, body in bodies().items()} == {
-        path: len(checks_of(kind)) for path, kind in PATHS.items()
-    }
+    assert {path: len(body) for path, body in bodies().items()} == {path: len(body_checks(path)) for path in PATHS}
 
 
 def ranges() -> dict[str, str]:
@@ -98,8 +95,9 @@ def in_words(check: object) -> str:
             return "true or false"
         case OrNone(inner):
             return f"{in_words(inner)}, or null"
-        case ManyOf(Row(checks), most):
-            return f"up to {most} of `[{'; '.join(map(in_words, checks))}]`"
+        case GoalField():
+            features = "`[features, tolerance]`: up to 16 `[name, value]`, and a number; numbers -1e+06 to 1e+06"
+            return f"`name`; `rla`; or {features}"
         case ManyOf(inner, most):
             return f"list of up to {most}: {in_words(inner)}"
     raise AssertionError(check)
@@ -108,7 +106,7 @@ def in_words(check: object) -> str:
 @pytest.mark.parametrize("path", sorted(PATHS))
 def test_the_range_of_every_place_is_written(path: str) -> None:
     written = ranges()
-    for word, (_, check) in zip(bodies()[path], checks_of(PATHS[path]), strict=True):
+    for word, check in zip(bodies()[path], body_checks(path).values(), strict=True):
         name = word.removesuffix(" or null")
         takes = in_words(check)
         if name != word:

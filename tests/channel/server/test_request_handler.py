@@ -8,46 +8,25 @@ import pytest
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.lesson_list import Contradicting, lesson_lines_of
-from kurt2rt.channel.protocol.request_types import CommandRequest, StreamRequest
+from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import (
-    AnswerRequest,
-    AppraiseRequest,
     BackToStartRequest,
-    BehaviourRequest,
-    CorrectRequest,
-    DeleteRequest,
     ExamRequest,
     ExamStatusRequest,
     ExportRequest,
     FileRequest,
-    HandOverRequest,
     HealthRequest,
     HelloRequest,
-    LessonSpeedRequest,
     LessonsRequest,
     LoadRequest,
     MoveWallRequest,
-    NameRequest,
     NextRunRequest,
-    PhaseRequest,
     PlaceRequest,
-    PursueRequest,
-    ReplaceRequest,
-    ResumeRequest,
-    RewardRequest,
     SaveRequest,
-    SeekLikeRequest,
-    SeekRequest,
-    SeekRlaRequest,
-    SessionRequest,
-    SetLocationRequest,
-    ShownRequest,
     SimulationRequest,
     SituationsRequest,
     SpeedRequest,
     StopRequest,
-    TakeRequest,
-    UndoRequest,
     UploadRequest,
     WhyRequest,
     WorldRequest,
@@ -58,9 +37,36 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.teaching.commands import Stop, Teach, Watch
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeAt,
+    BeginSession,
+    Correct,
+    DeleteRla,
+    EndSession,
+    HandOver,
+    NameSituation,
+    Pursue,
+    ReplaceAction,
+    Resume,
+    Reward,
+    RunBehaviour,
+    Seek,
+    SetLessonSpeed,
+    SetPhase,
+    Single,
+    Stop,
+    StopSeeking,
+    StreamCommand,
+    Take,
+    Teach,
+    TeachShown,
+    Undo,
+    Watch,
+)
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.file_part import FilePart
@@ -69,30 +75,30 @@ from tests.channel.channel_fixture import BOOT, ChannelFixture, outcome_of, repl
 from tests.channel.grounds import Yard
 
 LAST_START = b"last"
-MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
-    BehaviourRequest: ("forward", 10),
-    PursueRequest: ("turn_left",),
-    ResumeRequest: (),
-    TakeRequest: (),
-    SeekRequest: ("door",),
-    SeekRlaRequest: (1,),
-    SeekLikeRequest: ((("x_m", 1.0),), 0.1),
+MOVING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
+    RunBehaviour: ("forward", 10),
+    Pursue: ("turn_left",),
+    Resume: (),
+    Take: (),
+    Seek: (NamedGoal("door"),),
+    StopSeeking: (),
 }
-LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
-    AnswerRequest: ("forward", None),
-    CorrectRequest: ("forward", None),
-    RewardRequest: (1, None),
-    AppraiseRequest: ("bad", None),
-    ShownRequest: (91, (0,)),
-    ReplaceRequest: (1, "forward"),
-    DeleteRequest: (1,),
-    UndoRequest: (None,),
-    NameRequest: ("door", None),
-    SetLocationRequest: ("door",),
-    PhaseRequest: (Phase.CORRECTIONS,),
-    LessonSpeedRequest: (60,),
-    SessionRequest: ("morning",),
-    HandOverRequest: (None,),
+LASTING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
+    Teach: ("forward", None),
+    Correct: ("forward", None),
+    Reward: (1, None),
+    Appraise: ("bad", None),
+    TeachShown: (91, (0,)),
+    ReplaceAction: (1, "forward"),
+    DeleteRla: (1,),
+    Undo: (None,),
+    NameSituation: ("door", None),
+    BeAt: ("door",),
+    SetPhase: (Phase.CORRECTIONS,),
+    SetLessonSpeed: (60,),
+    BeginSession: ("morning",),
+    EndSession: (),
+    HandOver: (None,),
     SaveRequest: ("label",),
     ExportRequest: (),
     MoveWallRequest: ("box", 0.1, 0.0),
@@ -124,7 +130,7 @@ def desk() -> ChannelFixture:
 
 
 def test_every_path_has_a_rule_here() -> None:
-    streams = {kind for kind in PATHS.values() if issubclass(kind, StreamRequest)}
+    streams = {kind for kind in PATHS.values() if issubclass(kind, StreamCommand)}
     assert set(COMMANDS) | streams | READING | {StopRequest} == set(PATHS.values())
 
 
@@ -206,7 +212,7 @@ async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Channe
     await desk.ask(desk.stop(), "ben")
     refused = await desk.stream(desk.press(hold=2))
     assert (why(refused), outcome_of(refused)) == ("stopped", Outcome.of(RefusalCode.STOPPED_BY, teachers=("ben",)))
-    await desk.ask(desk.command(ResumeRequest))
+    await desk.ask(desk.command(Resume))
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
 
@@ -253,10 +259,10 @@ async def test_command_state_age_limit_depends_on_kind(kind: type[CommandRequest
     assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=longest))) in ("", "refused", "held")
 
 
-@pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not TakeRequest])
+@pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not Take])
 async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[CommandRequest]) -> None:
     desk = ChannelFixture(ground=Yard())
-    await desk.ask(desk.command(TakeRequest), "ann")
+    await desk.ask(desk.command(Take), "ann")
     refused = await desk.ask(desk.command(kind, *COMMANDS[kind]), "ben")
     assert why(refused) == "held"
     assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
@@ -295,7 +301,7 @@ async def test_command_repeated_while_pending_counts_once(desk: ChannelFixture) 
 async def test_command_of_earlier_start_is_answered_as_repeated(
     desk: ChannelFixture,
 ) -> None:
-    request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
+    request = desk.command(Teach, "forward", None, boot=LAST_START)
     desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
     assert (reply.status, outcome_of(reply)) == (ReplyStatus.DONE, Outcome(ResultCode.REPEATED))
@@ -303,7 +309,7 @@ async def test_command_of_earlier_start_is_answered_as_repeated(
 
 
 async def test_repeated_answer_names_the_lesson_that_is_known(desk: ChannelFixture) -> None:
-    request = desk.command(AnswerRequest, "forward", None)
+    request = desk.command(Teach, "forward", None)
     lesson = f"ann-{request.command_id.hex()}"
     desk.runtime.inbox.put(Teach(lesson, "ann", "forward"))
     desk.run()
@@ -346,26 +352,26 @@ async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Chan
 async def test_take_is_refused_only_while_another_drives_by_hand(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(), "ann")
     desk.run()
-    refused = await desk.ask(desk.command(TakeRequest), "ben")
+    refused = await desk.ask(desk.command(Take), "ben")
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
     await desk.ask(desk.stop(), "ben")
-    assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
+    assert outcome_of(await desk.ask(desk.command(Take), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
 
 
 @pytest.mark.parametrize(
     ("make", "outcome"),
     [
-        (lambda desk: desk.command(SessionRequest, "morning"), Outcome.of(ResultCode.SESSION_BEGUN, session="morning")),
-        (lambda desk: desk.command(SessionRequest, None), Outcome(RefusalCode.NO_SESSION)),
-        (lambda desk: desk.command(HandOverRequest, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
-        (lambda desk: desk.command(HandOverRequest, None), Outcome(ResultCode.RELEASED)),
-        (lambda desk: desk.command(UndoRequest, None), Outcome(RefusalCode.NO_LESSON)),
+        (lambda desk: desk.command(BeginSession, "morning"), Outcome.of(ResultCode.SESSION_BEGUN, session="morning")),
+        (lambda desk: desk.command(EndSession), Outcome(RefusalCode.NO_SESSION)),
+        (lambda desk: desk.command(HandOver, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
+        (lambda desk: desk.command(HandOver, None), Outcome(ResultCode.RELEASED)),
+        (lambda desk: desk.command(Undo, None), Outcome(RefusalCode.NO_LESSON)),
         (
-            lambda desk: desk.command(BehaviourRequest, "back", 7),
+            lambda desk: desk.command(RunBehaviour, "back", 7),
             Outcome(RefusalCode.TEACHER_ABSENT),
         ),
-        (lambda desk: desk.command(ResumeRequest), Outcome(ResultCode.RESUMED)),
-        (lambda desk: desk.command(ReplaceRequest, 3, "back"), Outcome.of(RefusalCode.NO_RLA, rla=3)),
+        (lambda desk: desk.command(Resume), Outcome(ResultCode.RESUMED)),
+        (lambda desk: desk.command(ReplaceAction, 3, "back"), Outcome.of(RefusalCode.NO_RLA, rla=3)),
     ],
 )
 async def test_each_request_becomes_its_command(
@@ -378,7 +384,7 @@ async def test_each_request_becomes_its_command(
 
 
 async def test_stop_needs_no_start_no_state_and_no_charge(desk: ChannelFixture) -> None:
-    await desk.ask(desk.command(TakeRequest), "ann")
+    await desk.ask(desk.command(Take), "ann")
     reply = await desk.ask(desk.stop(), "ben")
     assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
     assert desk.run().decision.cause is DecisionCause.STOPPED
@@ -387,7 +393,7 @@ async def test_stop_needs_no_start_no_state_and_no_charge(desk: ChannelFixture) 
 async def test_each_copy_of_a_stop_stops_again(desk: ChannelFixture) -> None:
     stop = desk.stop()
     first = await desk.ask(stop, "ben")
-    await desk.ask(desk.command(ResumeRequest), "ann")
+    await desk.ask(desk.command(Resume), "ann")
     assert desk.record.decision.cause is DecisionCause.UNKNOWN
     assert await desk.ask(stop, "ben") == first
     assert desk.run().decision.cause is DecisionCause.STOPPED
@@ -450,7 +456,7 @@ async def test_save_slow_copy_goes_on_and_answers_repetition() -> None:
 async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
     desk = ChannelFixture(ground=Yard())
     assert why(await desk.ask(desk.command(ExamRequest))) == "held"
-    await desk.ask(desk.command(TakeRequest), "bob")
+    await desk.ask(desk.command(Take), "bob")
     assert why(await desk.ask(desk.command(ExamRequest))) == "held"
     request = desk.command(ExamRequest)
     first = await desk.ask(request, "bob")
@@ -466,7 +472,7 @@ async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
 
 
 async def test_a_real_robot_is_not_examined(desk: ChannelFixture) -> None:
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     for request in (desk.command(ExamRequest), ExamStatusRequest()):
         assert (await desk.ask(request)).status is ReplyStatus.NOT_HERE
     assert desk.shelf.examined == 0
@@ -481,8 +487,8 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     ended: list[bool] = []
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
     assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
-    await desk.ask(desk.command(TakeRequest))
-    await desk.ask(desk.command(SessionRequest, "noon"))
+    await desk.ask(desk.command(Take))
+    await desk.ask(desk.command(BeginSession, "noon"))
     unknown = await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))
     assert outcome_of(unknown) == Outcome.of(RefusalCode.NO_WORLD, world="nowhere", known=("a", "b"))
     broken = await desk.ask(desk.command(NextRunRequest, "broken", None, False))
@@ -502,7 +508,7 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
 async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
     desk = ChannelFixture(ground=Yard())
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     desk.shelf.problem = "var/a.knowledge: the disk is full"
     reply = await desk.ask(desk.command(NextRunRequest, "b", None, False))
     assert (why(reply), reply.body["text"]) == ("refused", desk.shelf.problem)
@@ -513,7 +519,7 @@ async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pyt
 async def test_speed_scales_leases_in_robot_time() -> None:
     desk = ChannelFixture(ground=Yard())
     assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
     assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
     desk.run()
@@ -541,7 +547,7 @@ async def test_computer_too_slow_for_the_speed_is_no_lost_link(
 ) -> None:
     desk = ChannelFixture(ground=Yard())
     monkeypatch.setattr(SimulatedClock, "reached", reached)
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
     desk.runtime.inbox.put(Teach("t", "ann", "forward"))
     await desk.stream(desk.watch())
@@ -555,7 +561,7 @@ async def test_computer_too_slow_for_the_speed_is_no_lost_link(
 async def test_put_back_is_refused_after_stop_like_place() -> None:
     yard = Yard()
     desk = ChannelFixture(ground=yard)
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     assert (await desk.ask(desk.command(BackToStartRequest))).status is ReplyStatus.DONE
     request = desk.command(BackToStartRequest)
     await desk.ask(desk.stop())
@@ -569,7 +575,7 @@ async def test_upload_in_parts_is_loaded_once(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
     parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]
     assert why(await desk.ask(parts[0])) == "held"
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     assert why(await desk.ask(parts[1])) == "refused"
     assert [(await desk.ask(each)).body["size"] for each in (parts[0], parts[0], parts[1])] == [896, 896, 1002]
     assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
@@ -580,7 +586,7 @@ async def test_upload_in_parts_is_loaded_once(monkeypatch: pytest.MonkeyPatch) -
 
 
 async def test_a_real_robot_has_no_next_run(desk: ChannelFixture) -> None:
-    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(Take))
     requests = (
         desk.command(NextRunRequest, None, None, True),
         desk.command(BackToStartRequest),
@@ -647,7 +653,7 @@ async def test_impossible_change_of_the_world_is_refused_with_code() -> None:
 
 
 async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: ChannelFixture) -> None:
-    refused = await desk.ask(desk.command(AppraiseRequest, "lovely", None))
+    refused = await desk.ask(desk.command(Appraise, "lovely", None))
     known = ("bad", "neutral", "good")
     assert why(refused) == "refused"
     assert outcome_of(refused) == Outcome.of(RefusalCode.NO_APPRAISAL, appraisal="lovely", known=known)
@@ -660,7 +666,7 @@ async def test_stop_copy_sent_before_resume_does_not_stop() -> None:
     desk = ChannelFixture()
     stop = desk.stop()
     answered = await desk.ask(stop, "ann")
-    go = desk.command(ResumeRequest)
+    go = desk.command(Resume)
     desk.run(5)
     assert await desk.ask(stop, "ann") == answered
     assert outcome_of(await desk.ask(go)) == Outcome(ResultCode.RESUMED)
@@ -681,5 +687,5 @@ async def test_lesson_that_contradicts_its_neighbours_is_named(desk: ChannelFixt
     lesson, *others = lesson_lines_of(listed)
     assert lesson.against == (Contradicting(lesson.command_id, 6, "back", 4, ("forward",)),)
     assert not any(each.against for each in others)
-    await desk.ask(desk.command(UndoRequest, lesson.command_id))
+    await desk.ask(desk.command(Undo, lesson.command_id))
     assert (await desk.ask(LessonsRequest(20))).body["against"] == []

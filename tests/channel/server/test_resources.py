@@ -20,14 +20,10 @@ from kurt2rt.channel.protocol.codec import (
     decode_state,
     encode_request,
     encode_state,
+    path_of,
 )
-from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import (
-    AnswerRequest,
-    HelloRequest,
-    LessonsRequest,
-    StopRequest,
-)
+from kurt2rt.channel.protocol.request_types import Request, tick_request
+from kurt2rt.channel.protocol.requests import HelloRequest, LessonsRequest, StopRequest
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair
@@ -36,6 +32,7 @@ from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStat
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
+from kurt2rt.core.teaching.commands import Teach
 from tests.channel.channel_fixture import ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
@@ -69,7 +66,7 @@ class Phone:
 
     async def post(self, request: Request) -> Any:
         """Return the answer to a request of the wire."""
-        return await self.call(plain(request.path, payload=encode_request(request), content_format=CONTENT_FORMAT))
+        return await self.call(plain(path_of(request), payload=encode_request(request), content_format=CONTENT_FORMAT))
 
 
 class School:
@@ -372,7 +369,7 @@ class Line:
 
     async def call(self, request: Request) -> Any:
         """Return the answer to a request of the wire, after the robot's first challenge."""
-        message = plain(request.path, payload=encode_request(request))
+        message = plain(path_of(request), payload=encode_request(request))
         answer = await self._protected(message)
         return answer if answer.opt.echo is None else await self._protected(message.copy(echo=answer.opt.echo))
 
@@ -440,7 +437,7 @@ async def on_line(folder: Path) -> AsyncIterator[OnLine]:
 async def test_a_paired_device_teaches_the_robot_over_a_socket(tmp_path: Path) -> None:
     async with on_line(tmp_path) as robot:
         hello = await robot.call(HelloRequest())
-        answer = await robot.call(AnswerRequest(hello["boot"], b"12345678", hello["tick"], "forward", None))
+        answer = await robot.call(tick_request(Teach, hello["boot"], b"12345678", hello["tick"], action="forward"))
         assert (answer["code"], answer["fields"]["rla"], answer["row"]) == (ResultCode.RLA_TAUGHT, 1, 1)
         (lesson,) = (await robot.call(LessonsRequest(20)))["lessons"]
         assert (lesson[0], lesson[2]) == ("ann-" + b"12345678".hex(), "ann")

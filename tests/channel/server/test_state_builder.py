@@ -6,17 +6,12 @@ import pytest
 
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.health import Trouble
-from kurt2rt.channel.protocol.requests import (
-    PhaseRequest,
-    ResumeRequest,
-    RewardRequest,
-    SessionRequest,
-)
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import ASK
+from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, Reward, SetPhase
 from tests.channel.channel_fixture import ROBOT, STAMP, ChannelFixture
 from tests.service.health.reports import ILL
 
@@ -67,19 +62,19 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -
 
 
 async def test_phase_session_and_clock(desk: ChannelFixture) -> None:
-    await desk.ask(desk.command(PhaseRequest, Phase.CORRECTIONS))
-    await desk.ask(desk.command(SessionRequest, "morning"))
+    await desk.ask(desk.command(SetPhase, Phase.CORRECTIONS))
+    await desk.ask(desk.command(BeginSession, "morning"))
     desk.run(250)
     told = picture(desk)
     assert (told.phase, told.session) == (2, "morning")
     assert told.clock_s == pytest.approx(2.5)
-    await desk.ask(desk.command(SessionRequest, None))
+    await desk.ask(desk.command(EndSession))
     desk.run(100)
     told = picture(desk)
     assert told.session is None
     assert told.clock_s == pytest.approx(2.51)
     assert told.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
-    await desk.ask(desk.command(ResumeRequest))
+    await desk.ask(desk.command(Resume))
     assert picture(desk).stopped is None
 
 
@@ -97,7 +92,7 @@ async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: ChannelF
     while picture(desk).nearest_action != ASK:
         await desk.stream(desk.watch())
         desk.run()
-        await desk.ask(desk.command(RewardRequest, -1, None))
+        await desk.ask(desk.command(Reward, -1, None))
         desk.run()
     told = picture(desk)
     assert told.cause == "unknown"

@@ -88,7 +88,7 @@ def test_lesson_that_is_deleted_leaves_the_obstacle_new_again() -> None:
 
 
 def test_a_doubt_ends_below_the_threshold_by_a_fifth() -> None:
-    watch = DoubtWatch(Doubter(*LESSONS).meter, 0.01)
+    watch = DoubtWatch(Doubter(*LESSONS).meter)
     assert [watch.update(score, alone=False) for score in (1.9, 2.0, 1.7, 1.5, 1.7)] == [
         False,
         True,

@@ -27,7 +27,7 @@ def slowly(scene: Scene, record: TickRecord) -> None:
         case 10:
             say(lambda name: Resume(name, NAME))
         case 400:
-            say(lambda name: SetLessonSpeed(name, NAME, 0.8))
+            say(lambda name: SetLessonSpeed(name, NAME, 80))
         case 600:
             say(lambda name: SetPhase(name, NAME, Phase.REINFORCEMENT))
 

@@ -45,7 +45,7 @@ STANDS_ALONE = {
 }
 
 
-def test_run_that_stands_alone_in_doubt_is_replayed_and_explained(tmp_path: Path) -> None:
+def test_run_standing_in_doubt_is_replayed_and_explained(tmp_path: Path) -> None:
     task = load_task("wall_following", changes=STANDS_ALONE)
     run = read_run(record_story("walls", tmp_path, seconds=9, other=drives_to_a_wall_alone, task=task))
     causes = list[DecisionCause]()

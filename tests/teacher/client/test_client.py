@@ -7,54 +7,59 @@ from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import anyio
 import pytest
 
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.channel.protocol.request_types import CommandRequest, Request
+from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
-    AnswerRequest,
-    AppraiseRequest,
-    BehaviourRequest,
-    CorrectRequest,
-    DeleteRequest,
-    DriveRequest,
     ExportRequest,
-    HandOverRequest,
     HelloRequest,
-    LessonSpeedRequest,
     LessonsRequest,
     MoveWallRequest,
-    NameRequest,
-    PhaseRequest,
     PlaceRequest,
-    PursueRequest,
-    ReplaceRequest,
-    ResumeRequest,
-    RewardRequest,
     SaveRequest,
-    SeekLikeRequest,
-    SeekRequest,
-    SeekRlaRequest,
-    SessionRequest,
-    SetLocationRequest,
     StopRequest,
-    TakeRequest,
-    UndoRequest,
-    WatchRequest,
     WorldRequest,
 )
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import InfraredLaw
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeAt,
+    BeginSession,
+    Correct,
+    DeleteRla,
+    Drive,
+    EndSession,
+    HandOver,
+    NameSituation,
+    Pursue,
+    ReplaceAction,
+    Resume,
+    Reward,
+    RunBehaviour,
+    Seek,
+    SetLessonSpeed,
+    SetPhase,
+    Single,
+    SingleCommand,
+    StopSeeking,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather
@@ -137,10 +142,10 @@ async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[Teacher
         yield client
 
 
-def always(reply: Reply) -> Callable[[Request], Awaitable[Reply]]:
+def always(reply: Reply) -> Callable[[object], Awaitable[Reply]]:
     """Return a robot's mind that gives the same reply to each request."""
 
-    async def mind(_: Request) -> Reply:
+    async def mind(_: object) -> Reply:
         return reply
 
     return mind
@@ -227,7 +232,7 @@ async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pai
 
 
 async def test_hello_of_other_version_raises_with_remedy(client: TeacherClient, robot: StandInRobot) -> None:
-    async def speaks_otherwise(_: Request) -> Reply:
+    async def speaks_otherwise(_: object) -> Reply:
         # The missing keys must not be what is complained of.
         return Reply(ReplyStatus.DONE, {"v": VERSION + 1})
 
@@ -238,7 +243,7 @@ async def test_hello_of_other_version_raises_with_remedy(client: TeacherClient, 
 
 
 async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, robot: StandInRobot) -> None:
-    async def introduces_itself(request: Request) -> Reply:
+    async def introduces_itself(request: object) -> Reply:
         return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
 
     robot.mind = introduces_itself
@@ -250,7 +255,7 @@ async def test_correct_earlier_counts_driven_time_alone(client: TeacherClient, r
         pictures.append(robot.show(left_m_s=speed_m_s, right_m_s=speed_m_s))
         await seen(client, lambda: client.state == pictures[-1])
     await client.correct_earlier("spin_left", 0.10)
-    (correction,) = await robot.hears(CorrectRequest)
+    (correction,) = await robot.hears(Correct)
     assert correction.decision_tick == pictures[0].tick + 42
 
 
@@ -269,7 +274,7 @@ async def test_correct_earlier_before_the_robot_drove_raises(client: TeacherClie
 
 
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
-    async def tells(request: Request) -> Reply:
+    async def tells(request: object) -> Reply:
         if isinstance(request, LessonsRequest):
             return Reply(
                 ReplyStatus.DONE,
@@ -291,7 +296,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
 
 
 async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
-    async def introduces_itself(request: Request) -> Reply:
+    async def introduces_itself(request: object) -> Reply:
         return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
 
     robot.mind = introduces_itself
@@ -329,44 +334,44 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.run("quarter_turn_left", seconds=3.0)
     await client.move_wall("north", 0.5, -0.25)
     await client.place(1.0, 2.0, 0.5)
-    heard = [each for each in robot.orders() if isinstance(each, CommandRequest)]
-    expected: list[tuple[type[CommandRequest], dict[str, object]]] = [
-        (AnswerRequest, {"action": "forward", "decision_tick": 88}),
-        (CorrectRequest, {"action": "spin_right", "decision_tick": None}),
-        (RewardRequest, {"value": -1, "decision_tick": 80}),
-        (AppraiseRequest, {"appraisal": "bad", "decision_tick": 81}),
-        (AppraiseRequest, {"appraisal": "neutral", "decision_tick": None}),
-        (ReplaceRequest, {"rla_id": 7, "action": "forward"}),
-        (DeleteRequest, {"rla_id": 7}),
-        (UndoRequest, {"lesson": None}),
-        (UndoRequest, {"lesson": "phone-01"}),
-        (PhaseRequest, {"phase": Phase.CORRECTIONS}),
-        (LessonSpeedRequest, {"percent": 60}),
-        (PursueRequest, {"behaviour": "turn_left"}),
-        (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "alternative": True}),
-        (CorrectRequest, {"action": "turn_left", "decision_tick": 80, "level": MID}),
-        (NameRequest, {"name": "door", "decision_tick": 81}),
-        (SeekRequest, {"name": "door"}),
-        (SeekRlaRequest, {"rla_id": 12}),
-        (SeekLikeRequest, {"features": (("x_m", 1.5),), "tolerance": 0.25}),
-        (SeekRequest, {"name": None}),
-        (SetLocationRequest, {"name": "door"}),
-        (SessionRequest, {"name": "morning"}),
-        (SessionRequest, {"name": None}),
-        (ResumeRequest, {}),
-        (TakeRequest, {}),
-        (HandOverRequest, {"to": "laptop"}),
+    heard = [each for each in robot.orders() if isinstance(each, CommandRequest | SingleCommand)]
+    expected: list[tuple[type[Any], dict[str, Any]]] = [
+        (Teach, {"action": "forward", "decision_tick": 88}),
+        (Correct, {"action": "spin_right", "decision_tick": None}),
+        (Reward, {"value": -1, "decision_tick": 80}),
+        (Appraise, {"appraisal": "bad", "decision_tick": 81}),
+        (Appraise, {"appraisal": "neutral", "decision_tick": None}),
+        (ReplaceAction, {"rla_id": 7, "action": "forward"}),
+        (DeleteRla, {"rla_id": 7}),
+        (Undo, {"lesson": None}),
+        (Undo, {"lesson": "phone-01"}),
+        (SetPhase, {"phase": Phase.CORRECTIONS}),
+        (SetLessonSpeed, {"percent": 60}),
+        (Pursue, {"behaviour": "turn_left"}),
+        (Teach, {"action": "turn_left", "decision_tick": None, "level": MID, "alternative": True}),
+        (Correct, {"action": "turn_left", "decision_tick": 80, "level": MID}),
+        (NameSituation, {"name": "door", "decision_tick": 81}),
+        (Seek, {"goal": NamedGoal("door")}),
+        (Seek, {"goal": RlaGoal(12)}),
+        (Seek, {"goal": PartialGoal((("x_m", 1.5),), 0.25)}),
+        (StopSeeking, {}),
+        (BeAt, {"name": "door"}),
+        (BeginSession, {"name": "morning"}),
+        (EndSession, {}),
+        (Resume, {}),
+        (Take, {}),
+        (HandOver, {"to": "laptop"}),
         (SaveRequest, {"label": "after lunch"}),
         (ExportRequest, {"form": "table"}),
         (ExportRequest, {"form": "package"}),
-        (BehaviourRequest, {"action": "quarter_turn_left", "ticks": 300}),
+        (RunBehaviour, {"action": "quarter_turn_left", "ticks": 300}),
         (MoveWallRequest, {"name": "north", "dx_m": 0.5, "dy_m": -0.25}),
         (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
     ]
-    assert heard == [
-        kind(boot=b"boot", command_id=each.command_id, seen=picture.tick, **fields)
-        for (kind, fields), each in zip(expected, heard, strict=True)
-    ]
+    for (kind, fields), each in zip(expected, heard, strict=True):
+        assert isinstance(each, kind)
+        assert {name: getattr(each, name) for name in fields} == fields
+        assert getattr(each, "seen", getattr(each, "seen_tick", picture.tick)) == picture.tick
     assert len({each.command_id for each in heard}) == len(heard)
 
 
@@ -400,12 +405,12 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
             answers.append(await client.answer("forward"))
 
         tasks.start_soon(teach)
-        await robot.hears(AnswerRequest, 3, copies=True)
+        await robot.hears(Teach, 3, copies=True)
         assert answers == []
         link.change_weather(down=Weather())
         await eventually(lambda: bool(answers))
         assert answers[0].accepted
-        copies = robot.all_of(AnswerRequest, copies=True)
+        copies = robot.all_of(Teach, copies=True)
         assert set(copies) == {copies[0]}
 
 
@@ -452,11 +457,11 @@ async def test_presence_in_charge_is_sent_40_times_a_second(client: TeacherClien
     await seen(client, lambda: client.state == robot.state)
     assert robot.heard == []
     await be_in_charge(client, robot)
-    heard = await robot.hears(WatchRequest, 10)
-    assert all(later.seen >= earlier.seen for earlier, later in pairwise(heard))
-    assert heard[-1].boot == b"boot"
+    heard = await robot.hears(Watch, 10)
+    assert all(later.seen_tick >= earlier.seen_tick for earlier, later in pairwise(heard))
+    assert robot.boots[-1] == b"boot"
     assert client.state is not None
-    assert heard[-1].seen >= client.state.tick - 10
+    assert heard[-1].seen_tick >= client.state.tick - 10
     await eventually(lambda: client.link.answered == 1.0)
     assert client.link.rtt_ms is not None
     assert client.link.rtt_ms > 0.0
@@ -465,19 +470,19 @@ async def test_presence_in_charge_is_sent_40_times_a_second(client: TeacherClien
 async def test_presence_is_not_sent_without_charge_or_watching(client: TeacherClient, robot: StandInRobot) -> None:
     async def says_nothing() -> None:
         await client.stop()  # once it is answered, all that was said before it has been heard
-        told = len(robot.all_of(WatchRequest))
+        told = len(robot.all_of(Watch))
         for _ in range(3):
             newest = robot.show(teacher=robot.state.teacher)
             await seen(client, lambda: client.state is not None and client.state.tick >= newest.tick)  # noqa: B023
         await client.stop()
-        assert len(robot.all_of(WatchRequest)) == told
+        assert len(robot.all_of(Watch)) == told
 
     await be_in_charge(client, robot)
-    await robot.hears(WatchRequest)
+    await robot.hears(Watch)
     client.watching = False
     await says_nothing()
     client.watching = True
-    await robot.hears(WatchRequest, len(robot.all_of(WatchRequest)) + 1)
+    await robot.hears(Watch, len(robot.all_of(Watch)) + 1)
     robot.show(teacher="laptop")
     await seen(client, lambda: client.state is not None and client.state.teacher == "laptop")
     await says_nothing()
@@ -487,29 +492,29 @@ async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandI
     clock = Clock()
     async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
         await be_in_charge(client, robot)
-        await robot.hears(WatchRequest)
+        await robot.hears(Watch)
         robot.showing = False
         clock.ahead_s += 0.6
         await client.stop()
-        told = len(robot.all_of(WatchRequest))
+        told = len(robot.all_of(Watch))
         await client.stop()
-        assert len(robot.all_of(WatchRequest)) == told
+        assert len(robot.all_of(Watch)) == told
 
 
 # Stopping
 
 
-async def never_answers(_: Request) -> Reply:
+async def never_answers(_: object) -> Reply:
     await anyio.sleep_forever()
     raise AssertionError
 
 
-MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitable[Answer]]]] = {
-    "go": (ResumeRequest, lambda client: client.resume()),
-    "forward": (BehaviourRequest, lambda client: client.run("forward", seconds=1.0)),
-    "phase 5": (PhaseRequest, lambda client: client.set_phase(Phase.AUTONOMOUS)),
-    "take": (TakeRequest, lambda client: client.take()),
-    "turn_left": (PursueRequest, lambda client: client.pursue("turn_left")),
+MOVING: dict[str, tuple[type[Single], Callable[[TeacherClient], Awaitable[Answer]]]] = {
+    "go": (Resume, lambda client: client.resume()),
+    "forward": (RunBehaviour, lambda client: client.run("forward", seconds=1.0)),
+    "phase 5": (SetPhase, lambda client: client.set_phase(Phase.AUTONOMOUS)),
+    "take": (Take, lambda client: client.take()),
+    "turn_left": (Pursue, lambda client: client.pursue("turn_left")),
 }
 
 
@@ -517,7 +522,7 @@ MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitabl
 async def test_stop_ends_moving_commands_under_way(client: TeacherClient, robot: StandInRobot, what: str) -> None:
     kind, say = MOVING[what]
 
-    async def hears_only_stops(request: Request) -> Reply:
+    async def hears_only_stops(request: object) -> Reply:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, HELLO)
         return await (never_answers if isinstance(request, kind) else agrees)(request)
@@ -547,8 +552,8 @@ async def test_stop_ends_moving_commands_under_way(client: TeacherClient, robot:
 async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, robot: StandInRobot) -> None:
     stopped = anyio.Event()
 
-    async def answers_lessons_after_the_stop(request: Request) -> Reply:
-        if isinstance(request, AnswerRequest):
+    async def answers_lessons_after_the_stop(request: object) -> Reply:
+        if isinstance(request, Teach):
             await stopped.wait()
         return await agrees(request)
 
@@ -560,7 +565,7 @@ async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, r
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(teach)
-        await robot.hears(AnswerRequest)
+        await robot.hears(Teach)
         await client.stop()
         stopped.set()
     assert answers[0].accepted
@@ -572,7 +577,7 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
     await seen(client, lambda: client.state == picture)
     stopped_tick = picture.tick + 3
 
-    async def stops_later(request: Request) -> Reply:
+    async def stops_later(request: object) -> Reply:
         return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20)
 
     robot.mind = stops_later
@@ -581,9 +586,9 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
     await client.answer("forward")
     # Other answers do not show that another teacher stopped the robot meanwhile.
     await client.resume()
-    resumes = robot.all_of(ResumeRequest)
-    assert [each.seen for each in resumes] == [stopped_tick, stopped_tick]
-    assert robot.all_of(AnswerRequest)[0].seen == stopped_tick + 20
+    resumes = robot.all_of(Resume)
+    assert [each.seen_tick for each in resumes] == [stopped_tick, stopped_tick]
+    assert robot.all_of(Teach)[0].seen_tick == stopped_tick + 20
 
 
 async def test_stop_unanswered_is_resent_until_answered(pairing: Pairing, robot: StandInRobot) -> None:
@@ -627,7 +632,7 @@ async def test_stop_unanswered_keeps_limited_copies(
 
 @pytest.mark.parametrize("wish", ["resume", "run", "press"])
 async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
-    async def does_not_hear_stops(request: Request) -> Reply:
+    async def does_not_hear_stops(request: object) -> Reply:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, HELLO)
         return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
@@ -645,7 +650,7 @@ async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, 
             assert (await client.run("forward", seconds=1.0)).accepted
         else:
             assert client.press(0.1, 0.1)
-            await robot.hears(DriveRequest)
+            await robot.hears(Drive)
         assert not client.stop_pending
         stops = len(robot.all_of(StopRequest, copies=True))
         told = robot.state.tick
@@ -659,14 +664,14 @@ async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, 
 async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherClient, robot: StandInRobot) -> None:
     assert client.press(0.2, 0.2)
     assert client.pressing
-    await robot.hears(DriveRequest, 3)
+    await robot.hears(Drive, 3)
     client.press(0.1, -0.1)
-    await eventually(lambda: robot.all_of(DriveRequest)[-1].left_m_s == 0.1)
+    await eventually(lambda: robot.all_of(Drive)[-1].left_m_s == 0.1)
     answer = await client.let_go()
     assert answer is not None
     assert answer.accepted
     assert not client.pressing
-    heard = robot.all_of(DriveRequest)
+    heard = robot.all_of(Drive)
     assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
     assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
     assert len({each.press_id for each in heard}) == 1
@@ -677,7 +682,7 @@ async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherC
 
 
 async def test_let_go_ends_press_before_its_answer(client: TeacherClient, robot: StandInRobot) -> None:
-    async def does_not_answer_stops(request: Request) -> Reply:
+    async def does_not_answer_stops(request: object) -> Reply:
         return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
 
     robot.mind = does_not_answer_stops
@@ -715,7 +720,7 @@ async def test_press_id_grows_across_restarts_and_renewals(
     pairing: Pairing,
 ) -> None:
     teachers, devices = pairing.teacher.parent, pairing.device.folder.parent
-    heard: list[DriveRequest] = []
+    heard: list[Drive] = []
     for new_keys in (False, False, True):
         if new_keys:
             # A start reserves 1000 numbers, each worth a millisecond: the pairing has to be older than that.
@@ -727,11 +732,11 @@ async def test_press_id_grows_across_restarts_and_renewals(
         ):
             await first_state(client)
             for _ in range(2):
-                before = len(robot.all_of(DriveRequest))
+                before = len(robot.all_of(Drive))
                 client.press(0.1, 0.1)
-                await robot.hears(DriveRequest, before + 1)
+                await robot.hears(Drive, before + 1)
                 await client.let_go()
-            heard += robot.all_of(DriveRequest)
+            heard += robot.all_of(Drive)
     holds = list(dict.fromkeys(each.press_id for each in heard))
     assert len(holds) == 6
     assert holds == sorted(holds)
@@ -740,11 +745,11 @@ async def test_press_id_grows_across_restarts_and_renewals(
 async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: StandInRobot) -> None:
     async with client.driving() as wheel:
         assert wheel.set(0.2, 0.2)
-        await robot.hears(DriveRequest, 2)
+        await robot.hears(Drive, 2)
         assert wheel.set(0.1, 0.2)
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
-    assert released.press_id == wheel.press_id == robot.all_of(DriveRequest)[-1].press_id
+    assert released.press_id == wheel.press_id == robot.all_of(Drive)[-1].press_id
     assert not wheel.set(0.2, 0.2)
     assert wheel.ended is not None
     assert wheel.ended.code is RefusalCode.PRESS_OVER
@@ -758,7 +763,7 @@ async def test_driving_block_cancelled_stops(client: TeacherClient, robot: Stand
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(drive)
-        await robot.hears(DriveRequest)
+        await robot.hears(Drive)
         tasks.cancel_scope.cancel()
     assert isinstance(robot.heard[-1], StopRequest)
 
@@ -774,13 +779,13 @@ async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: P
         await drive()
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
-    assert released.press_id == robot.all_of(DriveRequest)[-1].press_id
+    assert released.press_id == robot.all_of(Drive)[-1].press_id
 
 
 @pytest.mark.parametrize("why", ["stopped", "stale"])
 async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: StandInRobot, why: str) -> None:
-    async def refuses(request: Request) -> Reply:
-        if isinstance(request, DriveRequest):
+    async def refuses(request: object) -> Reply:
+        if isinstance(request, Drive):
             return refusal(why, HELD, 5)
         return await agrees(request)
 
@@ -798,11 +803,11 @@ async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: S
 async def test_press_continues_if_only_late_message_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     late = anyio.Event()
 
-    async def refuses_the_first_one_late(request: Request) -> Reply:
-        if request == robot.all_of(DriveRequest)[0]:
+    async def refuses_the_first_one_late(request: object) -> Reply:
+        if request == robot.all_of(Drive)[0]:
             await late.wait()
             return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), 5)
-        if request == robot.all_of(DriveRequest)[1]:
+        if request == robot.all_of(Drive)[1]:
             return refusal("old", Outcome(RefusalCode.OVERTAKEN), 5)
         return await agrees(request)
 
@@ -811,7 +816,7 @@ async def test_press_continues_if_only_late_message_is_refused(client: TeacherCl
     # On a busy machine the refusal would else overtake the answers to newer messages.
     await eventually(lambda: client._drive._press is not None and client._drive._press.accepted >= 0)
     late.set()
-    await robot.hears(DriveRequest, 10)
+    await robot.hears(Drive, 10)
     assert client.pressing
     await client.let_go()
 
@@ -822,16 +827,16 @@ async def test_a_press_ends_when_no_picture_comes_for_half_a_second(pairing: Pai
         await first_state(client)
         robot.showing = False
         client.press(0.2, 0.2)
-        await robot.hears(DriveRequest)
+        await robot.hears(Drive)
         clock.ahead_s += 0.6
         await eventually(lambda: not client.pressing)
         assert client.refusal is not None
         assert client.refusal.outcome == Outcome(RefusalCode.PICTURE_LOST)
-        driven = len(robot.all_of(DriveRequest))
+        driven = len(robot.all_of(Drive))
         assert not client.press(0.2, 0.2)
         assert await client.let_go() is None
         await client.stop()
-        assert len(robot.all_of(DriveRequest)) == driven
+        assert len(robot.all_of(Drive)) == driven
 
 
 # The robot and the link
@@ -845,7 +850,7 @@ async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pai
         async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
             await first_state(client)
             assert client.press(0.2, 0.2)
-            await robot.hears(DriveRequest)
+            await robot.hears(Drive)
             await first_start.aclose()
             async with stand_in_robot(teachers, port=robot.port, boot=b"next") as robot:
                 clock.ahead_s += 1.5
@@ -853,8 +858,9 @@ async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pai
                 assert client.restarts == 1
                 assert not client.pressing
                 assert (await client.answer("forward")).accepted
-                assert robot.all_of(AnswerRequest)[0].boot == b"next"
-                assert all(each.boot == b"boot" for each in robot.all_of(DriveRequest))
+                boots = list(zip(robot.heard, robot.boots, strict=True))
+                assert {boot for each, boot in boots if isinstance(each, Teach)} == {b"next"}
+                assert {boot for each, boot in boots if isinstance(each, Drive)} <= {b"boot"}
 
 
 async def test_robot_without_pairing_is_told_from_silence(tmp_path: Path) -> None:

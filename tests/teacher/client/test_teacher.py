@@ -12,11 +12,11 @@ import pytest
 
 import kurt2rt.teacher
 from kurt2rt.channel.protocol.codec import WireError
-from kurt2rt.channel.protocol.requests import WatchRequest
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.teaching.commands import Watch
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots
@@ -141,13 +141,13 @@ async def test_attention_ends_after_the_last_call(pairing: Pairing) -> None:
         teacher = Teacher(pairing.device.folder, port=robot.port, attention_s=0.1)
         await in_a_thread(teacher.open)
         await in_a_thread(lambda: teacher.wait_until(lambda state: state.teacher == "phone"))
-        await robot.hears(WatchRequest)
+        await robot.hears(Watch)
         with anyio.fail_after(PATIENCE_S):
             heard = -1
-            while heard != (heard := len(robot.all_of(WatchRequest))):  # noqa: ASYNC110
+            while heard != (heard := len(robot.all_of(Watch))):  # noqa: ASYNC110
                 await anyio.sleep(0.2)  # ten messages, if attention lasted
         await in_a_thread(lambda: teacher.state)
-        await robot.hears(WatchRequest, heard + 1)
+        await robot.hears(Watch, heard + 1)
         await in_a_thread(teacher.close)
         await in_a_thread(teacher.close)
 

@@ -8,20 +8,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import (
-    CorrectRequest,
-    HelloRequest,
-    HoldRequest,
-    LessonSpeedRequest,
-    PhaseRequest,
-    PlaceRequest,
-    PursueRequest,
-    ResumeRequest,
-    SessionRequest,
-    StopRequest,
-    TakeRequest,
-)
+from kurt2rt.channel.protocol.requests import HelloRequest, PlaceRequest, StopRequest
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
@@ -31,6 +18,17 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import QUICK_TEACHER
+from kurt2rt.core.teaching.commands import (
+    BeginSession,
+    Correct,
+    EndSession,
+    HoldAction,
+    Pursue,
+    Resume,
+    SetLessonSpeed,
+    SetPhase,
+    Take,
+)
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
@@ -38,10 +36,10 @@ from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_st
 from tests.channel.states import state
 from tests.patience import PATIENCE_S
 from tests.teacher.client.test_client import HELLO
-from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 SETTINGS = load_robot("kurt2")
-_CarriedOut = TakeRequest | PhaseRequest | PursueRequest | SessionRequest | ResumeRequest
+_CarriedOut = Take | SetPhase | Pursue | BeginSession | EndSession | Resume
 
 
 def short(name: str = "wall_following", each_phase_s: float = 0.1, corrections_s: float | None = None) -> TaskSettings:
@@ -59,15 +57,15 @@ class Mind:
         self._robot = robot
         self._simulated = simulated
         self._mute = mute
-        self._silent: dict[type[Request], set[bytes]] = {}
-        self._done: set[bytes] = set()
+        self._silent: dict[type[Message], set[str]] = {}
+        self._done: set[str] = set()
         self.hello: dict[str, object] = {}
         """Changes to its introduction."""
         self.stop_at_phase: Phase | None = None
         self.refuses_phase: Phase | None = None
         self._stopped_tick = -1
 
-    async def __call__(self, request: Request) -> Reply:
+    async def __call__(self, request: Message) -> Reply:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
         if not isinstance(request, _CarriedOut):
@@ -91,25 +89,25 @@ class Mind:
         robot = self._robot
         tick = robot.state.tick
         match request:
-            case TakeRequest():
+            case Take():
                 robot.show(teacher="auto")
-            case PhaseRequest(phase=phase) if phase is self.refuses_phase:
+            case SetPhase(phase=phase) if phase is self.refuses_phase:
                 return refusal("refused", Outcome(RefusalCode.TOO_MANY), tick)
-            case PhaseRequest(phase=phase):
+            case SetPhase(phase=phase):
                 robot.show(phase=int(phase))
                 if phase is self.stop_at_phase:
                     self.stop()
-            case PursueRequest(behaviour=behaviour):
+            case Pursue(behaviour=behaviour):
                 robot.show(behaviour=behaviour)
-            case SessionRequest(name=None):
+            case EndSession():
                 robot.show(session=None, stopped=ActiveStop(StopReason.SESSION_OVER, robot.state.session or ""))
-            case SessionRequest(name=name) if robot.state.session is not None:
+            case BeginSession(name=name) if robot.state.session is not None:
                 return refusal("refused", Outcome.of(RefusalCode.SESSION_ON, session=name), tick)
-            case SessionRequest(name=name):
+            case BeginSession(name=name):
                 robot.show(session=name, stopped=None)
-            case ResumeRequest(seen=seen) if seen < self._stopped_tick:
+            case Resume(seen_tick=int(seen)) if seen < self._stopped_tick:
                 return refusal("stopped", Outcome(RefusalCode.STOPPED_SINCE), tick)
-            case ResumeRequest():
+            case Resume():
                 robot.show(stopped=None)
         return done(robot.state.tick)
 
@@ -159,7 +157,7 @@ async def lesson(
             tasks.start_soon(teach)
             await over.wait()
             if ends_with == ALONE:
-                await robot.hears(ResumeRequest)
+                await robot.hears(Resume)
                 async for state in client.states():
                     if state.stopped is None:
                         break
@@ -173,7 +171,7 @@ STAYS = "the robot stays"
 
 
 def phases(robot: StandInRobot) -> list[Phase]:
-    return [each.phase for each in robot.all_of(PhaseRequest)]
+    return [each.phase for each in robot.all_of(SetPhase)]
 
 
 async def test_teach_by_script_task_with_a_mid_level_is_refused(robot: StandInRobot, client: TeacherClient) -> None:
@@ -210,11 +208,11 @@ async def test_teach_by_script_selects_each_behaviour_in_turn(robot: StandInRobo
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(show_when_seen, robot, client)
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 20.0), said.append)
-            heard = await robot.hears(PursueRequest)
+            heard = await robot.hears(Pursue)
             while len({each.behaviour for each in heard}) < len(TURNS):
-                heard = await robot.hears(PursueRequest, len(heard) + 1)
+                heard = await robot.hears(Pursue, len(heard) + 1)
             tasks.cancel_scope.cancel()
-    wanted = [each.behaviour for each in robot.all_of(PursueRequest)]
+    wanted = [each.behaviour for each in robot.all_of(Pursue)]
     assert list(dict.fromkeys(wanted)) == ["turn_left", "turn_right", "straight_on"]
     assert said[0].startswith("straight_on, turn_left, turn_right: ")
     assert " 30 s, " in said[0]
@@ -245,16 +243,16 @@ async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, 
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
-            await robot.hears(PhaseRequest)
+            await robot.hears(SetPhase)
             mind.stop()
             stopped = robot.state.tick
             async for picture in client.states():
                 if picture.tick > stopped + 100:  # 50 s later
                     break
             robot.show(teacher="anna")
-    assert robot.all_of(PursueRequest) == []
+    assert robot.all_of(Pursue) == []
     assert robot.all_of(PlaceRequest) == []
-    assert robot.all_of(ResumeRequest) == []
+    assert robot.all_of(Resume) == []
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
     assert said[-1].startswith("anna ")
 
@@ -264,9 +262,9 @@ async def test_teach_by_script_phase_5_guard_stop_is_resumed(robot: StandInRobot
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), lambda _: None)
-            await robot.hears(ResumeRequest)
+            await robot.hears(Resume)
             robot.show(stopped=ActiveStop(StopReason.GUARD, "wheels disobey"))
-            await robot.hears(ResumeRequest, 2)
+            await robot.hears(Resume, 2)
             tasks.cancel_scope.cancel()
 
 
@@ -279,7 +277,7 @@ async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, short("streets", 1.0), said.append)
-            await robot.hears(PhaseRequest, 2)  # phase 1, and 5 at the end
+            await robot.hears(SetPhase, 2)  # phase 1, and 5 at the end
             stays = robot.state.tick
             async for picture in client.states():
                 if picture.tick > stays + 80:  # 40 s later
@@ -287,7 +285,7 @@ async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
             robot.show(teacher="anna")
     assert STAYS in said[-1]
     assert robot.all_of(PlaceRequest) == []
-    assert robot.all_of(PursueRequest) == []
+    assert robot.all_of(Pursue) == []
     assert robot.state.stopped is not None
     assert robot.state.stopped.reason is StopReason.SESSION_OVER
 
@@ -299,9 +297,9 @@ async def test_teach_by_script_holding_teacher_holds_and_lets_go(robot: StandInR
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
-            await robot.hears(PhaseRequest, 2)
+            await robot.hears(SetPhase, 2)
             robot.show(cause="rla", action="back", rla=1)
-            (held, *_) = await robot.hears(HoldRequest)
+            (held, *_) = await robot.hears(HoldAction)
             (released, *_) = await robot.hears(StopRequest)
             tasks.cancel_scope.cancel()
     assert held.action != "back"
@@ -314,12 +312,12 @@ async def test_teach_by_script_rewinding_teacher_stops_and_resumes(robot: StandI
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
-            await robot.hears(PhaseRequest, 2)
+            await robot.hears(SetPhase, 2)
             wrong = robot.show(cause="rla", action="back", rla=1)
             (stop, *_) = await robot.hears(StopRequest)
             robot.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.SAID_STOP, "auto"))
-            (correction, *_) = await robot.hears(CorrectRequest)
-            await robot.hears(ResumeRequest)
+            (correction, *_) = await robot.hears(Correct)
+            await robot.hears(Resume)
             tasks.cancel_scope.cancel()
     assert stop.press_id is None
     assert correction.action != "back"
@@ -332,16 +330,16 @@ async def test_teach_by_script_rewind_does_not_lift_a_person_s_stop(robot: Stand
     with anyio.fail_after(PATIENCE_S):
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, task, lambda _: None)
-            await robot.hears(PhaseRequest, 2)
+            await robot.hears(SetPhase, 2)
             robot.show(cause="rla", action="back", rla=1)
             await robot.hears(StopRequest)
             robot.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.SAID_STOP, "anna"))
-            await robot.hears(CorrectRequest)
+            await robot.hears(Correct)
             for _ in range(30):
                 robot.show()
                 await anyio.sleep(0.02)
             tasks.cancel_scope.cancel()
-    assert robot.all_of(ResumeRequest) == []
+    assert robot.all_of(Resume) == []
 
 
 async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
@@ -385,9 +383,9 @@ async def test_teach_by_script_slow_teacher_sets_the_lesson_speed(
     profile = QUICK_TEACHER.model_copy(update={"lesson_speeds": {"wall_following": share}})
     await lesson(client, robot, ALONE, taught_by(short(), profile))
     orders = robot.orders()
-    speeds = [n for n, order in enumerate(orders) if isinstance(order, LessonSpeedRequest)]
+    speeds = [n for n, order in enumerate(orders) if isinstance(order, SetLessonSpeed)]
     assert [getattr(orders[n], "percent") for n in speeds] == percents  # noqa: B009
-    phase_2 = next(n for n, o in enumerate(orders) if isinstance(o, PhaseRequest) and o.phase is Phase.CORRECTIONS)
+    phase_2 = next(n for n, o in enumerate(orders) if isinstance(o, SetPhase) and o.phase is Phase.CORRECTIONS)
     assert all(n < phase_2 for n in speeds)
 
 
@@ -398,7 +396,7 @@ async def test_teach_by_script_lost_answers_are_asked_again(
     said = await lesson(impatient_client, robot, ALONE)
     assert ALONE in said[-1]
     assert robot.state.session is None
-    assert len(robot.all_of(SessionRequest)) >= 3
+    assert len(robot.all_of(BeginSession)) + len(robot.all_of(EndSession)) >= 3
 
 
 async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
@@ -407,7 +405,7 @@ async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: Teache
     said = await lesson(client, robot, STAYS)
     assert said[-1].startswith(stop_text(ActiveStop(StopReason.SAID_STOP, "anna")))
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS]
-    assert robot.all_of(ResumeRequest) == []
+    assert robot.all_of(Resume) == []
 
 
 async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.channel.protocol.request_types import Request
-from kurt2rt.channel.protocol.requests import CorrectRequest, StopRequest, UndoRequest
+from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, done
 from kurt2rt.core.rla.lesson_history import hold_id
@@ -41,8 +40,8 @@ async def sender(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[CommandSe
 def teaches(robot: StandInRobot, lesson: str | None) -> None:
     """Let the robot answer each press with the id of a lesson."""
 
-    async def answer(request: Request) -> Reply:
-        return done(TICK, lesson=lesson if isinstance(request, CorrectRequest | StopRequest) else None)
+    async def answer(request: object) -> Reply:
+        return done(TICK, lesson=lesson if isinstance(request, Correct | StopRequest) else None)
 
     robot.mind = answer
 
@@ -53,14 +52,14 @@ async def test_send_undo_names_the_lesson_of_the_press(robot: StandInRobot, send
     teaches(robot, "auto-0b")
     await sender.send(Correct("s-9", SCRIPTED, "forward"), TICK)
     await sender.send(UNDO, TICK)
-    assert [each.lesson for each in robot.all_of(UndoRequest)] == ["auto-0a"]
+    assert [each.lesson for each in robot.all_of(Undo)] == ["auto-0a"]
 
 
 async def test_send_undo_of_a_press_that_taught_nothing_is_not_sent(robot: StandInRobot, sender: CommandSender) -> None:
     teaches(robot, None)
     assert await sender.send(WRONG, TICK) == 1
     await sender.send(UNDO, TICK)
-    assert robot.all_of(UndoRequest) == []
+    assert robot.all_of(Undo) == []
 
 
 async def test_send_undo_of_a_hold_names_all_its_lessons(robot: StandInRobot, sender: CommandSender) -> None:
@@ -68,4 +67,4 @@ async def test_send_undo_of_a_hold_names_all_its_lessons(robot: StandInRobot, se
     await sender.send(HoldAction(SCRIPTED, TICK, 3, "back"), TICK)
     assert await sender.send(Stop("s-1", SCRIPTED, 3), TICK) == 1
     await sender.send(Undo("s-2", SCRIPTED, hold_id(SCRIPTED, 3)), TICK)
-    assert [each.lesson for each in robot.all_of(UndoRequest)] == ["auto-hold-1790"]
+    assert [each.lesson for each in robot.all_of(Undo)] == ["auto-hold-1790"]

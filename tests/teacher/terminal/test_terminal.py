@@ -14,31 +14,32 @@ import pytest
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.hello import AppraisalName
 from kurt2rt.channel.protocol.lesson_list import LessonLine
-from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.protocol.requests import (
-    AnswerRequest,
-    AppraiseRequest,
-    CorrectRequest,
     HealthRequest,
     HelloRequest,
-    HoldRequest,
-    LessonSpeedRequest,
     LessonsRequest,
-    NameRequest,
-    PhaseRequest,
-    ResumeRequest,
-    RewardRequest,
-    SeekLikeRequest,
-    SeekRequest,
-    SeekRlaRequest,
-    SetLocationRequest,
     SituationsRequest,
     StopRequest,
-    TakeRequest,
 )
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeAt,
+    Correct,
+    HoldAction,
+    NameSituation,
+    Resume,
+    Reward,
+    Seek,
+    SetLessonSpeed,
+    SetPhase,
+    StopSeeking,
+    Take,
+    Teach,
+)
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 from kurt2rt.teacher.terminal.terminal_text import (
@@ -50,7 +51,7 @@ from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
 from tests.teacher.client.test_client import HELLO, LONGEST_S, Clock, be_patient, seen
 from tests.teacher.page.fake_robot import A_HELLO
-from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
+from tests.teacher.stand_in_robot import Message, StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 
 @dataclass
@@ -84,11 +85,11 @@ class Console:
 class RobotStub:
     """Robot that answers each request; requests of type `slow` wait for `may_answer`."""
 
-    def __init__(self, *slow: type[Request]) -> None:
+    def __init__(self, *slow: type[Message]) -> None:
         self.slow = slow
         self.may_answer = anyio.Event()
 
-    async def __call__(self, request: Request) -> Reply:
+    async def __call__(self, request: Message) -> Reply:
         if isinstance(request, self.slow):
             await self.may_answer.wait()
         if isinstance(request, HelloRequest):
@@ -164,9 +165,9 @@ async def test_health_prints_the_report_and_cures(pairing: Pairing, robot: Stand
 async def test_enter_stops_at_once_and_ends_pending_commands(pairing: Pairing, robot: StandInRobot) -> None:
     async with console_at(pairing, robot.port) as console:
         await console.reads("/take is done")
-        robot.mind = RobotStub(ResumeRequest)
+        robot.mind = RobotStub(Resume)
         console.type("go")
-        await robot.hears(ResumeRequest)
+        await robot.hears(Resume)
         console.type("")
         await console.reads("refused: go was stopped meanwhile")
         await console.reads("/stop is done")
@@ -184,8 +185,8 @@ async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing,
         await console.reads("/phase is done")
         for line in ("go", "step forward", "phase 5"):
             assert any(said.startswith("not done") and said.endswith(f": {line}") for said in console.said)
-        assert robot.all_of(ResumeRequest) == []
-        assert [each.phase for each in robot.all_of(PhaseRequest)] == [Phase.CORRECTIONS]
+        assert robot.all_of(Resume) == []
+        assert [each.phase for each in robot.all_of(SetPhase)] == [Phase.CORRECTIONS]
 
 
 async def test_speed_sets_the_speed_of_lessons(pairing: Pairing, robot: StandInRobot) -> None:
@@ -196,7 +197,7 @@ async def test_speed_sets_the_speed_of_lessons(pairing: Pairing, robot: StandInR
         await console.reads("/lesson/speed is done")
         console.type("speed 10")
         await console.reads("refused:")
-        assert [each.percent for each in robot.all_of(LessonSpeedRequest)] == [60]
+        assert [each.percent for each in robot.all_of(SetLessonSpeed)] == [60]
 
 
 async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:
@@ -206,7 +207,7 @@ async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: S
         console.type("stop")
         console.type("go")
         await robot.hears(StopRequest, 3, copies=True)
-        assert robot.all_of(ResumeRequest) == []
+        assert robot.all_of(Resume) == []
         mind.may_answer.set()
         await console.reads("/resume is done")
 
@@ -231,12 +232,12 @@ async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandI
             await robot.hears(StopRequest, stops + 1)
         await looked_at(console, robot, nearest=None)
         mind.may_answer.set()
-        (correction,) = await robot.hears(CorrectRequest)
-        assert [(each.value, each.decision_tick) for each in robot.all_of(RewardRequest)] == [
+        (correction,) = await robot.hears(Correct)
+        assert [(each.value, each.decision_tick) for each in robot.all_of(Reward)] == [
             (1, ticks[1]),
             (-1, ticks[2]),
         ]
-        assert [(each.action, each.decision_tick) for each in robot.all_of(AnswerRequest)] == [("forward", ticks[3])]
+        assert [(each.action, each.decision_tick) for each in robot.all_of(Teach)] == [("forward", ticks[3])]
         assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
 
 
@@ -247,7 +248,7 @@ async def test_rewind_corrects_a_moment_before_the_standstill(pairing: Pairing, 
         drove = await looked_at(console, robot, left_m_s=0.3, right_m_s=0.3)
         await looked_at(console, robot, left_m_s=0.0, right_m_s=0.0)
         console.type("rewind 0.05 spin_left")
-        (correction,) = await robot.hears(CorrectRequest)
+        (correction,) = await robot.hears(Correct)
         assert (correction.action, correction.decision_tick) == ("spin_left", drove - 5)
 
 
@@ -256,7 +257,7 @@ async def test_hold_sends_the_action_for_its_time(pairing: Pairing, robot: Stand
         await console.reads("/take is done")
         console.type("hold spin_left 0.2")
         stop = (await robot.hears(StopRequest))[-1]
-        holds = robot.all_of(HoldRequest)
+        holds = robot.all_of(HoldAction)
         assert {(each.action, each.press_id) for each in holds} == {("spin_left", stop.press_id)}
         assert len(holds) > 1
 
@@ -266,7 +267,7 @@ async def test_action_of_a_driving_robot_is_a_late_correction(pairing: Pairing, 
         await console.reads("/take is done")
         tick = await looked_at(console, robot, cause="rla", action="forward", rla=3, nearest=3, distance=12.0)
         console.type("spin_left")
-        (correction,) = await robot.hears(CorrectRequest)
+        (correction,) = await robot.hears(Correct)
         assert (correction.action, correction.decision_tick, correction.late) == ("spin_left", tick, True)
 
 
@@ -311,10 +312,10 @@ async def test_teach_waits_for_a_robot_that_is_not_there(pairing: Pairing) -> No
             robot.show(teacher="phone")
             await console.reads("actions: forward, spin_left")
             await console.reads("/take is done")
-            assert robot.all_of(AnswerRequest) == []
+            assert robot.all_of(Teach) == []
             await looked_at(console, robot, nearest=None)
             console.type("forward")
-            await robot.hears(AnswerRequest)
+            await robot.hears(Teach)
             await stack.aclose()
 
 
@@ -346,10 +347,10 @@ async def test_restarted_robot_is_taken_unless_it_has_a_teacher(pairing: Pairing
             await console.reads("the robot program was restarted")
             await console.reads("the robot is back")
             if teacher is None:
-                await robot.hears(TakeRequest)
+                await robot.hears(Take)
             else:
                 await console.reads("anna teaches now; type take to teach yourself")
-                assert robot.all_of(TakeRequest) == []
+                assert robot.all_of(Take) == []
             await stack.aclose()
 
 
@@ -373,7 +374,7 @@ async def test_appraisal_by_name_teaches_the_critic(pairing: Pairing, robot: Sta
         await console.reads("/take is done")
         tick = await looked_at(console, robot, phase=4)
         console.type("bad")
-        (taught,) = await robot.hears(AppraiseRequest)
+        (taught,) = await robot.hears(Appraise)
         assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
         console.type("help")
         await console.reads("an appraisal ")
@@ -412,16 +413,16 @@ async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: 
         await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
         console.type("turn_left")
         await console.reads("/answer is done")
-        (answer,) = robot.all_of(AnswerRequest)
+        (answer,) = robot.all_of(Teach)
         assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
         robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
         await console.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
         console.type("straight_on")
         await console.reads("/correct is done")
-        assert [(each.action, each.level) for each in robot.all_of(CorrectRequest)] == [("straight_on", "mid")]
+        assert [(each.action, each.level) for each in robot.all_of(Correct)] == [("straight_on", "mid")]
         console.type("also straight_on")
-        await robot.hears(AnswerRequest, 2)
-        assert robot.all_of(AnswerRequest)[-1].alternative
+        await robot.hears(Teach, 2)
+        assert robot.all_of(Teach)[-1].alternative
         console.type("pursue straight_on")
         await console.reads("/pursue is done")
         robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
@@ -438,27 +439,24 @@ async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot
         for line, path in (
             ("name the door", "/name"),
             ("seek the door", "/seek"),
-            ("seek rla 12", "/seek/rla"),
-            ("seek x_m=1.8 y_m=-3 within 0.25", "/seek/like"),
+            ("seek rla 12", "/seek"),
+            ("seek x_m=1.8 y_m=-3 within 0.25", "/seek"),
             ("here the door", "/here"),
         ):
             console.type(line)
             await console.reads(f"{path} is done")
-        assert [each.name for each in robot.all_of(NameRequest)] == ["the door"]
-        assert [each.name for each in robot.all_of(SeekRequest)] == ["the door"]
-        assert [each.rla_id for each in robot.all_of(SeekRlaRequest)] == [12]
-        (like,) = robot.all_of(SeekLikeRequest)
-        assert (like.features, like.tolerance) == ((("x_m", 1.8), ("y_m", -3.0)), 0.25)
-        assert [each.name for each in robot.all_of(SetLocationRequest)] == ["the door"]
+        assert [each.name for each in robot.all_of(NameSituation)] == ["the door"]
+        name, rla, like = (each.goal for each in robot.all_of(Seek))
+        assert (name, rla) == (NamedGoal("the door"), RlaGoal(12))
+        assert like == PartialGoal((("x_m", 1.8), ("y_m", -3.0)), 0.25)
+        assert [each.name for each in robot.all_of(BeAt)] == ["the door"]
         console.type("seek")
-        await robot.hears(SeekRequest, 2)
-        assert robot.all_of(SeekRequest)[-1].name is None
+        await robot.hears(StopSeeking)
         console.type("places")
         await console.reads("named: the door, the window")
         robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
         await console.reads("Stands: no way from here to door")
         console.type("seek x_m=high")  # no number: the name of a place, then
-        await robot.hears(SeekRequest, 3)
-        assert robot.all_of(SeekRequest)[-1].name == "x_m=high"
+        assert (await robot.hears(Seek, 4))[-1].goal == NamedGoal("x_m=high")
         console.type("help")
         await console.reads("seek FEATURE=VALUE")
