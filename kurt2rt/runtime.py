@@ -18,7 +18,7 @@ from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.decision import Level
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack
@@ -26,19 +26,18 @@ from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
-from kurt2rt.core.perception.definition import SituationDefinition, load_situation
+from kurt2rt.core.perception.definition import SituationDefinition, feature_weights, load_situation
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.condition import Space
+from kurt2rt.core.rla.contradiction import GuessedLessons
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.guessed_lessons import GuessedLessons
 from kurt2rt.core.rla.rla import CRITIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
@@ -46,10 +45,9 @@ from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.handler_parts import HandlerParts
-from kurt2rt.core.teaching.inbox import TeacherInbox
+from kurt2rt.core.teaching.inbox import RobotRepositioned, TeacherInbox
+from kurt2rt.core.teaching.late_press import TeacherDelay
 from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.system_events import RobotRepositioned
-from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 from kurt2rt.core.tick import Tick
 from kurt2rt.core.tick_parts import TickOptions, TickParts
 from kurt2rt.core.tick_record import TickRecord

@@ -34,7 +34,7 @@ from kurt2rt.checks.doctor.timer import AsyncioClock
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.core.teaching.commands import Command, SetPhase
 from kurt2rt.core.tick_record import TickRecord

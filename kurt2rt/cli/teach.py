@@ -18,7 +18,7 @@ from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, PageAddressName, RobotName, task_option, teacher_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
-from kurt2rt.core.rla.programs import AUTO, PROGRAMS
+from kurt2rt.core.rla.rla import AUTO, PROGRAMS
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.client.answer import NoAnswerError

@@ -1,9 +1,7 @@
 """Layer stack: information goes up to the mid level, its command comes down to the basic level."""
 
 from hal.robot import SensorReadings
-from kurt2rt.core.decision.decision import Decision, DecisionCause, stopped
-from kurt2rt.core.decision.level import Level
-from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.decision.decision import Decision, DecisionCause, GoalStatus, Level, stopped
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.planning.navigator import Navigator

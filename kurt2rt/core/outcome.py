@@ -36,7 +36,7 @@ class ResultCode(StrEnum):
     BEHAVIOUR_WANTED = "behaviour wanted"
     BEHAVIOUR_WANTED_TO_JUNCTION = "behaviour wanted to junction"
     GOAL_SOUGHT = "goal sought"
-    """Its field `status` holds a kurt2rt.core.decision.plan_step.GoalStatus."""
+    """Its field `status` holds a kurt2rt.core.decision.decision.GoalStatus."""
     GOAL_DROPPED = "goal dropped"
     LOCATED = "located"
     # Lessons.

@@ -5,7 +5,7 @@ from enum import StrEnum
 from string import Formatter
 
 from hal.world_refusal import WorldRefusal
-from kurt2rt.core.decision.goal_text import goal_text
+from kurt2rt.core.decision.goal import goal_text
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.decision.standing_text import hindrance_text
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode

@@ -6,7 +6,7 @@ from hal.robot import Robot
 from hal.sensor_ring import SubstituteReadings
 from hal.sensor_watch import SensorWatch
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
-from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.decision import Level
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.perception.perception import Perception

@@ -13,7 +13,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.teaching.commands import CommandResult
-from kurt2rt.core.teaching.system_events import Input
+from kurt2rt.core.teaching.inbox import Input
 
 
 class TickRecord(NamedTuple):

@@ -19,9 +19,8 @@ from kurt2rt.core.mid.place import PlaceSettings
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.definition import feature_weights, load_situation
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem

@@ -11,7 +11,7 @@ from behaviors.metrics.way import WaySettings
 from hal.settings import SettingsError
 from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
 
 _MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)

@@ -17,13 +17,13 @@ from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import BeginSession, Command, SetPhase, Take
 from kurt2rt.knowledge.exchange.package import import_knowledge

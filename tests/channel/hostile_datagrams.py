@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.codec import PATHS, WireError, body_checks, build_
 from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.core.decision.goal import PartialGoal
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 
 _MOST_BYTES = 1600
 _STRANGE_PATHS = (

@@ -14,7 +14,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.security.pairing import LOCAL, Pairing, local_pairing
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.programs import AUTO
+from kurt2rt.core.rla.rla import AUTO
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal

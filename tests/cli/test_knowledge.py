@@ -10,8 +10,7 @@ import pytest
 
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, RlaRewarded
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_journal

@@ -14,7 +14,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
 from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry

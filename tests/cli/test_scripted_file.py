@@ -7,9 +7,7 @@ import pytest
 from hal.robot_settings import load_robot
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.core.rla.events import SessionBegun
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import AUTO
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import AUTO, Origin, Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge, read_teachers

@@ -6,15 +6,14 @@ from numpy.typing import NDArray
 from hal.robot import SensorReadings
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 from tests.core.rla.helpers import created
 

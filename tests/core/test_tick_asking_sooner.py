@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from tests.core.test_tick import RADIUS, Corridor
 from tests.teacher.helpers import correct, set_phase, teach
 

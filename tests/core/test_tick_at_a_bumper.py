@@ -10,7 +10,7 @@ from hal.simulation import Pose
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare

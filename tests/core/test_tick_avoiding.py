@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.core.teaching.commands import Command, Resume
-from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from tests.core.test_tick import Corridor
 from tests.teacher.helpers import teach
 

@@ -12,7 +12,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
     BeginSession,
     Command,

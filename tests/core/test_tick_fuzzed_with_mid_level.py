@@ -7,13 +7,11 @@ from collections.abc import Callable, Sequence
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import Decision, DecisionCause, GoalStatus
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
+from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import (
     BeAt,

@@ -10,8 +10,7 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo

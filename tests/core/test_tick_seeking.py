@@ -6,10 +6,8 @@ from collections.abc import Sequence
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.goal import Goal, NamedGoal
-from kurt2rt.core.decision.goal_text import goal_text
-from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
+from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, PlanStep
+from kurt2rt.core.decision.goal import Goal, NamedGoal, goal_text
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import SituationNamed, TeachingEvent

@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Appraise, Drive, HoldAction, Reward, SetLessonSpeed
 from tests.core.test_tick import BACK, FORWARD, Corridor, averages
 from tests.teacher.helpers import resume, set_phase, stop, teach

@@ -24,7 +24,7 @@ from kurt2rt.channel.protocol.limits import COMMAND_ID_BYTES
 from kurt2rt.channel.protocol.request_types import Request, tick_request
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, Reward, Teach, Undo
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge

@@ -1,8 +1,7 @@
 """Results as a lesson and its exams leave them, written by hand."""
 
 from hal.simulation import Position
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import SuccessSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult

@@ -3,8 +3,7 @@
 import math
 
 from hal.robot import SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.decision import Decision, DecisionCause, Level
 from kurt2rt.core.perception.perception import Situation
 from tests.faults.fault import FaultInjection
 
@@ -17,7 +16,7 @@ class BrokenTickError(RuntimeError):
 
 
 class FaultyLevel:
-    """Wrapper of the deciding layer (kurt2rt.core.decision.level.Level).
+    """Wrapper of the deciding layer (kurt2rt.core.decision.decision.Level).
 
     off: it raises. stuck: it blocks until the end of the fault. garbage: NaN speeds. wrong: excessive speed with
     reversals, also against a stop. slow: each decision exceeds the age limit. delayed: each decision exceeds a period,

@@ -10,7 +10,7 @@ from pathlib import Path
 from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Stop, Take
 from kurt2rt.core.teaching.inbox import InboxFullError

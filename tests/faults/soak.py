@@ -11,7 +11,7 @@ import psutil
 from hal.guard_reason import GuardReason
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import (
     Appraise,

@@ -9,8 +9,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core import tick
-from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.decision import Decision, DecisionCause, Level
 from kurt2rt.core.perception.perception import Situation
 from tests.faults.program import Program
 from tests.faults.rig import CORRIDOR, ROBOT, Rig

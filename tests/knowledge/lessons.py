@@ -5,6 +5,7 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
+from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -16,9 +17,7 @@ from kurt2rt.core.rla.events import (
     SessionEnded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal

@@ -13,7 +13,7 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.kurt2_settings import load_kurt2
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question

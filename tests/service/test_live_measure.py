@@ -7,7 +7,7 @@ import pytest
 
 from hal.simulation import Pose, SimulatedPost, WorldPlan
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.service.live_measure import LiveMeasure
 

@@ -9,8 +9,8 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.rla.events import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching

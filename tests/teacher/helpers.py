@@ -1,6 +1,6 @@
 """Builders of commands of teacher Ann."""
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, DeleteRla, Pursue, ReplaceAction, Resume, SetPhase, Stop, Teach
 
 

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from hal.robot_settings import load_robot
-from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.goal_text import goal_text
-from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.decision.decision import GoalStatus
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal, goal_text
 from kurt2rt.core.perception.sensor_words import NO_WORDS, words_for
 from kurt2rt.core.planning.goal_pursuit import GoalPursuit, Plan
 from kurt2rt.core.planning.topological_map import Edge

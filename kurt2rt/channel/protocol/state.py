@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from hal.simulation import SimulatedPlace
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing import Standing
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 
@@ -160,7 +159,7 @@ class State:
     trusted: bool = False
     """True if the critic agrees well enough to act in phase 5."""
     role: str = "listens"
-    """State of the critic: a value of kurt2rt.core.critic.state.CriticState."""
+    """State of the critic: a value of kurt2rt.core.critic.critic.CriticState."""
     bad_share: float | None = None
     """Fraction of the driven time that the critic found bad lately; None while it only listens."""
     signals_missing: tuple[int, int] = (0, 0)

@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from kurt2rt.channel.security.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN, CredentialsError
-from kurt2rt.core.rla.programs import AUTO
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import AUTO, CRITIC
 from kurt2rt.platform.durable_files import fsync_folder, make_private_folder
 
 LOCAL = "local"

@@ -19,10 +19,9 @@ from kurt2rt.channel.server.state_builder import StateBuilder
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.sensor_words import infrared_law
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
-from kurt2rt.core.teaching.inbox import InboxFullError
-from kurt2rt.core.teaching.system_events import PairingRenewed, SpeedChanged
+from kurt2rt.core.teaching.inbox import InboxFullError, PairingRenewed, SpeedChanged
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.simulated_clock import Speed

@@ -34,7 +34,7 @@ from kurt2rt.channel.server.failure import WORLD_REFUSALS, failure, known_failur
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, not_simulated, refusal, restarted, unsaved
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.teaching.system_events import SpeedChanged
+from kurt2rt.core.teaching.inbox import SpeedChanged
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

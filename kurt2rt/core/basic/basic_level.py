@@ -11,9 +11,9 @@ from kurt2rt.core.basic.doubt import DoubtMeter, DoubtWatch, NewObstacle
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import Decision, DecisionCause, UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -23,7 +23,6 @@ from kurt2rt.core.rla.events import (
     RlaDeleted,
     TeachingEvent,
 )
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.matching import exact_square
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem

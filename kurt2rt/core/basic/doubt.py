@@ -14,7 +14,7 @@ from hal.robot_settings import InfraredSettings
 from hal.settings import Settings
 from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.perception.definition import Reading, SituationDefinition
-from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 

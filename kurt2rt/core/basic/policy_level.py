@@ -5,8 +5,7 @@ from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.decision.errors import UnknownActionError
+from kurt2rt.core.decision.decision import Decision, DecisionCause, UnknownActionError
 from kurt2rt.core.perception.perception import Situation
 
 

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from hal.robot import SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.decision import Level
 from kurt2rt.core.perception.perception import Perception
 
 

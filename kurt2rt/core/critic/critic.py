@@ -1,5 +1,6 @@
 """Internal critic: an RLA system whose actions are opinions (paper, phase 4)."""
 
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -85,3 +86,16 @@ class Critic:
         return Opinion(
             appraisal.value, appraisal.name, appraisal.trace_s, match.rla, match.distance, match.radius, True
         )
+
+
+class CriticState(StrEnum):
+    """Use of the critic's opinions."""
+
+    LISTENS = "listens"
+    """None: before phase 5, or while the critic is not trusted."""
+    MEASURES = "measures"
+    """They score the knowledge, which does not change meanwhile."""
+    NOT_NEEDED = "not needed"
+    """They are counted; too little of the driven time was bad."""
+    ACTS = "acts"
+    """They are signals, like a teacher's rewards."""

@@ -14,8 +14,7 @@ from kurt2rt.core.rla.events import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase
 
 
 class _Change(NamedTuple):

@@ -4,8 +4,7 @@ import math
 
 from behaviors.policies.sectors import ahead_first
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
-from kurt2rt.core.critic.settings import CriticSettings, load_critic
-from kurt2rt.core.critic.side_settings import SideSensors
+from kurt2rt.core.critic.settings import CriticSettings, SideSensors, load_critic
 
 _SIDES_DEG = {"front": 0.0, "ahead_left": 45.0, "left": 90.0, "rear": 180.0, "right": -90.0, "ahead_right": -45.0}
 _HALF_WIDTH_DEG = 22.5

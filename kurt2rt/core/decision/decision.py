@@ -1,13 +1,67 @@
-"""Decision of one tick: wheel speeds, their cause, and the RLAs that were compared."""
+"""Decision of one tick: wheel speeds, their cause, and the RLAs that were compared; what a level and a plan add."""
 
 from enum import StrEnum
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
-from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import PlanStep
-from kurt2rt.core.rla.match import Match
+from hal.errors import UserError
+from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import BASIC
+
+NAMES = {0: "straight", 1: "left", -1: "right", 2: "back"}
+"""Names of the quarter turns."""
+
+
+class JunctionEvent(NamedTuple):
+    """Passed junction: a side was open, and now there are walls on both sides again."""
+
+    quarters: int
+    """Quarter turns to the left between the street it came from and the one it is in: 0, 1, -1 (right) or 2 (back)."""
+    left_open: bool
+    """True if there was a way to the left of the street it came from."""
+    right_open: bool
+    turn_rad: float
+    """Angle by the encoders, in rad; positive to the left."""
+    way_m: float
+    """Distance from the end of the one street to the certain detection of the next, in m."""
+
+    @property
+    def name(self) -> str:
+        """Return straight, left, right or back."""
+        return NAMES[self.quarters]
+
+
+class GoalStatus(StrEnum):
+    """Status of the goal."""
+
+    NONE = "none"
+    """No goal; the mid level commands by its RLAs."""
+    PLANNING = "planning"
+    """A plan is being computed. The robot goes on as it did: it stands, or the mid level commands."""
+    UNDER_WAY = "under way"
+    ARRIVED = "arrived"
+    """The robot stands at the goal."""
+    NO_WAY = "no way"
+    """No known way leads to the goal, or the goal does not exist now; the robot stands."""
+    LOST = "lost"
+    """The robot is at no known place; it stands, and its mid level asks."""
+
+
+class PlanStep(NamedTuple):
+    """Goal, status and next behaviours of one tick."""
+
+    goal: str
+    """Goal in words."""
+    course: GoalStatus
+    behaviours: tuple[str, ...]
+    """Behaviours that lead to the goal, the present one first."""
+    rla_id: int | None
+    """Mid-level RLA whose way the robot drives; None between ways."""
+    says: str
+    """Status in one line."""
+    surprises: int
+    """Number of arrivals at another place than planned, since the goal was given."""
 
 
 class DecisionCause(StrEnum):
@@ -122,3 +176,22 @@ def stopped(decision: Decision, cause: DecisionCause | None) -> Decision:
     if cause is None or (decision.wheel_speeds == STANDSTILL and not decision.driving):
         return decision
     return decision._replace(wheel_speeds=STANDSTILL, cause=cause, action=None, rla_id=None, answers=False)
+
+
+class Level(Protocol):
+    """Layer that answers each situation with a decision."""
+
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
+        """Return the decision of this tick; with a blocking cause, one at standstill.
+
+        `situation`: vector (d,).
+        """
+        ...
+
+
+class UnknownActionError(UserError, ValueError):
+    """Knowledge or a policy names an action that the repertoire lacks."""
+
+
+class UnknownBehaviourError(UserError, ValueError):
+    """Knowledge names a taught behaviour that the task lacks."""

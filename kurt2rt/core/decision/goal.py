@@ -1,6 +1,9 @@
-"""Goals that a teacher can send the robot to."""
+"""Goals that a teacher can send the robot to, and their texts."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+from kurt2rt.core.decision.decision import GoalStatus
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,3 +46,20 @@ class PartialGoal:
 
 
 Goal = NamedGoal | RlaGoal | PartialGoal
+
+
+_TEXTS: Mapping[str, str] = {
+    GoalStatus.ARRIVED: "arrived: {goal}",
+    GoalStatus.PLANNING: "planning the way to {goal}",
+    GoalStatus.NO_WAY: "no way from here to {goal}: nothing taught leads there",
+    GoalStatus.LOST: "lost on the way to {goal}: this place is not known; answer here, or set it down",
+    GoalStatus.UNDER_WAY: "on the way to {goal}: the plan begins behind the next junction",
+}
+
+
+def goal_text(status: str, goal: str) -> str:
+    """Return a line for a teacher: a goal's text with its status.
+
+    `status`: value of GoalStatus. `goal`: text of the goal.
+    """
+    return _TEXTS[status].format(goal=goal)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.expectations.surprise import BEYOND, LEAST_ENDS, LEAST_USUAL_SHARE, Surprise
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -17,9 +18,8 @@ from kurt2rt.core.rla.events import (
     RlaDeleted,
     TeachingEvent,
 )
-from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Expectation, pack
 
 
 class End(NamedTuple):

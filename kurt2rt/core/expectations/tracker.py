@@ -12,11 +12,11 @@ from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.expectations.transitions import BasicTransitionTracker, MidTransitionTracker
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Expectation
 
 
 class ExpectationTracker:

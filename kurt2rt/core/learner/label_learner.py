@@ -1,5 +1,6 @@
 """Learner of all its labels: it keeps them, and is fitted to them before its next decision."""
 
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
@@ -7,8 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.learner.learner import LearnerSetting, Why
-from kurt2rt.core.learner.packing import pack, unpack
 from kurt2rt.core.rla.matching import exact_distances
+
+
+def pack(situations: NDArray[np.float64], actions: Sequence[str]) -> bytes:
+    """Return the bytes of situations (n, d) and their n actions: a line of JSON, then the numbers."""
+    return json.dumps(list(actions)).encode() + b"\n" + np.ascontiguousarray(situations, dtype="<f8").tobytes()
+
+
+def unpack(data: bytes, dimensions: int) -> tuple[NDArray[np.float64], list[str]]:
+    """Return the situations (n, d) and actions of bytes that `pack` made.
+
+    `dimensions`: length d of a situation.
+
+    Raises:
+        ValueError: for bytes that are not such, or of situations of another length.
+    """
+    head, _, numbers = data.partition(b"\n")
+    actions: list[str] = json.loads(head)
+    return np.frombuffer(numbers, dtype="<f8").reshape(len(actions), dimensions).astype(np.float64), actions
+
 
 Points = NDArray[np.float64]
 

@@ -3,11 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.core.learner.label_learner import pack, unpack
 from kurt2rt.core.learner.learner import LearnerSetting, Why
-from kurt2rt.core.learner.packing import pack, unpack
 from kurt2rt.core.rla.events import ActionReplaced, RlaCreated
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 _ESTIMATED = (Why.LATE, Why.HOLD, Why.SHOWN)

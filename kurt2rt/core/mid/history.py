@@ -9,10 +9,10 @@ from pydantic import Field
 
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.decision.junction_event import NAMES, JunctionEvent
+from kurt2rt.core.decision.decision import NAMES, JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
-from kurt2rt.core.rla.space import Metric
+from kurt2rt.core.rla.condition import Metric
 
 _NONE = 0.0
 """Symbol of an unused place."""

@@ -10,7 +10,7 @@ from hal.odometry import WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import JunctionEvent
 
 Metres = Annotated[float, Field(gt=0, le=10)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=2)]

@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.decision.errors import UnknownBehaviourError
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision, UnknownBehaviourError
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.mid.situation import MidSituation
-from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter

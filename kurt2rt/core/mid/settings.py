@@ -12,8 +12,7 @@ from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.mid.situation import AnyMidSituationSettings, MidSituation
-from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.condition import LevelFeatures, Space
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Share = Annotated[float, Field(ge=0, le=1)]

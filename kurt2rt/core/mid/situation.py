@@ -11,9 +11,9 @@ from pydantic import PlainValidator, SerializeAsAny
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
 from hal.settings_by_kind import KindSettings, as_its_kind
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.rla.space import Metric
+from kurt2rt.core.rla.condition import Metric
 
 
 class MidSituation(Protocol):

@@ -5,9 +5,8 @@ import math
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
-from kurt2rt.core.decision.goal import Goal
-from kurt2rt.core.decision.goal_text import goal_text
-from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.decision.decision import GoalStatus
+from kurt2rt.core.decision.goal import Goal, goal_text
 from kurt2rt.core.planning.target import GroupAt, Target, Vector
 from kurt2rt.core.planning.topological_map import Edge, MapBuild, MapBuilder, TopologicalMap
 from kurt2rt.core.rla.rla import Rla

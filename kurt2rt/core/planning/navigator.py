@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from kurt2rt.core.decision.decision import GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import Goal, NamedGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.place import PlaceSituation
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode

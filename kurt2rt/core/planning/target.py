@@ -8,12 +8,10 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
-from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.matching import exact_distances
+from kurt2rt.core.rla.condition import Condition, Space
+from kurt2rt.core.rla.matching import exact_distances, hamming_distances
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.symbol_index import hamming_distances
 
 Vector = NDArray[np.float64]
 Distance = Callable[[Vector, Vector], float]

@@ -11,10 +11,9 @@ from typing import NamedTuple
 
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, make_trace
 from kurt2rt.core.reinforcement.repair import OriginOf, Repair
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
-from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, TdLambda
+from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, EligibilityTrace, TdLambda, make_trace
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import (
     ActionReplaced,
@@ -26,8 +25,7 @@ from kurt2rt.core.rla.events import (
     RlaRewarded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin
+from kurt2rt.core.rla.rla import AUTONOMOUS, CRITIC, Origin, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 

@@ -5,16 +5,14 @@ from dataclasses import replace
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.autonomy import Autonomy
-from kurt2rt.core.critic.critic import Opinion
+from kurt2rt.core.critic.critic import CriticState, Opinion
 from kurt2rt.core.critic.rollback import RollbackMonitor
 from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.events import LessonUndone, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
-from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
+from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, CRITIC, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 

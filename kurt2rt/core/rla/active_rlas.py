@@ -5,16 +5,31 @@ from bisect import bisect_left
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.matching import ConditionIndex
+from kurt2rt.core.rla.condition import Condition, Space
+from kurt2rt.core.rla.matching import ConditionIndex, SymbolIndex
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.symbol_index import SymbolIndex
+
+
+class Match(NamedTuple):
+    """Nearest RLA of a situation, and the runner-up."""
+
+    rla: Rla
+    """Nearest RLA, also if the situation lies outside its radius."""
+    distance: float
+    radius: float
+    runner_up: Rla | None
+    runner_up_distance: float
+    """Infinite without a runner-up."""
+
+    @property
+    def known(self) -> bool:
+        """Return whether the situation lies inside the nearest RLA's confidence radius, and that RLA has an action."""
+        return self.distance <= self.radius and not self.rla.is_withdrawn
 
 
 class CandidateIndex:

@@ -1,8 +1,8 @@
-"""Conditions: points in feature space, stored once for the lifetime of their RLA."""
+"""Conditions: points in feature space, stored once for the lifetime of their RLA; and the features of a space."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import overload
+from typing import Literal, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -66,3 +66,28 @@ def pack_condition(condition: Condition) -> Condition:
     if isinstance(condition, PackedCondition) or set(map(type, condition)) != {float}:
         return condition
     return PackedCondition(np.array(condition).tobytes())
+
+
+Metric = Literal["euclidean", "hamming"]
+"""Distance between two points: Euclidean for measured features; for symbols the number of places that differ."""
+
+
+class Space(NamedTuple):
+    """Dimensions, radius, weights and metric of the distances of one level."""
+
+    dimensions: int
+    radius: float
+    """Confidence radius of RLAs without an own radius."""
+    weights: NDArray[np.float64] | None = None
+    """Weight of each feature in a distance, shape (dimensions,); None: all 1. Symbols have no weights."""
+    metric: Metric = "euclidean"
+
+
+@dataclass(frozen=True, slots=True)
+class LevelFeatures:
+    """Names and fingerprint of the features of one level."""
+
+    feature_hash: str
+    """Fingerprint of all settings that define these features."""
+    feature_names: tuple[str, ...]
+    """One per dimension of a condition."""

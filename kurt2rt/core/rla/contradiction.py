@@ -1,4 +1,4 @@
-"""Contradiction: an RLA whose nearest neighbours all do something else, as after a slip of the teacher's finger."""
+"""Contradictions: RLAs whose nearest neighbours all do something else, as after a slip of a finger; and guesses."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -63,3 +63,34 @@ def find_contradiction(
         if len(neighbours) == NEIGHBOURS:
             return Contradiction(rla, tuple(neighbours))
     return None
+
+
+class GuessedLessons:
+    """RLAs of a hold whose five nearest neighbours of other presses all do something that looks different.
+
+    The moment that a lesson of a hold is about is an estimate, and a slip of the finger lasts as long as the hold. An
+    answer is about a robot that stands, so it is never a guess. A guess that a later press confirms is none.
+    """
+
+    def __init__(self, system: RlaSystem, groups: Mapping[str, str]) -> None:
+        """Watch the RLAs of a system; `groups`: group of each action, as of behaviors.action_groups."""
+        self._system = system
+        self._groups = groups
+        self._found: dict[int, bool] = {}
+        """Whether an RLA is a guess, by its id, of the RLAs that were looked at since the last change."""
+        self._changes = -1
+
+    def includes(self, rla: Rla) -> bool:
+        """Return whether an RLA of the system is a guess."""
+        if self._changes != self._system.changes:
+            self._changes = self._system.changes
+            self._found.clear()
+        found = self._found.get(rla.rla_id)
+        if found is None:
+            # Once for each RLA that answers after a change, because it computes all distances.
+            found = hold_of(rla.origin.command_id) is not None and self._differs(rla)
+            self._found[rla.rla_id] = found
+        return found
+
+    def _differs(self, rla: Rla) -> bool:
+        return find_contradiction(self._system, rla, self._groups, of_other_presses=True) is not None

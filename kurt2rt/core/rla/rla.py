@@ -1,9 +1,24 @@
-"""Rule-like association (RLA), and the origin of its action."""
+"""Rule-like association (RLA), the origin of its action, and the training phases."""
 
 from dataclasses import dataclass
+from enum import IntEnum
 
 from kurt2rt.core.rla.condition import Condition, pack_condition
-from kurt2rt.core.rla.phase import Phase
+
+
+class Phase(IntEnum):
+    """Training phase (paper, section IV)."""
+
+    SUPERVISED = 1
+    CORRECTIONS = 2
+    REINFORCEMENT = 3
+    CRITIC = 4
+    AUTONOMOUS = 5
+
+
+AUTONOMOUS = Phase.AUTONOMOUS
+"""A name for each tick, because Python 3.11 looks a member up in its enumeration ten times slower than a global."""
+
 
 ASK = "ask"
 """Action of an RLA whose action was withdrawn: the robot asks. No repertoire has this name."""
@@ -66,3 +81,11 @@ class Rla:
     def is_withdrawn(self) -> bool:
         """Return whether the RLA's action was withdrawn: inside its radius the robot asks."""
         return self.action == ASK
+
+
+AUTO = "auto"
+"""Scripted teacher on its own device."""
+SCRIPTED = "scripted teacher"
+"""Scripted teacher of an experiment, in the robot's process."""
+PROGRAMS = frozenset({AUTO, SCRIPTED, CRITIC})
+"""Teachers in a journal that are programs."""

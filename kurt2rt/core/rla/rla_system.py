@@ -3,6 +3,7 @@
 RLAs of each level and taught behaviour compete among themselves; ids and the history of lessons are common to all.
 """
 
+import hashlib
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
@@ -11,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.outcome import Outcome
-from kurt2rt.core.rla.active_rlas import ActiveRlas
-from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.active_rlas import ActiveRlas, Match
+from kurt2rt.core.rla.condition import Condition, Space
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import (
     ActionReplaced,
@@ -29,13 +30,42 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
-from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.named_situations import NamedSituations
-from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
 from kurt2rt.core.rla.rla import ASK, BASIC, Origin, Rla
-from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Appraisal, RewardCounts
+
+
+class NamedSituations:
+    """Situations by level and name; the newest one of a name counts until its lesson is undone."""
+
+    def __init__(self) -> None:
+        self._stacks: dict[tuple[str, str], list[Condition]] = {}
+
+    def add(self, named: SituationNamed) -> None:
+        """Give a name to a situation of a level, in addition to earlier situations of this name."""
+        self._stacks.setdefault((named.level, named.name), []).append(named.situation)
+
+    def remove(self, named: SituationNamed) -> None:
+        """Undo the newest lesson of a name; the situation of the lesson before counts again. Raises KeyError."""
+        stack = self._stacks[named.level, named.name]
+        stack.pop()
+        if not stack:
+            del self._stacks[named.level, named.name]
+
+    def for_level(self, level: str) -> Mapping[str, Condition]:
+        """Return the newest situation of each name of a level, by name."""
+        return {name: stack[-1] for (of_level, name), stack in self._stacks.items() if of_level == level}
+
+
+def knowledge_hash_of(rlas: Iterable[Rla]) -> str:
+    """Return the SHA-256 of RLAs, given in the order of their ids; teachers and dates do not count."""
+    digest = hashlib.sha256()
+    for rla in rlas:
+        at = f"at {rla.level} " if rla.level != BASIC else ""
+        of = f"of {rla.behaviour} " if rla.behaviour else ""
+        digest.update(f"{rla.rla_id} {at}{of}{rla.action} {rla.radius!r} ".encode())
+        digest.update(np.array(rla.condition, dtype=np.float64).tobytes())
+    return digest.hexdigest()
 
 
 class RlaSystem:

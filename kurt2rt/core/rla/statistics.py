@@ -1,9 +1,47 @@
-"""Statistics of use: unlike a lesson, the last second of them may be lost."""
+"""Statistics of use: unlike a lesson, the last second of them may be lost. Rewards, appraisals, expectations."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from kurt2rt.core.rla.expectation import Expectation
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Mean situation in which an RLA ended and another one took over. Arrays are packed float64."""
+
+    lesson: str
+    """Command id of the lesson that gave the RLA its action; another action has another expectation."""
+    count: int
+    """Number of ends so far."""
+    ticks: float
+    """Mean duration in ticks."""
+    packed_mean: bytes
+    packed_squares: bytes
+
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """Expected situation, shape (d,), not weighted; of symbols the most frequent ones."""
+        return np.frombuffer(self.packed_mean, dtype="<f8")
+
+    @property
+    def squares(self) -> NDArray[np.float64]:
+        """Sum of squared deviations from the mean, shape (d,); of symbols the number of other symbols."""
+        return np.frombuffer(self.packed_squares, dtype="<f8")
+
+    @property
+    def spread(self) -> NDArray[np.float64]:
+        """Standard deviation of each feature, shape (d,); zeros before the second end."""
+        spread: NDArray[np.float64] = np.sqrt(self.squares / max(self.count - 1, 1))
+        return spread
+
+
+def pack(values: NDArray[np.float64]) -> bytes:
+    """Return the bytes of an array (d,) as an expectation stores them, to the last bit."""
+    return np.asarray(values, dtype="<f8").tobytes()
+
 
 VALUES_INCLUDE = "rows that the values include"
 """Number of journal rows included in the saved values; credits of later rows are applied at the start."""
@@ -44,3 +82,35 @@ def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:
         if count > 0:
             shares.setdefault(before, {})[after] = 100 * count / totals[before]
     return shares
+
+
+class Appraisal(NamedTuple):
+    """Number of rewards (+1) and punishments (-1) of one RLA."""
+
+    rewards: int = 0
+    punishments: int = 0
+
+
+class RewardCounts:
+    """Appraisals of all RLAs, by id."""
+
+    def __init__(self) -> None:
+        self._appraisals: dict[int, Appraisal] = {}
+
+    def get(self, rla_id: int) -> Appraisal:
+        """Return the numbers of an RLA; zeros without rewards."""
+        return self._appraisals.get(rla_id, Appraisal())
+
+    def add(self, rla_id: int, value: int) -> None:
+        """Count one reward; `value` is -1 or +1."""
+        self._count(rla_id, value, 1)
+
+    def remove(self, rla_id: int, value: int) -> None:
+        """Subtract one reward that was undone; `value` is -1 or +1."""
+        self._count(rla_id, value, -1)
+
+    def _count(self, rla_id: int, value: int, step: int) -> None:
+        rewards, punishments = self.get(rla_id)
+        self._appraisals[rla_id] = (
+            Appraisal(rewards + step, punishments) if value > 0 else Appraisal(rewards, punishments + step)
+        )

@@ -16,10 +16,8 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
-from kurt2rt.core.rla.phase import AUTONOMOUS, Phase
-from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
+from kurt2rt.core.rla.rla import AUTONOMOUS, BASIC, MID, Origin, Phase, Rla
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
-from kurt2rt.core.teaching.behaviour_selection import BehaviourSelection
 from kurt2rt.core.teaching.commands import (
     BeAt,
     BeginSession,
@@ -46,19 +44,17 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.teaching.control_commands import ControlCommands
+from kurt2rt.core.teaching.control_commands import BehaviourSelection, ControlCommands, SessionClock
 from kurt2rt.core.teaching.demonstration import Demonstration
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.handler_parts import HandlerParts, knowledge_updater_for, lesson_builder_for
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
-from kurt2rt.core.teaching.late_press import LatePresses
+from kurt2rt.core.teaching.late_press import LatePresses, TeacherDelay
 from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.message_fields import SLOWEST_PERCENT
 from kurt2rt.core.teaching.rewind_history import CHUNK_TICKS, RewindHistory
-from kurt2rt.core.teaching.session_clock import SessionClock
 from kurt2rt.core.teaching.stop_record import StopRecord
 from kurt2rt.core.teaching.stream_handler import StreamHandler
-from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 _Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 _TAUGHT_PHASES = (Phase.SUPERVISED, Phase.CORRECTIONS)

@@ -1,11 +1,15 @@
-"""Commands about who drives: stopping, resuming, taking the robot, handing it over, and running an action."""
+"""Commands about who drives, and for how long: control, running an action, the behaviour, and the session."""
 
 from behaviors.repertoire import Repertoire
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
+from kurt2rt.core.rla.events import SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
-from kurt2rt.core.teaching.commands import HandOver, Resume, RunBehaviour, Stop, Take
-from kurt2rt.core.teaching.known_names import require_action
+from kurt2rt.core.teaching.commands import BeginSession, EndSession, HandOver, Pursue, Resume, RunBehaviour, Stop, Take
+from kurt2rt.core.teaching.lesson_result import require_action
+from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.stop_record import StopRecord
 from kurt2rt.core.teaching.stream_handler import StreamHandler
 
@@ -76,3 +80,64 @@ class ControlCommands:
         self.stop(ActiveStop(StopReason.BEHAVIOUR_OVER, command.action), command.teacher)
         self._authority.run(command.action, tick, command.ticks)
         return Outcome.of(ResultCode.ACTION_RUNS, action=command.action, ticks=command.ticks)
+
+
+class BehaviourSelection:
+    """Selection in the order in which teachers saw the robot; a late command on an older state is refused."""
+
+    def __init__(self, active_behaviour: ActiveBehaviour, mid: MidLessons | None) -> None:
+        """`mid`: lessons of the mid level; None: the teacher alone selects."""
+        self._active_behaviour = active_behaviour
+        self._mid = mid
+        self._seen_tick = -1
+        """Tick that the teacher had seen at the last selection."""
+
+    def select(self, command: Pursue, tick: int) -> Outcome:
+        """Select the behaviour of a command from `tick` on and return the outcome.
+
+        Raises CommandRefusedError for an unknown behaviour, and if the teacher saw a state older than the last
+        selection or the last junction.
+        """
+        wanted, mid = self._active_behaviour, self._mid
+        seen_tick = tick if command.seen_tick is None else command.seen_tick
+        if seen_tick < self._seen_tick:
+            raise CommandRefusedError(RefusalCode.BEHAVIOUR_SINCE, behaviour=wanted.behaviour)
+        if mid is not None and seen_tick < mid.passed_at_tick:
+            raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
+        if mid is None:
+            wanted.select(command.behaviour)
+        else:
+            mid.mid.override(command.behaviour)
+        self._seen_tick = seen_tick
+        code = ResultCode.BEHAVIOUR_WANTED if mid is None else ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION
+        return Outcome.of(code, behaviour=command.behaviour)
+
+
+class SessionClock:
+    """Clock of the session; at most one session is open."""
+
+    def __init__(self) -> None:
+        self.session: str | None = None
+        """Name of the open session; None without one."""
+        self._from_tick = 0
+        self._lasted_ticks = 0
+
+    def ticks(self, tick: int) -> int:
+        """Return the length of the open session at `tick`, or of the last one, in ticks."""
+        return self._lasted_ticks if self.session is None else tick - self._from_tick
+
+    def apply(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+        """Begin or end a session; return the outcome and the event.
+
+        Raises CommandRefusedError if a session is open at its beginning, or none is at its end.
+        """
+        if isinstance(command, BeginSession):
+            if self.session is not None:
+                raise CommandRefusedError(RefusalCode.SESSION_ON, session=self.session)
+            self.session, self._from_tick = command.name, tick
+            return Outcome.of(ResultCode.SESSION_BEGUN, session=command.name), SessionBegun(command.name, origin)
+        if self.session is None:
+            raise CommandRefusedError(RefusalCode.NO_SESSION)
+        name, self._lasted_ticks = self.session, self.ticks(tick)
+        self.session = None
+        return Outcome.of(ResultCode.SESSION_ENDED, session=name), SessionEnded(self._lasted_ticks, origin)

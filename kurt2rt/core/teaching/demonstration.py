@@ -17,8 +17,7 @@ from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, Resu
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import Origin, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.hold_lessons import EVERY_TICKS, STEADY_TICKS
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder

@@ -10,13 +10,13 @@ from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
+from kurt2rt.core.teaching.feedback_lessons import AppraisalLessons
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
+from kurt2rt.core.teaching.late_press import TeacherDelay
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
-from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -6,12 +6,11 @@ from typing import NamedTuple
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import Origin, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import HoldAction
+from kurt2rt.core.teaching.late_press import BACK_TICKS, TeacherDelay
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder
-from kurt2rt.core.teaching.teacher_delay import BACK_TICKS, TeacherDelay
 
 EVERY_TICKS = 10
 """Ticks of the robot between two lessons of a hold: 0.1 s."""

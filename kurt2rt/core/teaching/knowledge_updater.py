@@ -4,8 +4,7 @@ from collections.abc import Iterable
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
-from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.critic.state import CriticState
+from kurt2rt.core.critic.critic import CriticState, Opinion
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.learner.learner_level import LearnerLevel
 from kurt2rt.core.outcome_text import event_error_text
@@ -13,7 +12,7 @@ from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 
 _REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 

@@ -1,12 +1,123 @@
 """Late presses: a person's correction is about the decision that it reacts to, not about the present one."""
 
+from collections import deque
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from kurt2rt.core.outcome import Field, Outcome
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command, Correct
-from kurt2rt.core.teaching.teacher_delay import TeacherDelay
+
+BACK_TICKS = 200
+"""Longest time by which a press is put back, in ticks of real time: 2 s."""
+DEFAULT_TICKS = 100
+"""Delay of a teacher without enough answers, in ticks of real time."""
+HAND_PART = 4
+"""A hand that follows the robot is faster than an answer by this factor, because nothing has to be decided again.
+
+Chosen on wall following, seeds 900 and 901, by an ordinary person with a hand of 0.3 s who answers after 1.25 s:
+held lessons put back by 0, 0.3, 0.6 and 1.25 s passed 0 of 6, 4 of 6, 3 of 6 and 0 of 3 exams.
+"""
+CORRECTION_PART = 0.75
+"""Delay of a correction from the moment in which its mistake was noticed, as a fraction of that of an answer.
+
+A person who watches and sees a mistake knows the right action already. Chosen by the tests on search seeds that
+docs/notebook.md names.
+"""
+_WINDOW = 16
+_LEAST_ANSWERS = 4
+_LONGEST_TICKS = 500
+"""A later answer tells nothing about the delay: its teacher looked elsewhere, or thought about it."""
+
+
+class TeacherDelay:
+    """Median of each teacher's last times between question and answer, in ticks of real time.
+
+    A question counts from its first tick; an answer from the newest state that its teacher had, so that the link's
+    delay is left out.
+    """
+
+    def __init__(self, default_ticks: int = DEFAULT_TICKS, saved: Mapping[str, Sequence[int]] | None = None) -> None:
+        """Begin with the answers of earlier runs.
+
+        Args:
+            default_ticks: delay of a teacher who has given fewer than four answers.
+            saved: result of `snapshot`, whose impossible times are left out. None: no answers.
+        """
+        self._default_ticks = default_ticks
+        self._answers: dict[str, deque[int]] = {
+            teacher: deque((each for each in took if 0 <= each <= _LONGEST_TICKS), maxlen=_WINDOW)
+            for teacher, took in (saved or {}).items()
+        }
+        self.asked_tick: int | None = None
+        """First tick of the present question; None if the robot does not ask."""
+        self.last_asked_tick: int | None = None
+        """Newest tick of the last question, also if it ended by itself; None once a lesson was given after it."""
+        self._answered = False
+
+    def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
+        """Note whether the robot asked (`asks`) in a tick; call it on every tick.
+
+        `present`: whether its teacher was there; an answer tells no delay if its teacher came after the question.
+        """
+        if not asks:
+            self.asked_tick = None
+            return
+        if self.asked_tick is None:
+            self.asked_tick, self._answered = tick, not present
+        self.last_asked_tick = tick
+
+    def forget_question(self) -> None:
+        """Forget a question that ended by itself, because the robot was set down elsewhere."""
+        self.last_asked_tick = None
+
+    def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
+        """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.
+
+        Args:
+            teacher: who answered.
+            given_tick: newest state that the teacher had.
+            speed: robot seconds in one second.
+        """
+        if self.asked_tick is None or self._answered or given_tick < self.asked_tick:
+            return
+        self._answered = True
+        took = (given_tick - self.asked_tick) // speed
+        if took <= _LONGEST_TICKS:
+            self._answers.setdefault(teacher, deque(maxlen=_WINDOW)).append(took)
+
+    def snapshot(self) -> dict[str, tuple[int, ...]]:
+        """Return the times of the last answers by teacher, oldest first, in ticks of real time, to be saved."""
+        return {teacher: tuple(took) for teacher, took in self._answers.items()}
+
+    def answers(self, teacher: str) -> int:
+        """Return the number of answers that the delay of a teacher is computed from; 0 while it is the default."""
+        count = len(self._answers.get(teacher, ()))
+        return count if count >= _LEAST_ANSWERS else 0
+
+    def hand_ticks(self, teacher: str, speed: int) -> int:
+        """Return the delay of a teacher's hand that follows the robot while holding, in ticks of the robot.
+
+        `speed`: robot seconds in one second.
+        """
+        return self.ticks(teacher, speed) // HAND_PART
+
+    def correction_ticks(self, teacher: str, speed: int) -> int:
+        """Return the delay of a teacher's correction, in ticks of the robot.
+
+        `speed`: robot seconds in one second.
+        """
+        return round(self.ticks(teacher, speed) * CORRECTION_PART)
+
+    def ticks(self, teacher: str, speed: int) -> int:
+        """Return the delay of a teacher's answer in ticks of the robot, at most BACK_TICKS of real time.
+
+        `speed`: robot seconds in one second.
+        """
+        answers = sorted(self._answers.get(teacher, ()))
+        delay = answers[len(answers) // 2] if len(answers) >= _LEAST_ANSWERS else self._default_ticks
+        return min(delay, BACK_TICKS) * speed
 
 
 class LatePresses:

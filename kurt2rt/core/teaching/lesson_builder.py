@@ -12,16 +12,20 @@ from kurt2rt.core.outcome import CommandRefusedError, RefusalCode, ResultCode, r
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import ActionReplaced, RlaCreated, RlaDeleted, TeachingEvent
 from kurt2rt.core.rla.lesson_history import hold_of
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
-from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.teaching.feedback_lessons import FeedbackLessons
-from kurt2rt.core.teaching.known_names import require_action, require_behaviour, require_rla
-from kurt2rt.core.teaching.lesson_context import LessonContext
-from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
+from kurt2rt.core.teaching.feedback_lessons import AppraisalLessons, FeedbackLessons
+from kurt2rt.core.teaching.lesson_result import (
+    LessonContext,
+    LessonResult,
+    require_action,
+    require_behaviour,
+    require_rla,
+    rla_outcome,
+)
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.undo_lessons import UndoLessons

@@ -6,8 +6,7 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.lesson_speed import SLOWEST
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 
 LARGEST_NUMBER = 2**53
 """Largest tick, sequence number or RLA: the largest integer that every language holds exactly."""

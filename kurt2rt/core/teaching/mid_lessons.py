@@ -12,7 +12,7 @@ from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Correct, Teach
-from kurt2rt.core.teaching.lesson_context import LessonContext
+from kurt2rt.core.teaching.lesson_result import LessonContext
 
 
 class MidSnapshot(NamedTuple):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.basic.doubt import NewObstacle
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
-from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
 
 

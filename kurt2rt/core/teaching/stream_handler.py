@@ -3,12 +3,12 @@
 from behaviors.repertoire import Repertoire
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.authority import ControlAuthority, name_refusal
 from kurt2rt.core.teaching.commands import HoldAction, Stream, Watch
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
+from kurt2rt.core.teaching.late_press import TeacherDelay
 from kurt2rt.core.teaching.stop_record import StopRecord
-from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 
 class StreamHandler:

@@ -8,7 +8,7 @@ from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, Resu
 from kurt2rt.core.rla.events import LessonUndone
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_of
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
-from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
+from kurt2rt.core.teaching.feedback_lessons import AppraisalLessons
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 

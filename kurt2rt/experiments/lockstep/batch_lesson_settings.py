@@ -5,8 +5,7 @@ import numpy as np
 from hal.batch import Choose, TabledPolicy
 from hal.batch_lesson import LessonDriveSettings
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import feature_weights
+from kurt2rt.core.perception.definition import feature_weights, load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_mind import (
     build_drive_settings,

@@ -35,9 +35,9 @@ from kurt2rt.core.perception.definition import (
     Orientation,
     Reading,
     SituationDefinition,
+    feature_weights,
     load_situation,
 )
-from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime

@@ -2,8 +2,7 @@
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner import LearnerSetting
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import feature_weights
+from kurt2rt.core.perception.definition import feature_weights, load_situation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 

@@ -8,8 +8,7 @@ from itertools import accumulate
 from behaviors.metrics.task_metric import Metrics
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, Simulation
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import MID, Rla
+from kurt2rt.core.rla.rla import MID, Phase, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings

@@ -16,7 +16,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.teaching.commands import Command, CommandResult, HoldAction, Resume, Stream
-from kurt2rt.core.teaching.system_events import SystemEvent
+from kurt2rt.core.teaching.inbox import SystemEvent
 from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.runtime import Runtime
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 
 Signs = Literal["none", "judge", "unknown", "chance"]

@@ -12,8 +12,8 @@ from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import length_m
 from hal.settings import Settings
 from hal.simulation import Pose, Simulation
+from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import NamedGoal
-from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
 from kurt2rt.core.tick_record import TickRecord

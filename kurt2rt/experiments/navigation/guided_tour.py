@@ -9,8 +9,7 @@ from behaviors.metrics.town import Street
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord

@@ -5,8 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, RlaDeleted, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 
 _NAME = "corruption"
 

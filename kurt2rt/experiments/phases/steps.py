@@ -6,7 +6,7 @@ from typing import Literal
 
 from hal.settings import SettingsError
 from kurt2rt.core.phase_settings import PhasesSettings
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, Signs
 

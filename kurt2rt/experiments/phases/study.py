@@ -16,11 +16,10 @@ from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.settings import AutonomousValues
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import ActionWithdrawn, LessonUndone, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord

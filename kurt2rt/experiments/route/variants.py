@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from kurt2rt.core.mid.settings import load_mid_level
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 

@@ -9,7 +9,7 @@ from typing import ClassVar, NamedTuple
 
 from hal.settings import Settings, SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.curriculum import Report

@@ -13,8 +13,7 @@ from hal.robot_settings import RobotSettings
 from hal.settings import Settings, load_settings
 from hal.settings_files import FILES, find_beside, find_config, kept_name
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.json_checks import require_int, require_number, require_text
 from kurt2rt.knowledge.journal.entry import StoredEntry

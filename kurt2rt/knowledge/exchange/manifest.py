@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
+from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, STATISTICS, KnownLesson

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 from hal.robot_settings import RobotSettings, robot_of_json
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import AVERAGED, SituationDefinition, load_situation
-from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.archive import Archive, pack, unpack

@@ -10,7 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import BinaryIO
 
-from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.journal_schema import (
     APPLICATION_ID,

@@ -4,8 +4,7 @@ import sqlite3
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics
 
 STATISTICS_TABLES = """
 CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from hal.settings_files import shipped_names
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
-from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.condition import Condition, LevelFeatures
 from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.show.table_cells import format_action, printable, replaced_action, stamp_and_teacher

@@ -8,9 +8,8 @@ from rich.text import Text
 
 from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.perception.definition import AVERAGED
-from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.core.rla.statistics import Statistics, follow_ups
+from kurt2rt.core.rla.statistics import Expectation, Statistics, follow_ups
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

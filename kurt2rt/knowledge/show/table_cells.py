@@ -3,8 +3,8 @@
 from rich.text import Text
 
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn
-from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.statistics import Appraisal
 from kurt2rt.knowledge.journal.entry import StoredEntry
 
 _ASKS = "asks again"

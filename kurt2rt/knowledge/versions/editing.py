@@ -10,8 +10,7 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtValues
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import Origin, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry

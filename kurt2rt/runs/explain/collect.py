@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.decision.decision import Decision, DecisionCause, GoalStatus, MidDecision
 from kurt2rt.core.perception.sensor_words import words_for
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.tick_record import TickRecord

@@ -9,7 +9,7 @@ from hal.robot import STANDSTILL
 from hal.robot_settings import InfraredSettings
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed
-from kurt2rt.core.perception.features import FeatureExtractor
+from kurt2rt.core.perception.perception import FeatureExtractor
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts

@@ -5,15 +5,13 @@ from typing import NamedTuple
 
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import PlanStep
+from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.teaching.commands import CommandResult
-from kurt2rt.core.teaching.system_events import Input
+from kurt2rt.core.teaching.inbox import Input
 from kurt2rt.core.tick_record import TickRecord
 
 

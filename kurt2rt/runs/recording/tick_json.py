@@ -10,13 +10,11 @@ from pydantic import TypeAdapter, ValidationError
 
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
+from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, JunctionEvent, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.teaching.system_events import Input, SystemEvent
+from kurt2rt.core.teaching.inbox import Input, SystemEvent
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry

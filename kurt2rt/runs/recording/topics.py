@@ -22,7 +22,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.rla.rla_system import knowledge_hash_of
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.writer import Acknowledgement

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.rla.rla_system import knowledge_hash_of
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 

@@ -18,9 +18,9 @@ from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.rla.active_rlas import Match
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics

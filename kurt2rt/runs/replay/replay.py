@@ -8,7 +8,7 @@ from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.settings import SettingsError
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import event_error_text, text_of
 from kurt2rt.core.rla.event_error import InvalidEventError

@@ -14,7 +14,7 @@ import anyio
 
 from kurt2rt.channel.protocol.requests import TABLE, ExamRequest, ExportRequest, SaveRequest
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
     BeAt,
     BeginSession,

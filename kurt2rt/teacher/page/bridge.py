@@ -12,7 +12,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.outcome_text import text_of as outcome_text_of
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand, is_resumption, max_state_age_s

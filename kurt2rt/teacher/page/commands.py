@@ -6,8 +6,7 @@ from typing import Any
 
 from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.protocol.requests import PACKAGE
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.teaching.message_fields import (
     MOST_SEGMENTS,
     SLOWEST_PERCENT,

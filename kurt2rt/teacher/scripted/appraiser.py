@@ -8,8 +8,7 @@ from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import Judge
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView, view_of_tick

@@ -3,9 +3,7 @@
 from abc import ABC, abstractmethod
 from typing import NamedTuple, Protocol
 
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.rla.rla import BASIC, SCRIPTED, Phase
 from kurt2rt.core.teaching.commands import Command, Pursue, Resume, SetPhase
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.press_times import PressTimes

@@ -1,7 +1,7 @@
 """Sender of a scripted teacher's commands over the channel; it knows the robot's ids of the teacher's own lessons."""
 
 from kurt2rt.core.rla.lesson_history import hold_id
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.teaching.commands import (
     Command,
     Correct,

@@ -4,9 +4,7 @@ import random
 from collections.abc import Sequence
 
 from behaviors.metrics.task_metric import WayAhead
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import MID, SCRIPTED, Phase
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.teacher.scripted.press_times import PressTimes

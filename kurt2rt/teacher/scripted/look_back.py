@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Stop
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.human_limits import DelaySampler

@@ -7,8 +7,7 @@ from typing import Literal
 from behaviors.action_groups import STAND
 from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.lesson_history import hold_id
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED, Phase
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Resume, Stop, Teach, Undo
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView

@@ -9,7 +9,7 @@ from contextlib import suppress
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient

@@ -4,8 +4,7 @@ import random
 from collections.abc import Sequence
 
 from behaviors.policies.policy import ReferencePolicy
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED, Phase
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
 from kurt2rt.teacher.scripted.basic_teacher import Ahead, BasicTeacher, TeacherView

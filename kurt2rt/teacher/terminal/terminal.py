@@ -17,8 +17,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.mid_commands import mid_command

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
-from kurt2rt.core.critic.state import CriticState
+from kurt2rt.core.critic.critic import CriticState
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, question_text, standing_headline

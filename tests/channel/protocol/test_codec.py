@@ -29,8 +29,7 @@ from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, Stat
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.teaching.commands import (
     Appraise,
     Correct,

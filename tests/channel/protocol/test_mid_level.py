@@ -8,8 +8,8 @@ from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.requests import LessonsRequest, SituationsRequest
 from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
+from kurt2rt.core.decision.decision import GoalStatus, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID

@@ -12,7 +12,7 @@ import pytest
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.pairing import Device, list_pairings, local_pairing, pair, read_device, renew, revoke
-from kurt2rt.core.rla.programs import AUTO
+from kurt2rt.core.rla.rla import AUTO
 from tests.channel.sides import ask, ask_until_fresh
 
 

@@ -39,7 +39,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
     Appraise,
     BeAt,

@@ -9,8 +9,7 @@ from kurt2rt.channel.protocol.health import Trouble
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import ASK
+from kurt2rt.core.rla.rla import ASK, Phase
 from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, Reward, SetPhase
 from tests.channel.channel_fixture import ROBOT, STAMP, ChannelFixture
 from tests.service.health.reports import ILL

@@ -6,8 +6,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import DecisionCause, UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem

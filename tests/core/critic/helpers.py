@@ -5,8 +5,7 @@ from itertools import count
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import NAMES, load_critic
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 
 SETTINGS = load_critic()
 FREE = AppraisalFeatures(0.6, 0.6, 0.6, 0.6, 0.6, 0.6, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0)

@@ -13,8 +13,7 @@ from kurt2rt.core.rla.events import (
     RlaRewarded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from tests.core.critic.helpers import SETTINGS, appraisal, origin
 
 PERIOD_S = 0.01

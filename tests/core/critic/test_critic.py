@@ -3,10 +3,10 @@
 import pytest
 
 from kurt2rt.core.critic.critic import Critic
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
 
 CLOSE = FREE._replace(front_m=0.12)

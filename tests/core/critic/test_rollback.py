@@ -14,8 +14,7 @@ from kurt2rt.core.rla.events import (
     SessionBegun,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Rla
+from kurt2rt.core.rla.rla import CRITIC, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.critic.helpers import origin
 from tests.examples import examples

@@ -2,9 +2,9 @@
 
 import pytest
 
+from kurt2rt.core.critic.critic import CriticState
 from kurt2rt.core.critic.settings import ActivationSettings
-from kurt2rt.core.critic.state import CriticState
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from tests.core.reinforcement.helpers import CALM, CRASHED, QUICK, Track, knows_good_from_bad
 from tests.core.rla.helpers import created
 

@@ -10,7 +10,7 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.commands import Resume, Stop
-from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
 from tests.core.test_tick import RADIUS, Corridor
 from tests.core.test_tick_by_hand import press

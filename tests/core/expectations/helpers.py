@@ -4,11 +4,11 @@ import numpy as np
 
 from kurt2rt.core.expectations.expectations import End, Expectations
 from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.rla.condition import Metric, Space
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Metric, Space
+from kurt2rt.core.rla.statistics import Expectation
 from tests.core.rla.helpers import created
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.expectation import pack
+from kurt2rt.core.rla.statistics import pack
 from tests.core.expectations.helpers import Small
 from tests.core.rla.helpers import deleted, replaced, undone
 

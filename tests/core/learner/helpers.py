@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.core.learner.label_learner import pack, unpack
 from kurt2rt.core.learner.learner import Label, LearnerSetting, Why
-from kurt2rt.core.learner.packing import pack, unpack
 
 SETTING = LearnerSetting(
     dimensions=1,

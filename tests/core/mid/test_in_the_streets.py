@@ -15,7 +15,7 @@ from hal.robot_settings import InfraredSettings
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.decision.errors import UnknownBehaviourError
+from kurt2rt.core.decision.decision import UnknownBehaviourError
 from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
 from tests.core.rla.helpers import created, deleted, replaced, undone
 

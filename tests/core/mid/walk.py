@@ -4,7 +4,7 @@ import math
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import SensorReadings
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 

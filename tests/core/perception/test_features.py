@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.features import FeatureExtractor
+from kurt2rt.core.perception.perception import FeatureExtractor
 from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, WHEELS, definition
 
 Features = Sequence[Mapping[str, object]]

@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import feature_weights
+from kurt2rt.core.perception.definition import feature_weights, load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
 from kurt2rt.core.tick_record import TickRecord

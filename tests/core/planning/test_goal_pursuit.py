@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 from kurt2rt.core.planning.goal_pursuit import PIECES, GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, make_target

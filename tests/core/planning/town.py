@@ -7,9 +7,9 @@ import numpy as np
 
 from kurt2rt.core.planning.target import FeatureTarget, Vector
 from kurt2rt.core.planning.topological_map import MapBuild, MapBuilder, TopologicalMap, build_map
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created
 
 SPACE = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))

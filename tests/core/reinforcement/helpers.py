@@ -17,11 +17,10 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.reinforcement.settings import AutonomousValues, ReinforcementSettings, TaughtValues
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import Appraised, RlaDeleted, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, make_trace
+from kurt2rt.core.reinforcement.td_lambda import EligibilityTrace, make_trace
 from tests.core.helpers import situation
 
 TRACE_TICKS = 70.0

@@ -5,7 +5,7 @@ import pytest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import ActionWithdrawn, RlaCreated, RlaDeleted, RlaRewarded
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.teaching.commands import DeleteRla, Reward, Teach, Undo
 from tests.core.helpers import MINIMUM_TICKS, RADIUS

@@ -4,8 +4,7 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, MID, Origin
+from kurt2rt.core.rla.rla import CRITIC, MID, Origin, Phase
 from kurt2rt.core.teaching.commands import Undo
 from tests.core.helpers import sensed, situation
 from tests.core.reinforcement.helpers import (

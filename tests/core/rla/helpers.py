@@ -16,8 +16,7 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, Origin, Rla
+from kurt2rt.core.rla.rla import BASIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 

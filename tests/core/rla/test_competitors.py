@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, replaced, undone, withdrawn
 
 

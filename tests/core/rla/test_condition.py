@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.condition import PackedCondition, pack_condition
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 
 _NUMBERS = st.lists(st.floats(allow_nan=False), min_size=1, max_size=80).map(tuple)
 _ORIGIN = Origin("c-1", "Ann", Phase.SUPERVISED, 0)

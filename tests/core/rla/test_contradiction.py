@@ -3,12 +3,12 @@
 import pytest
 
 from behaviors.action_groups import action_groups
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.contradiction import find_contradiction
 from kurt2rt.core.rla.events import ActionWithdrawn
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, origin, replaced
 
 GROUPS = action_groups("basic")

@@ -8,8 +8,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.rla.credit import Credit, PackedCredits, pack_credits
 from kurt2rt.core.rla.events import RlaRewarded
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin
+from kurt2rt.core.rla.rla import Origin, Phase
 
 _CREDITS = st.lists(
     st.builds(Credit, st.integers(1, 2**32 - 1), st.floats(allow_nan=False)), min_size=1, max_size=20

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from behaviors.action_groups import action_groups
-from kurt2rt.core.rla.guessed_lessons import GuessedLessons
+from kurt2rt.core.rla.contradiction import GuessedLessons
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, replaced, withdrawn

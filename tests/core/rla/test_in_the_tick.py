@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.core.teaching.commands import (
     BeAt,
     Correct,

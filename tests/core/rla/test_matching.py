@@ -8,8 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.matching import ConditionIndex, exact_distances, exact_square
-from kurt2rt.core.rla.near_conditions import NearConditions
+from kurt2rt.core.rla.matching import ConditionIndex, NearConditions, exact_distances, exact_square
 from tests.examples import examples
 
 Point = tuple[float, ...]

@@ -3,11 +3,11 @@
 import math
 
 from kurt2rt.core.outcome import RefusalCode
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, named, refused_by, undone
 
 

@@ -8,13 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, rewarded, session, undone
 
 

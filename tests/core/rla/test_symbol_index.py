@@ -8,12 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.matching import SymbolIndex
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.symbol_index import SymbolIndex
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone
 
 Symbols = tuple[float, ...]

@@ -7,8 +7,7 @@ from kurt2rt.core.critic.settings import NAMES
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.teaching.commands import Appraise, CommandResult, ReplaceAction, Reward, Undo
 from tests.core.critic.helpers import appraisal
 from tests.core.helpers import situation

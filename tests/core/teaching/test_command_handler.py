@@ -17,9 +17,8 @@ from kurt2rt.core.rla.events import (
     SessionEnded,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.reward_counts import Appraisal
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.statistics import Appraisal
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import (

@@ -2,8 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.teaching.inbox import InboxFullError, TeacherInbox
-from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositioned
+from kurt2rt.core.teaching.inbox import InboxFullError, PairingRenewed, RobotRepositioned, TeacherInbox
 from tests.teacher.helpers import resume, stop, teach
 
 

@@ -4,8 +4,8 @@ import pytest
 
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Correct
-from kurt2rt.core.teaching.system_events import RobotRepositioned
-from kurt2rt.core.teaching.teacher_delay import CORRECTION_PART, DEFAULT_TICKS
+from kurt2rt.core.teaching.inbox import RobotRepositioned
+from kurt2rt.core.teaching.late_press import CORRECTION_PART, DEFAULT_TICKS
 from tests.core.test_tick import Corridor
 from tests.core.test_tick_holding import condition
 from tests.teacher.helpers import resume, stop, teach

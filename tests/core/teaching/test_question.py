@@ -9,9 +9,9 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.basic.doubt import NewObstacle
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.sensor_words import words_for
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import ASK, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_doubt, ask_the_way
 from tests.core.rla.helpers import created, withdrawn
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.teaching.teacher_delay import BACK_TICKS, DEFAULT_TICKS, TeacherDelay
+from kurt2rt.core.teaching.late_press import BACK_TICKS, DEFAULT_TICKS, TeacherDelay
 
 
 def asked_and_answered(delay: TeacherDelay, *took: int, teacher: str = "Ann", speed: int = 1) -> None:

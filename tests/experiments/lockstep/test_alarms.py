@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 
 from hal.guard_reason import GuardReason
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor

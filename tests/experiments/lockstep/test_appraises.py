@@ -6,8 +6,7 @@ import pytest
 from behaviors.metrics.task_metric import TaskMetric
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs

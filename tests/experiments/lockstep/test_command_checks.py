@@ -11,7 +11,7 @@ from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
 from config import CONFIG_DIR
 from hal.simulation import Simulation
-from kurt2rt.core.decision.errors import UnknownActionError
+from kurt2rt.core.decision.decision import UnknownActionError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_exams
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError

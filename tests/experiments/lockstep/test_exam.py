@@ -8,8 +8,7 @@ import pytest
 from hal.robot import STANDSTILL
 from hal.simulation import Position
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord

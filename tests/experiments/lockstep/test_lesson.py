@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal

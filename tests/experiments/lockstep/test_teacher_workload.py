@@ -1,6 +1,6 @@
 """Workload of a teacher, minute by minute."""
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
     Appraise,
     Correct,

@@ -8,8 +8,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import Appraised, RlaCreated, RlaRewarded, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson

@@ -7,11 +7,10 @@ import pytest
 from behaviors.primitives import primitive_speeds
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import NAMES, load_critic
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
+from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of

@@ -3,7 +3,7 @@
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.steps import (
     ASKS,

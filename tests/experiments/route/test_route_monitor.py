@@ -8,8 +8,7 @@ import pytest
 from behaviors.metrics.route import FixedRoute, Passage
 from behaviors.metrics.task_metric import WayAhead
 from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
-from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.decision import Decision, DecisionCause, JunctionEvent, MidDecision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick_record import TickRecord

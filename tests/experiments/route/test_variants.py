@@ -1,7 +1,7 @@
 import pytest
 
 from kurt2rt.core.mid.settings import MidSettings
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
 from tests.experiments.helpers import ROBOT

@@ -8,8 +8,7 @@ from matplotlib.image import imread
 
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.runner import missing_time_s
 from kurt2rt.experiments.study.study_plan import StudyPlan

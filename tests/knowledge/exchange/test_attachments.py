@@ -10,10 +10,8 @@ from hal.robot_settings import load_robot, robot_of_json
 from hal.settings import SettingsError
 from hal.settings_files import find_config, kept_name, settings_override
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.attachments import (
     KNOWLEDGE,

@@ -5,11 +5,10 @@ from pathlib import Path
 import networkx as nx
 import numpy as np
 
-from kurt2rt.core.rla.expectation import Expectation, pack
+from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.rla.space import Space
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
 from kurt2rt.knowledge.graph.picture import write_network
 from kurt2rt.knowledge.journal.journal import Journal

@@ -21,8 +21,7 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import MID, Origin, Rla
+from kurt2rt.core.rla.rla import MID, Origin, Phase, Rla
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import (

@@ -4,8 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from kurt2rt.core.rla.expectation import Expectation, pack
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.statistics_tables import changes
 from tests.knowledge.lessons import BINDING

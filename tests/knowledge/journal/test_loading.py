@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
-from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla
 from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding

@@ -7,8 +7,7 @@ from rich.console import Console, RenderableType
 
 from kurt2rt.core.rla.events import Appraised, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC
+from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal

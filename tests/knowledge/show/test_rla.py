@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from kurt2rt.core.rla.expectation import Expectation, pack
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.show.rla import render_rla

@@ -9,8 +9,7 @@ from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import Lesson, LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import CRITIC, Rla
+from kurt2rt.core.rla.rla import CRITIC, Phase, Rla
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.core.teaching.commands import Undo
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.runs.explain.terminal import render_timeline
 from kurt2rt.runs.explain.timeline import MOST_SAMPLES, Kind, build_timeline, format_summary
 from kurt2rt.runs.explain.timeline_picture import draw_timeline

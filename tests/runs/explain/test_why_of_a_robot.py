@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.runs.explain.picture import draw_why
 from kurt2rt.runs.explain.reasons import headline
 from tests.runs.explain.helpers import ROBOT, Lesson

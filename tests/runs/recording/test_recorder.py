@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mcap.reader import make_reader
 
-from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.rla.rla_system import knowledge_hash_of
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK

@@ -8,17 +8,14 @@ from hypothesis import strategies as some
 
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, JunctionEvent, PlanStep
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaRewarded
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.teaching.commands import Command, Seek
-from kurt2rt.core.teaching.system_events import SystemEvent
+from kurt2rt.core.teaching.inbox import SystemEvent
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.tick_json import decode_command, decode_tick, encode_command, encode_tick

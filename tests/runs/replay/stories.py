@@ -20,7 +20,7 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import (
@@ -38,7 +38,7 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.teaching.system_events import PairingRenewed
+from kurt2rt.core.teaching.inbox import PairingRenewed
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide

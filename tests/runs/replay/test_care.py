@@ -17,8 +17,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.main import main
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.lesson_history import lesson_stack
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import Origin, Rla
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import BeginSession, Resume, Watch

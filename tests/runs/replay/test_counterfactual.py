@@ -8,8 +8,7 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated, TeachingEvent
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
+from kurt2rt.core.rla.rla import BASIC, MID, Origin, Phase, Rla
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError

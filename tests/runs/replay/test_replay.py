@@ -13,8 +13,7 @@ import pytest
 from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord

@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.core.outcome import Field
 from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Resume, SetPhase, Stop, Undo, Watch
 from kurt2rt.core.tick_record import TickRecord

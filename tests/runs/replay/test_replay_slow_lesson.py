@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, SetLessonSpeed, SetPhase, Watch
 from kurt2rt.core.tick_record import TickRecord

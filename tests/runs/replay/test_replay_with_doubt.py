@@ -6,7 +6,7 @@ from pathlib import Path
 from hal.simulation import Pose
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, SetPhase, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord

@@ -5,7 +5,7 @@ from pathlib import Path
 from hal.simulation import Pose
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.lesson_history import hold_of
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import HoldAction, Resume, SetPhase, Stop, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord

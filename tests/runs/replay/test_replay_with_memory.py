@@ -4,7 +4,7 @@ from pathlib import Path
 
 from hal.simulation import Pose
 from kurt2rt.core.critic.settings import CirclingSettings, load_critic
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Appraise, Resume, SetPhase, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord

@@ -32,8 +32,7 @@ from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import InfraredLaw
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import (
     Appraise,
     BeAt,

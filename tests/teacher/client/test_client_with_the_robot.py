@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.knowledge.exchange.package import read_package
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole

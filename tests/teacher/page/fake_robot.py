@@ -21,8 +21,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing import DRIVES, Standing
 from kurt2rt.core.perception.sensor_words import infrared_law
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError

@@ -12,7 +12,7 @@ import pytest
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import Surface, text_of
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import local_refusal
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.commands import PageCommand

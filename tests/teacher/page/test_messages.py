@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.message_fields import WireError
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand
 from kurt2rt.teacher.page.messages import (

@@ -10,7 +10,7 @@ from hal.robot import STANDSTILL, GuardResult
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, Teach

@@ -14,8 +14,7 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import AUTO
+from kurt2rt.core.rla.rla import AUTO, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import QUICK_TEACHER
 from kurt2rt.core.teaching.commands import (

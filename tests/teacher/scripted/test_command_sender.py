@@ -9,7 +9,7 @@ from kurt2rt.channel.protocol.requests import StopRequest
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, done
 from kurt2rt.core.rla.lesson_history import hold_id
-from kurt2rt.core.rla.programs import AUTO, SCRIPTED
+from kurt2rt.core.rla.rla import AUTO, SCRIPTED
 from kurt2rt.core.teaching.commands import Correct, HoldAction, Stop, Undo
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.scripted.command_sender import CommandSender

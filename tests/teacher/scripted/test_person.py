@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 
 from kurt2rt.core.rla.lesson_history import hold_id
-from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.rla import SCRIPTED, Phase
 from kurt2rt.core.teacher_settings import (
     ErrorSettings,
     LapseSettings,

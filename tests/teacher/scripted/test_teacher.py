@@ -9,7 +9,7 @@ import numpy as np
 from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, SetPhase, Teach
 from kurt2rt.core.tick_record import TickRecord

@@ -24,7 +24,7 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import (
     Appraise,
     BeAt,
