@@ -92,3 +92,16 @@ def _build(
             )
         case TurnByAngleAction():
             return TurnByAngle(robot.geometry, angle_deg=action.angle_deg, speed_m_s=action.speed_m_s)
+
+
+def primitive_speeds(repertoire: str) -> Mapping[str, WheelSpeeds]:
+    """Return the wheel speeds of a repertoire's motor primitives by name, in the repertoire's order.
+
+    Raises hal.settings.SettingsError if the repertoire is missing or invalid.
+    """
+    actions = load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions
+    return {
+        action.name: WheelSpeeds(action.left_m_s, action.right_m_s)
+        for action in actions
+        if isinstance(action, MotorAction)
+    }

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.areas import Borders
+from hal.errors import UserError
 from hal.guard_reason import GuardReason
 from hal.simulation import Pose, Simulation, SimulationFactory
 
@@ -323,3 +324,7 @@ class BatchFactory(SimulationFactory, Protocol):
         Raises hal.batch_refusal.BatchRefusedError for what the batch does not know.
         """
         ...
+
+
+class BatchRefusedError(UserError):
+    """The batch simulator cannot drive this as the loop over the CAN bus does; the text says what and what to do."""

@@ -129,7 +129,7 @@ class LessonRobot(Simulation, Protocol):
     def watch(self, borders: Borders) -> None:
         """Let `drive` end at borders; before the first tick.
 
-        Raises hal.batch_refusal.BatchRefusedError for too many areas.
+        Raises hal.batch.BatchRefusedError for too many areas.
         """
         ...
 
@@ -193,6 +193,6 @@ class LessonFactory(SimulationFactory, Protocol):
     def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
         """Open a simulation (hal.simulation.SimulationFactory) with a compiled robot.
 
-        Raises hal.batch_refusal.BatchRefusedError for what the batch does not know.
+        Raises hal.batch.BatchRefusedError for what the batch does not know.
         """
         ...

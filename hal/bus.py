@@ -3,16 +3,60 @@
 import contextlib
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Protocol
 
 import can
 
-from hal.can_interface import CanInterface
 from hal.errors import UserError
 from hal.frame import Frame
 from hal.in_process_bus import InProcessBus
 from hal.shared_bus import SharedBus
 from hal.socketcan_bus import SocketCanBus
 from hal.tap import Tap
+
+
+class CanInterface(Protocol):
+    """One end of a bus of some kind. Nothing here waits; errors are can.CanError, OSError or ValueError.
+
+    A frame arrives once at every other end, in the order in which the bus carried it. Error frames of the bus are
+    delivered too (`is_error_frame`, laid out as Linux does).
+    """
+
+    receives_own_frames: bool
+    """True if an end also receives its own frames (`is_rx` False), as soon as the bus has carried them."""
+
+    overruns: int
+    """Frames lost since the end was opened because it read too late."""
+
+    def now_s(self) -> float | None:
+        """Return the present in s on the clock that stamps the frames; None if frames count as just arrived."""
+        ...
+
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
+        """Deliver only frames with these standard identifiers, and error frames.
+
+        Raises can.CanError or OSError.
+        """
+        ...
+
+    def recv(self, timeout: float | None) -> can.Message | None:
+        """Return the oldest waiting frame, or None; called with `timeout` 0 seconds.
+
+        Raises can.CanError or OSError on every call after the bus is lost, so silence is never taken for a quiet bus.
+        """
+        ...
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Send a frame, also after failures; called with `timeout` 0 seconds.
+
+        Raises can.CanError or OSError if the bus does not take it, ValueError for a frame that is not classic CAN.
+        """
+        ...
+
+    def shutdown(self) -> None:
+        """Close this end; may be called twice."""
+        ...
+
 
 CONTROL_ID = 0x01
 """Identifier of the only frame that moves the robot (docs/the-robot.md#messages)."""

@@ -9,7 +9,6 @@ from typing import NamedTuple
 from hal.odometry import WheelOdometry
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
 from hal.sensor_signs import (
     FLICKERS_TICKS,
@@ -20,6 +19,7 @@ from hal.sensor_signs import (
     SensorFault,
     SensorLimits,
     SensorSigns,
+    beam_of,
 )
 
 

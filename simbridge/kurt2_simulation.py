@@ -6,9 +6,9 @@ from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from hal.tap import Tap
-from simbridge.can_line import CanLine
 from simbridge.robot_simulation import RobotSimulation, chance_of
 from simbridge.simulated_kurt2 import SimulatedKurt2
+from simbridge.simulated_link import CanLine
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 

@@ -11,14 +11,12 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import LiveSimulation
 from hal.tap import Tap, refuse_tap
 from simbridge.controller.controller import Controller
-from simbridge.live_simulation import run_live
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
-from simbridge.robot_simulation import RobotSimulation, chance_of
+from simbridge.robot_simulation import RobotSimulation, StallTolerantLinkedRobot, chance_of, run_live
 from simbridge.robot_worlds import RobotWorlds
 from simbridge.simulated_link import SimulatedLink
 from simbridge.simulated_robot import MakeSensors, SimulatedRobot, infrared_sensors
-from simbridge.stall_tolerant import StallTolerantLinkedRobot
 from simbridge.worlds.world_loading import load_world
 
 

@@ -1,4 +1,4 @@
-"""A simulated robot in one world, with the runtime's driver at the other end of its link."""
+"""A simulated robot in one world, with the runtime's driver at the other end of its link; also in real time."""
 
 import math
 import random
@@ -6,20 +6,26 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
+from typing import Final
 
 import shapely
 
+from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
+from hal.kurt2 import Kurt2
+from hal.linked_robot import LinkedRobot
+from hal.robot import GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.settings_files import YAML_SUFFIXES
-from hal.simulation import Pose, Position, WallSide, WorldPlan
+from hal.simulation import LiveSimulation, Pose, Position, WallSide, WorldPlan
 from simbridge.realtime import RealtimeSimulation
 from simbridge.robot.world import World
 from simbridge.simulated_link import SimulatedLink
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.simulated_world import plan_of
+from simbridge.simulated_world import RealtimeWorld, plan_of
 from simbridge.survey.free_poses import FreePoses
 from simbridge.worlds.geometry import Point
+from simbridge.worlds.world_settings import WorldSettings
 
 
 class Clearance:
@@ -192,3 +198,62 @@ def chance_of(world: str, seed: int, purpose: str) -> random.Random:
     """
     name = Path(world).stem if world.endswith(YAML_SUFFIXES) else world
     return random.Random(f"{purpose} in world {name}, seed {seed}")
+
+
+@contextmanager
+def run_live(simulation: RobotSimulation, driver: GuardedRobot, world: WorldSettings) -> Iterator[LiveSimulation]:
+    """Run a simulation in real time, its watchdog running, with its world for a teacher; close it at the end.
+
+    `driver`: of the simulation, tolerant of stalls. `world`: in which it drives. Leaving raises the error that ended
+    the simulation.
+    """
+    try:
+        with simulation.live() as thread:
+            ground = RealtimeWorld(simulation.simulated_robot, world, simulation.settings.geometry, thread)
+            yield LiveSimulation(simulation, driver, ground)
+            # While the simulation still runs, so that the last frame finds a listener.
+            driver.emergency_stop(GuardReason.RUN_OVER)
+    finally:
+        simulation.close()
+
+
+class StallTolerant(GuardedRobot):
+    """Brakes while ticks cease, as every driver does, and releases that latch with the next tick.
+
+    Nothing can come to harm: wheels and walls are in the program that stalled. Never for a robot on a real bus, nor for
+    a simulator in another program, which goes on while this one stalls.
+    """
+
+    _requested: GuardReason | None = None
+    """Reason given to `emergency_stop` last; None since the last release."""
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        """Ask for wheel speeds in m/s; the tick that ends a stall stands, and its latch is not kept. Times in s."""
+        grant = super().drive(wanted, decided_at_s, now_s)
+        if not grant.latched or grant.reasons != _STALLED or self._requested is not None:
+            return grant
+        super().release()
+        if self._requested is not None:  # by a signal's thread, just before the release
+            super().emergency_stop(self._requested)
+        return grant._replace(latched=self.health.latched is not None)
+
+    def emergency_stop(self, reason: GuardReason) -> None:
+        """Brake now and stay stopped until `release`, also if a stall had latched the guard before."""
+        self._requested = reason
+        super().emergency_stop(reason)
+
+    def release(self) -> None:
+        """End a latched stop; the robot stands until it is driven."""
+        self._requested = None
+        super().release()
+
+
+_STALLED: Final = (GuardReason.TICKS_CEASED,)
+
+
+class StallTolerantKurt2(StallTolerant, Kurt2):
+    """KURT2 whose simulation stalls with its driver."""
+
+
+class StallTolerantLinkedRobot(StallTolerant, LinkedRobot):
+    """Robot over a RobotLink whose simulation stalls with its driver."""

@@ -9,8 +9,8 @@ from typing import TextIO
 
 from hal.simulation import Pose
 from hal.world_refusal import WorldRefusedError
+from simbridge.realtime import StandaloneRobot
 from simbridge.simulated_world import RealtimeWorld
-from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_settings import WorldSettings
 
 HELP = """\

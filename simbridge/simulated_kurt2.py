@@ -1,8 +1,8 @@
 """Simulated KURT2: a simulated robot with KURT2's micro-controller at one end of a CAN bus."""
 
 from hal.kurt2_settings import Kurt2Settings
-from simbridge.controller.controller_bus import ControllerBus
 from simbridge.controller.microcontroller import MicroController
+from simbridge.controller.telemetry import ControllerBus
 from simbridge.robot.infrared import InfraredSensors
 from simbridge.robot.instruments import Instruments
 from simbridge.robot.wheels import Wheels

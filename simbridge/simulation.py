@@ -9,11 +9,10 @@ from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import LiveSimulation
 from hal.tap import Tap
-from simbridge.can_line import CanLine
 from simbridge.kurt2_simulation import Kurt2Simulation
-from simbridge.live_simulation import run_live
+from simbridge.robot_simulation import StallTolerantKurt2, run_live
 from simbridge.robot_worlds import RobotWorlds
-from simbridge.stall_tolerant import StallTolerantKurt2
+from simbridge.simulated_link import CanLine
 from simbridge.worlds.world_loading import load_world
 
 

@@ -47,7 +47,7 @@ _MODULES = (
     "simbridge.simulated_world",
     "numpy.ma",
     "rich._emoji_codes",
-    "simbridge.standalone",
+    "simbridge.realtime",
     "typer._adapters",
     "uvicorn",
 )

@@ -5,7 +5,7 @@ import random
 from collections import Counter
 from collections.abc import Sequence
 
-from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.angle_about import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
 from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Metrics, MetricSettings, TaskMetric
 from hal.areas import Borders

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.angle_about import MEASURE_EVERY, Mean
 from behaviors.metrics.task_metric import (
     DISTANCE_ERROR,
     LEAST_SPEED_M_S,

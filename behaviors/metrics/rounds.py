@@ -7,8 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from behaviors.metrics.angle_about import AngleAbout
-from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.angle_about import MEASURE_EVERY, AngleAbout, Mean
 from behaviors.metrics.task_metric import DISTANCE_ERROR, Metrics, MetricSettings, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan

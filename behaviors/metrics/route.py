@@ -8,8 +8,8 @@ from typing import Annotated
 
 from pydantic import Field
 
+from behaviors.metrics.angle_about import MEASURE_EVERY, Mean
 from behaviors.metrics.junctions import QUARTERS
-from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.routes import Leg, Route, random_route
 from behaviors.metrics.streets import Junction, StreetMap
 from behaviors.metrics.task_metric import (

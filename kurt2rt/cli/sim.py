@@ -92,9 +92,9 @@ def sim(options: _Options) -> None:
 
 def _simulate(options: _Options, settings: RobotSettings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
+    from simbridge.realtime import StandaloneRobot
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
     from simbridge.simulated_world import RealtimeWorld
-    from simbridge.standalone import StandaloneRobot
     from simbridge.worlds.world_loading import load_world
 
     ground_plan = load_world(options.world, settings)

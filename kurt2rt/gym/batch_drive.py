@@ -3,8 +3,7 @@
 from collections.abc import Iterable
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.batch import BatchFactory, CommandedMind, DriveSettings, Trace
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchFactory, BatchRefusedError, CommandedMind, DriveSettings, Trace
 from hal.robot import SensorReadings
 from hal.simulation import Pose, Position
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception

@@ -7,8 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.areas import Borders
-from hal.batch import STANDS, TRACED_TICKS, AskedMind, CommandedMind, DriveSettings, Mind, Stretch, Tally, Trace
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import (
+    STANDS,
+    TRACED_TICKS,
+    AskedMind,
+    BatchRefusedError,
+    CommandedMind,
+    DriveSettings,
+    Mind,
+    Stretch,
+    Tally,
+    Trace,
+)
 from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
@@ -26,11 +36,11 @@ from simbridge.batch.record import (
     STAYS,
     STRETCH,
     UNDECIDED,
+    restart_window,
 )
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
-from simbridge.batch.tally import restart_window
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.simulated_robot import hash_state

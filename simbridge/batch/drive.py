@@ -4,15 +4,14 @@ import math
 
 from hal.numerics import cos_sin
 from simbridge.batch.borders import area_of, crosses
-from simbridge.batch.boxes import keep_box, meet_box
 from simbridge.batch.compiled import compiled
+from simbridge.batch.contacts import keep_box, meet_box
 from simbridge.batch.laws import Averages, BodyLaw, Integers, Knowledge, Laws, World
 from simbridge.batch.minds import COMMANDED, decide
-from simbridge.batch.record import BROKEN, CROWDED, FROZEN, STAYS, Robot, Robots
+from simbridge.batch.record import BROKEN, CROWDED, FROZEN, STAYS, Robot, Robots, count_tick
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure, measure_all
 from simbridge.batch.sight import gather, has_moved, may_touch
-from simbridge.batch.tally import count_tick
 from simbridge.robot.wheels import next_speed
 
 _next_speed = compiled(next_speed)

@@ -5,9 +5,8 @@ from itertools import starmap
 import numpy as np
 
 from hal.areas import Borders
-from hal.batch import STANDS, DriveSettings, PolicyMind
+from hal.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
 from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
-from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
 from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch

@@ -127,7 +127,7 @@ def forget_contradictions(robot: Robot) -> None:
 
 @compiled
 def _follow_obstacle(robot: Robot, i: int, motion: tuple[float, float], law: WatchLaw) -> None:
-    """Add the way past the obstacle of sensor `i`, by a motion in m and rad (hal.sensor_beam)."""
+    """Add the way past the obstacle of sensor `i`, by a motion in m and rad (hal.sensor_signs)."""
     signs, beam, (forward_m, turn_rad) = robot.signs[i], law.beams[i], motion
     counts = (signs[_QUIET_LOW] + signs[_QUIET_HIGH]) / 2
     distance_m = law.numerator_counts_m / (counts + law.bias_counts) - law.offset_m

@@ -20,11 +20,10 @@ from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMi
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import BumperEnd
-from hal.sensor_beam import beam_of
 from hal.sensor_ring import neighbours_of
-from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES
+from hal.sensor_signs import HIGHEST, LOWEST, STUCK_TIMES, beam_of
 from simbridge.batch.borders import OUTSIDE
-from simbridge.batch.boxes import keep_box
+from simbridge.batch.contacts import keep_box
 from simbridge.batch.laws import BodyLaw, Floats, GuardLaw, Laws, MindLaw, SensorLaw, StuckLaw, WatchLaw, World
 from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.safety import UNSEEN

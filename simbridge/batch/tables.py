@@ -10,8 +10,16 @@ from behaviors.policies.eight import Eight
 from behaviors.policies.fleeing import Fleeing
 from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
-from hal.batch import AskedMind, CommandedMind, DriveSettings, FeatureTable, Mind, PolicyMind, TaughtMind
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import (
+    AskedMind,
+    BatchRefusedError,
+    CommandedMind,
+    DriveSettings,
+    FeatureTable,
+    Mind,
+    PolicyMind,
+    TaughtMind,
+)
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import HIGHEST_COUNTS
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge

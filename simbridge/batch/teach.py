@@ -6,8 +6,8 @@ from hal.batch_lesson import LessonCause, LessonLog
 from hal.open_question import SURE_SHARE
 from hal.slow_way import advance_way
 from simbridge.batch.borders import crosses
-from simbridge.batch.boxes import meet_box
 from simbridge.batch.compiled import compiled
+from simbridge.batch.contacts import meet_box
 from simbridge.batch.drive import begin_tick, sense_tick
 from simbridge.batch.laws import Features, Floats, Integers, Laws, World
 from simbridge.batch.matching import scan_nearest

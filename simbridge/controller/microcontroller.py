@@ -7,8 +7,7 @@ from hal.codec import InvalidFrameError, load_codec
 from hal.control import Mode, RawControl, SystemControl, decode_control
 from hal.kurt2_settings import Kurt2Settings
 from simbridge.controller.controller import MOTORS_BRAKED, MOTORS_OFF, MotorCommands
-from simbridge.controller.controller_bus import ControllerBus
-from simbridge.controller.telemetry import Telemetry
+from simbridge.controller.telemetry import ControllerBus, Telemetry
 from simbridge.robot.instruments import Instruments
 
 CRASH_STEP_M_S = 0.45

@@ -12,7 +12,7 @@ REOPEN_PERIOD_S = 1.0
 
 
 class ReconnectingBus:
-    """Bus (simbridge.controller.controller_bus.ControllerBus) that never raises.
+    """Bus (simbridge.controller.telemetry.ControllerBus) that never raises.
 
     Without the interface nothing arrives, and sent frames are lost and counted. It is reopened once a second.
     """

@@ -1,14 +1,41 @@
-"""Schedule of the frames from the robot to the notebook."""
+"""Schedule of the frames from the robot to the notebook, and the robot's end of the bus."""
 
 from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import can
 
 from hal.codec import Codec, MessageCodec
 from hal.frame import Frame
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import Kurt2InfraredSettings, Kurt2Settings
 from hal.settings import SettingsError
-from simbridge.controller.controller_bus import SendingPort
 from simbridge.robot.instruments import Instruments
+
+
+class SendingPort(Protocol):
+    """Sender of telemetry frames (hal.bus.FramePort)."""
+
+    def send(self, frame: can.Message) -> None:
+        """Send a frame without blocking. Raises hal.bus.BusError."""
+        ...
+
+    def send_all(self, frames: Sequence[Frame]) -> None:
+        """Send frames in order without blocking. Raises hal.bus.BusError."""
+        ...
+
+
+class ControllerBus(Protocol):
+    """Bus of the controller (hal.bus.CanBus)."""
+
+    def drain(self) -> list[can.Message]:
+        """Return the received frames, oldest first, without blocking. Raises hal.bus.BusError."""
+        ...
+
+    def telemetry_port(self) -> SendingPort:
+        """Return a sender of all frames except CONTROL; may be called several times."""
+        ...
+
 
 SLOW_CYCLES = 10
 """Period, in cycles, of frames that do not steer the robot. A source has 10 ms for ENCODER alone

@@ -93,7 +93,7 @@ class Cable:
 
 
 class CableInterface:
-    """End of a cable (hal.can_interface.CanInterface)."""
+    """End of a cable (hal.bus.CanInterface)."""
 
     receives_own_frames = True
 

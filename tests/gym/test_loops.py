@@ -10,8 +10,7 @@ import pytest
 from gymnasium.vector import SyncVectorEnv
 
 import kurt2rt.gym  # noqa: F401 - registers the environments
-from hal.batch import DriveSettings, FixedSpeeds
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchRefusedError, DriveSettings, FixedSpeeds
 from hal.kurt2_settings import Kurt2Settings
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation

@@ -8,8 +8,7 @@ from types import TracebackType
 from typing import Self
 
 from behaviors.repertoire import load_repertoire
-from hal.bus import open_bus
-from hal.can_interface import CanInterface
+from hal.bus import CanInterface, open_bus
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus

@@ -16,7 +16,7 @@ FAST = Frame(CONTROL_ID, bytes((0, 2, 0, 9, 0, 1, 0, 9)))
 
 
 class HeldEnd:
-    """An end (hal.can_interface.CanInterface) whose controller sends only what it is told to."""
+    """An end (hal.bus.CanInterface) whose controller sends only what it is told to."""
 
     receives_own_frames = True
 

@@ -13,7 +13,6 @@ PACKAGES = ("config", "hal", "behaviors", "kurt2rt", "simbridge")
 RAW_BUS = {"Bus", "BusABC", "ThreadSafeBus", "VirtualBus", "SocketcanBus", "interface", "interfaces"}
 KINDS_OF_BUS = {
     "hal/bus.py",
-    "hal/can_interface.py",
     "hal/in_process_bus.py",
     "hal/python_can.py",
     "hal/shared_bus.py",

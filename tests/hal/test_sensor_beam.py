@@ -6,7 +6,7 @@ import pytest
 
 from hal.kurt2_settings import load_kurt2
 from hal.odometry import PlanePose, WheelMotion
-from hal.sensor_beam import beam_of
+from hal.sensor_signs import beam_of
 
 INFRARED = load_kurt2().infrared
 

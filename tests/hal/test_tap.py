@@ -2,8 +2,7 @@
 
 import can
 
-from hal.bus import CanBus, open_bus
-from hal.can_interface import CanInterface
+from hal.bus import CanBus, CanInterface, open_bus
 from hal.control import encode_brake
 from hal.in_process_bus import InProcessBus
 from tests.hal.helpers import CODEC, cycle, send

@@ -11,8 +11,8 @@ from hal.frame import Frame
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
+from simbridge.realtime import StandaloneRobot
 from simbridge.robot_end import CanRobotEnd
-from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
 from tests.patience import PATIENCE_S
 from tests.simbridge.rig import CODEC, ROBOT

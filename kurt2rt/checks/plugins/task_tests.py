@@ -14,7 +14,7 @@ from behaviors.behaviour import Behaviour
 from behaviors.judges.judge import AppraisalFeatures, JudgeSettings
 from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.policies.policy import PolicySettings
-from behaviors.primitives import primitive_speeds
+from behaviors.repertoire import primitive_speeds
 from behaviors.repertoire_settings import PluginAction
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_kind import simulations_of

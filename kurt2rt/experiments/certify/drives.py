@@ -213,7 +213,7 @@ async def drive_on_bus(
 
 
 def _length_m(trail: Sequence[Position]) -> float:
-    """Return the length of a trail in m, rounded as the batch rounds it (simbridge.batch.tally)."""
+    """Return the length of a trail in m, rounded as the batch rounds it (simbridge.batch.record)."""
     length_m = 0.0
     for old, new in pairwise(trail):
         dx, dy = new.x_m - old.x_m, new.y_m - old.y_m

@@ -7,8 +7,7 @@ from typing import ClassVar, NamedTuple
 
 import anyio
 
-from hal.batch import BatchFactory
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchFactory, BatchRefusedError
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus, opened_batch

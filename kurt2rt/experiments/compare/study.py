@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchRefusedError
 from hal.settings import Settings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.compare.lesson import LessonSetup, Mark, PupilLesson, give_lesson

@@ -12,6 +12,7 @@ from behaviors.turn_by_angle import TurnByAngle
 from hal.batch import (
     Action,
     AskedMind,
+    BatchRefusedError,
     Choose,
     DriveSettings,
     FeatureKind,
@@ -25,7 +26,6 @@ from hal.batch import (
     Turn,
     WallDistance,
 )
-from hal.batch_refusal import BatchRefusedError
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner_team import LearnerTeam

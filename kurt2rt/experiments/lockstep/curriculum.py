@@ -5,9 +5,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.batch import BatchFactory
+from hal.batch import BatchFactory, BatchRefusedError
 from hal.batch_lesson import LessonFactory
-from hal.batch_refusal import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent

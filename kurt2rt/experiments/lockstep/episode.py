@@ -62,7 +62,7 @@ class StuckDetector:
         """Enter a position, and return whether the robot stayed near it for a whole window."""
         self._positions.append(position)
         full = len(self._positions) == self._positions.maxlen
-        # Squares are rounded alike in compiled code (simbridge.batch.tally); a hypotenuse is not.
+        # Squares are rounded alike in compiled code (simbridge.batch.record); a hypotenuse is not.
         return full and all(
             (position.x_m - old.x_m) * (position.x_m - old.x_m) + (position.y_m - old.y_m) * (position.y_m - old.y_m)
             < self._least_m2

@@ -1,6 +1,6 @@
 """Scripted teacher of a training run, built by the plan of its lesson."""
 
-from behaviors.primitives import primitive_speeds
+from behaviors.repertoire import primitive_speeds
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import load_critic

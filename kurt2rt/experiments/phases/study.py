@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar, NamedTuple
 
 from behaviors.judges.judge import Judge
-from behaviors.primitives import primitive_speeds
+from behaviors.repertoire import primitive_speeds
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from kurt2rt.core.critic.settings import CriticSettings, load_critic

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Generic, NamedTuple, Self, TypeVar
 
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from kurt2rt.core.task_settings import TaskSettings

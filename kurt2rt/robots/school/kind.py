@@ -21,8 +21,8 @@ class SchoolKind:
 
         Raises hal.bus.BusError, also for another device, hal.settings.SettingsError for a tap.
         """
+        from hal.byte_port import SerialPort
         from hal.linked_robot import LinkedRobot
-        from hal.serial_port import SerialPort
         from kurt2rt.robots.school.lines import BIT_RATE_BIT_S, NUMBERS
         from kurt2rt.robots.school.link import SchoolLink
 

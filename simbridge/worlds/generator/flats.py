@@ -7,8 +7,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from simbridge.worlds.generator.drivable import TURNING_M
 from simbridge.worlds.generator.seeded_random import SeededRandom
+from simbridge.worlds.generator.starts import TURNING_M
 from simbridge.worlds.geometry import rectangle
 from simbridge.worlds.world_settings import WorldSettings
 

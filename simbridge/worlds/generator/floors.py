@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 import shapely
 
-from simbridge.worlds.generator.drivable import TURNING_M
 from simbridge.worlds.generator.seeded_random import SeededRandom
-from simbridge.worlds.generator.starts import starts_along_walls
+from simbridge.worlds.generator.starts import TURNING_M, starts_along_walls
 from simbridge.worlds.geometry import Point, polygons_of, rectangle
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
 from simbridge.worlds.world_settings import WorldSettings

@@ -5,9 +5,8 @@ from itertools import combinations, pairwise
 
 import shapely
 
-from simbridge.worlds.generator.drivable import FOLLOWING_M, is_drivable
 from simbridge.worlds.generator.seeded_random import SeededRandom
-from simbridge.worlds.generator.starts import starts_along_walls
+from simbridge.worlds.generator.starts import FOLLOWING_M, is_drivable, starts_along_walls
 from simbridge.worlds.geometry import Edge, Point, edges_of, is_convex, polygons_of, rectangle
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, WallSettings
 from simbridge.worlds.world_settings import WorldSettings

@@ -3,24 +3,67 @@
 import math
 import warnings
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
-from pydantic import ValidationError
+from pydantic import AliasChoices, ConfigDict, Field, ValidationError, model_validator
 from shapely.affinity import scale, translate
 
 from hal.numerics import cos_sin
 from hal.robot_settings import GeometrySettings
-from hal.settings import SettingsError, load_settings
+from hal.settings import Settings, SettingsError, load_settings
 from hal.simulation import Pose
-from simbridge.worlds.map_server.settings import MapSettings, MapWorldSettings, image_error
 from simbridge.worlds.map_server.starts import starts_beside_walls, turning_places
 from simbridge.worlds.map_server.tracing import TooRaggedError, trace
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
+
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class MapSettings(Settings):
+    """YAML file of a map with map_server's keys; keys of other programs are allowed."""
+
+    model_config = ConfigDict(extra="ignore")
+
+    image: Annotated[str, Field(validation_alias=AliasChoices("image", "Image"))]
+    """PGM or PNG file, relative to the YAML file."""
+    resolution: Annotated[float, Field(gt=0, le=1)]
+    """Metres per cell."""
+    origin: tuple[float, float, float]
+    """Position in m and counter-clockwise rotation in rad of the image's lower left corner."""
+    negate: bool | Literal[0, 1]
+    """0 if dark cells are occupied, 1 if bright ones are."""
+    occupied_thresh: Share
+    free_thresh: Share
+    mode: Literal["trinary", "scale", "raw"] = "trinary"
+
+    @model_validator(mode="after")
+    def _has_room_between_its_thresholds(self) -> Self:
+        if self.free_thresh >= self.occupied_thresh:
+            raise ValueError(
+                f"free_thresh must be below occupied_thresh (got {self.free_thresh}, allowed < {self.occupied_thresh})"
+            )
+        return self
+
+
+def image_error(source: Path, what: str, do: str) -> SettingsError:
+    """Return the error that refuses a map's image: `what` is wrong, and what to `do`."""
+    return SettingsError(what, where=f"{source}: image", do=do)
+
+
+class MapWorldSettings(Settings):
+    """World on a map with start poses in the map's frame, as RViz shows it."""
+
+    map: str
+    """YAML file of the map, relative to this file."""
+    infrared_rays: Literal[1, 3] | None = None
+    """Rays per sensor; by default 3 if something on the map is thinner than the gap between two sensors."""
+    start_poses: Annotated[tuple[StartPoseSettings, ...], Field(min_length=1)]
+
 
 MOST_WALLS = 5000
 _MOST_M = 200.0

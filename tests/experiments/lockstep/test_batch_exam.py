@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchRefusedError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch

@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.batch_refusal import BatchRefusedError
+from hal.batch import BatchRefusedError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from behaviors.primitives import primitive_speeds
+from behaviors.repertoire import primitive_speeds
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import NAMES, load_critic
 from kurt2rt.core.rla.condition import Space

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import pytest
 
+from hal.byte_port import SerialPort
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
-from hal.serial_port import SerialPort
 from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.robot_tests import RobotTests
 from kurt2rt.robots.school.kind import SCHOOL, SchoolKind

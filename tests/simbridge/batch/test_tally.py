@@ -8,8 +8,7 @@ import pytest
 from hal.simulation import Pose
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
 from simbridge.batch.laws import StuckLaw
-from simbridge.batch.record import Sizes, empty_robots
-from simbridge.batch.tally import count_tick, restart_window
+from simbridge.batch.record import Sizes, count_tick, empty_robots, restart_window
 
 PERIOD_S = 0.01
 NO_RULE = StuckLaw(1, 0, 0.0)

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.bus import BusError, CanBus, open_bus
-from hal.can_interface import CanInterface
+from hal.bus import BusError, CanBus, CanInterface, open_bus
 from hal.control import Mode, SpeedControl, control_frame
 from hal.in_process_bus import QUEUE_FRAMES, InProcessBus
 from simbridge.controller.reconnecting_bus import ReconnectingBus

@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from hal.settings import SettingsError
-from simbridge.worlds.generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
+from simbridge.worlds.generator.starts import FOLLOWING_M, TURNING_M, is_drivable
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, Rig

@@ -15,9 +15,8 @@ import yaml
 from numpy.typing import NDArray
 from PIL import Image
 
-from simbridge.worlds.map_server.settings import MapSettings
 from simbridge.worlds.map_server.tracing import trace
-from simbridge.worlds.map_server.world import MOST_WALLS, drivable_cells
+from simbridge.worlds.map_server.world import MOST_WALLS, MapSettings, drivable_cells
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings
 from tests.simbridge.rig import ROBOT, refusal
