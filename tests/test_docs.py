@@ -17,7 +17,6 @@ import anyio
 import pytest
 import yaml
 
-import behaviors.policies
 from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
@@ -189,7 +188,7 @@ def folder(plugin_folder: Path, taught: Path) -> Path:
     record(tmp_path, STORED / "walls.mcap")
     for name, text in changed_copies():
         (tmp_path / name).write_text(text, encoding="utf-8")
-    write_printed_modules(tmp_path)
+    write_printed_files(tmp_path)
     return tmp_path
 
 
@@ -207,12 +206,12 @@ def changed_copies() -> Iterator[tuple[str, str]]:
         yield names[2], text
 
 
-def write_printed_modules(folder: Path) -> None:
-    """Write each module of a reader's own that begins with its file name."""
-    for block in blocks("python"):
-        if named := re.match(r"# (my_\w+\.py)\n", block.text):
-            (folder / named[1]).write_text(block.text, encoding="utf-8")
-            sys.modules.pop(named[1].removesuffix(".py"), None)  # of another test's folder
+def write_printed_files(folder: Path) -> None:
+    """Write each module and settings file of a reader's own that begins with its file name."""
+    for block in (*blocks("python"), *blocks("yaml")):
+        if named := re.match(r"# (my_\w+)(\.py|\.yaml)\b", block.text):
+            (folder / f"{named[1]}{named[2]}").write_text(block.text, encoding="utf-8")
+            sys.modules.pop(named[1], None)  # of another test's folder
 
 
 def record(folder: Path, segment: Path) -> None:
@@ -266,10 +265,11 @@ def test_long_documented_commands_run_with_smaller_numbers(story: Story, folder:
         run(LONG[command_of(words)](words) if is_long(words) else words, folder)
 
 
-def printed_errors(document: str) -> list[str]:
-    """Return each error line that a plain block of a document prints, without "kurt2rt: "."""
-    text = (ROOT / "docs" / document).read_text(encoding="utf-8")
-    return re.findall(r"^kurt2rt: (.+)$", text, re.MULTILINE)
+def section(document: str, title: str) -> str:
+    """Return the text below a heading of the second level in a page of docs/."""
+    _, _, rest = (ROOT / "docs" / document).read_text(encoding="utf-8").partition(f"\n## {title}\n")
+    assert rest, f"{document}: no section {title}"
+    return rest.partition("\n## ")[0]
 
 
 @pytest.fixture
@@ -280,7 +280,7 @@ def kurt2rt(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.Capture
 
 
 def test_added_sensor_on_a_current_channel_or_unknown_is_refused(kurt2rt: CommandLine) -> None:
-    on_current, unknown, *_ = printed_errors("add-a-sensor.md")
+    on_current, unknown, *_ = re.findall(r"^kurt2rt: (.+)$", section("extend.md", "A distance sensor"), re.MULTILINE)
     robot = Path("my_robot.yaml")
     robot.write_text(robot.read_text(encoding="utf-8").replace("ADC10", "ADC12"), encoding="utf-8")
     assert kurt2rt.refused("demo", "--robot-settings", "my_robot.yaml") == f"kurt2rt: {on_current}"
@@ -288,7 +288,7 @@ def test_added_sensor_on_a_current_channel_or_unknown_is_refused(kurt2rt: Comman
 
 
 def test_added_sensor_refuses_old_knowledge_as_printed(kurt2rt: CommandLine) -> None:
-    text = (ROOT / "docs/add-a-sensor.md").read_text(encoding="utf-8")
+    text = section("extend.md", "A distance sensor")
     refused = re.findall(r"^\$ kurt2rt (exam .+)\nkurt2rt: (.+)$", text, re.MULTILINE)
     assert len(refused) == 2
     for command, message in refused:
@@ -306,9 +306,7 @@ def test_added_sensor_is_a_feature_of_the_taught_run(kurt2rt: CommandLine) -> No
 
 
 def test_printed_tests_of_plug_ins_pass(folder: Path) -> None:
-    text = "".join(
-        (ROOT / "docs" / name).read_text(encoding="utf-8") for name in ("add-a-learner.md", "add-a-policy.md")
-    )
+    text = (ROOT / "docs/extend.md").read_text(encoding="utf-8")
     files = re.findall(r"^\$ pytest (my_\w+\.py)$", text, re.MULTILINE)
     assert len(files) == 2
     with started("pytest", "-q", "-p", "no:cacheprovider", *files, folder=folder) as tests:
@@ -326,23 +324,17 @@ def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) 
 
 
 def test_added_policy_is_refused_and_taught_as_printed(kurt2rt: CommandLine) -> None:
-    text = (ROOT / "docs/add-a-policy.md").read_text(encoding="utf-8")
-    printed = re.findall(r"^\$ kurt2rt (.+)\n((?:(?!\$|```).+\n)*)", text, re.MULTILINE)
-    assert len(printed) == 5
-    for command, output in printed:
-        said = kurt2rt(*shlex.split(command))
-        if output.startswith("kurt2rt: "):
-            assert said.err.replace(str(Path.cwd()), "FOLDER") == output
-        else:
-            assert (said.exit_code, said.out[: len(output)]) == (0, output), said.err
+    text = section("extend.md", "A task and its policy")
+    ((command, output),) = re.findall(r"^\$ kurt2rt (.+)\n(kurt2rt: .+\n)", text, re.MULTILINE)
+    assert kurt2rt(*shlex.split(command)).err.replace(str(Path.cwd()), "FOLDER") == output
     short = ("teaching.supervised_s=3", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
-    said = kurt2rt("demo", "--task", "my_flight.yaml", *(word for each in short for word in ("--set", each)))
+    said = kurt2rt("demo", "--task", "my_task.yaml", *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
-    assert Path("results/demo/fleeing-0.knowledge").is_file()
+    assert Path("results/demo/wandering-0.knowledge").is_file()
 
 
 def test_robot_of_the_docs_is_made_and_taught(kurt2rt: CommandLine, plugin_folder: Path) -> None:
-    text = (ROOT / "docs/teach-another-robot.md").read_text(encoding="utf-8")
+    text = section("other-robots.md", "Ten minutes to a robot that learns")
     made, installed, checked, taught = re.findall(r"^\$ (.+)$", text, re.MULTILINE)[:4]
     assert kurt2rt(*shlex.split(made)[1:]).out.endswith(f"next: {checked}\n")
     assert installed == "pip install -e rover"
@@ -380,31 +372,25 @@ def test_examples_in_python_run(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def documented_policies(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Policies of the documentation are where a reader would put them."""
-    folder = tmp_path_factory.mktemp("policies")
-    for block in blocks("python"):
-        if named := re.match(r"# behaviors/policies/(\w+)\.py\n", block.text):
-            (folder / f"{named[1]}.py").write_text(block.text, encoding="utf-8")
-            monkeypatch.delitem(sys.modules, f"behaviors.policies.{named[1]}", raising=False)
-    monkeypatch.setattr(behaviors.policies, "__path__", [*behaviors.policies.__path__, str(folder)])
+def printed_files(plugin_folder: Path) -> None:
+    """Write the printed files to the current folder, where a reader would put them."""
+    write_printed_files(plugin_folder)
 
 
 def printed_task(name: str, folder: Path, **shorter: Mapping[str, object]) -> Path:
     """Write a printed task, or a changed copy of a shipped one; `shorter` gives keys of its sections another value."""
-    printed = (block.text for block in blocks("yaml") if block.text.startswith(f"# config/tasks/{name}\n"))
-    content = yaml.safe_load(dict(changed_copies()).get(name) or next(printed))
+    path = folder / name
+    content = yaml.safe_load(dict(changed_copies()).get(name) or path.read_text(encoding="utf-8"))
     for section, values in shorter.items():
         content[section].update(values)
-    path = folder / name
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
     return path
 
 
-PRINTED_TASKS = ("my_task.yaml", "wandering.yaml")
+PRINTED_TASKS = ("slow_answers.yaml", "my_task.yaml")
 
 
-@pytest.mark.usefixtures("documented_policies")
+@pytest.mark.usefixtures("printed_files")
 @pytest.mark.parametrize("name", PRINTED_TASKS)
 def test_printed_task_after_a_short_lesson_succeeds(name: str, tmp_path: Path) -> None:
     world = yaml.safe_load(printed_task(name, tmp_path).read_text(encoding="utf-8"))["teaching"]["world"]
@@ -420,7 +406,7 @@ def test_printed_task_after_a_short_lesson_succeeds(name: str, tmp_path: Path) -
 
 
 @pytest.mark.deep
-@pytest.mark.usefixtures("documented_policies")
+@pytest.mark.usefixtures("printed_files")
 @pytest.mark.parametrize("name", PRINTED_TASKS)
 def test_printed_task_on_the_default_seed_succeeds(name: str, tmp_path: Path) -> None:
     task = load_task(str(printed_task(name, tmp_path)))
@@ -459,7 +445,7 @@ def examined(task: TaskSettings, seed: int, folder: Path) -> tuple[WorldResult, 
     return anyio.run(lambda: run_exams(STAGE, ROBOT, task, taught.events, worlds, seed=seed, report=lambda *_: None))
 
 
-@pytest.mark.usefixtures("documented_policies")
+@pytest.mark.usefixtures("printed_files")
 @pytest.mark.parametrize("block", list(blocks("yaml")), ids=where)
 def test_an_example_of_settings_loads(block: Block, tmp_path: Path) -> None:
     named = re.match(

@@ -74,7 +74,7 @@ def compare(options: _Options) -> None:
         kurt2rt study compare --learner mine:Mine
 
     Results are kept in --out with hashes of what made them; a run that was
-    interrupted goes on where it was. docs/add-a-learner.md says how to write
+    interrupted goes on where it was. docs/extend.md says how to write
     a learner.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.

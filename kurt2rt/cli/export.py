@@ -52,7 +52,7 @@ def lerobot(
     A frame holds wheel speeds (observation.state), sensor readings
     (observation.environment_state), the speeds that were decided (action), the
     teacher's rewards (next.reward), and whether a teacher drove by hand.
-    docs/lerobot.md explains each column.
+    docs/python.md explains each column.
 
         kurt2rt export lerobot
         kurt2rt export lerobot var/runs/*-wall_following --fps 20

@@ -71,7 +71,7 @@ def new(
     """Write a learner or a robot to begin with: a folder that installs, with tests.
 
     Its test inherits one for each promise of its kind; pytest runs them. A part
-    of another kind is one file, and its tests another (docs/add-a-policy.md).
+    of another kind is one file, and its tests another (docs/extend.md).
 
     For example:
 

@@ -81,7 +81,7 @@ def ros(options: _Options) -> None:
 
     Every node of this ROS network can drive and teach the robot, so keep it
     closed. Waits for a robot and a router that are not there yet; ends on Ctrl-C.
-    docs/ros.md has the rest.
+    docs/other-robots.md has the rest.
     """
     if options.namespace and not is_ros_name(options.namespace):
         raise typer.BadParameter("is no name of ROS; use letters, digits and _, joined by /", param_hint="--namespace")

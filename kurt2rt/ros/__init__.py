@@ -1,1 +1,1 @@
-"""ROS 2 messages and topics over zenoh, without ROS (extra `ros`; docs/ros.md)."""
+"""ROS 2 messages and topics over zenoh, without ROS (extra `ros`; docs/other-robots.md)."""

@@ -1,4 +1,4 @@
-"""Connection to ROS 2 topics and services over zenoh: to a router, a bridge or another program (docs/ros.md)."""
+"""Connection to ROS 2 over zenoh: to a router, a bridge or another program (docs/other-robots.md)."""
 
 import json
 import threading

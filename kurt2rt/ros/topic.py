@@ -1,4 +1,4 @@
-"""Topics and services, and their key expressions on zenoh (docs/ros.md, "Names on zenoh")."""
+"""Topics and services, and their key expressions on zenoh (docs/other-robots.md#names-on-zenoh)."""
 
 from typing import NamedTuple
 

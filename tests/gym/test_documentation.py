@@ -14,7 +14,7 @@ from kurt2rt.gym.registration import ENVIRONMENTS
 from tests.gym.helpers import environment
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGE = (DOCS / "gymnasium.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "python.md").read_text(encoding="utf-8")
 
 
 def test_page_lists_each_environment_and_its_reward() -> None:

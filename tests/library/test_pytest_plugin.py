@@ -7,7 +7,7 @@ import pytest
 
 pytest_plugins = ["pytester"]
 
-PAGE = Path(__file__).parents[2] / "docs" / "use-as-a-library.md"
+PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 
 GIVEN = """
 import can, pytest

@@ -23,7 +23,7 @@ class SkeletonKind(StrEnum):
 _USES = {
     SkeletonKind.LEARNERS: "\n`kurt2rt study compare --learner $name` teaches it and compares it with others.\n",
     SkeletonKind.ROBOTS: "\n`kurt2rt demo --task $name/fleeing` teaches it, once it is installed.\n"
-    "`docs/teach-another-robot.md` of kurt2rt explains its files.\n",
+    "`docs/other-robots.md` of kurt2rt explains its files.\n",
 }
 _FILES = {
     SkeletonKind.LEARNERS: {"test_{name}.py": "test_learner.py", "src/{name}/__init__.py": "learners.py"},

@@ -1,4 +1,7 @@
-"""Lines of the school robot (docs/school-robot.md): a word, the number of the line, other whole numbers, a checksum."""
+"""Lines of the school robot: a word, the number of the line, other whole numbers, a checksum.
+
+docs/other-robots.md#its-line-protocol lists them.
+"""
 
 import re
 from binascii import crc_hqx

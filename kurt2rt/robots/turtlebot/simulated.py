@@ -38,7 +38,7 @@ class SimulatedClock:
 class TurtlebotElectronics:
     """Electronics of a base (simbridge.controller.controller.Controller): it obeys /cmd_vel and sends /odom and /scan.
 
-    It stops without /cmd_vel for the time of its watchdog, which a real TurtleBot3 does not (docs/turtlebot.md).
+    It stops without /cmd_vel for the time of its watchdog, which a real TurtleBot3 does not (docs/other-robots.md).
     """
 
     crashed = False

@@ -19,7 +19,7 @@ class UnitCode(ErrorCode):
     MODULE_OF_THIS_FOLDER = (
         "module of this folder",
         "the service would not find {module}: it is in {file}, and is not installed",
-        "make a package of it and install it next to kurt2rt (docs/add-a-policy.md)",
+        "make a package of it and install it next to kurt2rt (docs/extend.md)",
     )
     NO_ACCESS = ("no access", "{says}", "")
     """A path that the unit's user cannot use; `says` is the text of the access finding."""

@@ -39,7 +39,7 @@ SAID = TEXT[TEXT.index("### Requests") : TEXT.index("### Versions")]
 def bodies() -> dict[str, list[str]]:
     """Return the words of each body by path; nested lists are one place."""
     found: dict[str, list[str]] = {}
-    for row in re.findall(r"^\| \w+ \| (`/.*?) \| (`\[.*?) \|", SAID, re.MULTILINE):
+    for row in re.findall(r"^\| (`/.*?) \| (`\[.*?) \|", SAID, re.MULTILINE):
         paths, written = (re.findall(r"`([^`]*)`", column) for column in row)
         for path, body in zip(paths, written if len(written) == len(paths) else written * len(paths), strict=True):
             found[path] = [each for each in body.strip("[]").split(", ") if each]
