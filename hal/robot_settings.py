@@ -21,7 +21,7 @@ Coordinate = Annotated[float, Field(ge=-1, le=1)]
 
 
 class GeometrySettings(Settings):
-    """Body and wheels."""
+    """Outline, wheels and mass of the robot."""
 
     outline_length_m: Metres
     outline_width_m: Metres
@@ -61,7 +61,11 @@ class GuardSettings(Settings):
 
 
 class SensorSettings(Settings):
-    """One distance sensor, or one sector of a scanner: its name and where it sits."""
+    """One row of the sensor table: a distance sensor, or one sector of a scanner.
+
+    `x_m` and `y_m` are its place from the robot's centre, forward and left; `heading_deg` is 0 ahead, 90 to the left.
+    Readings come in the order of this table.
+    """
 
     name: str
     label: str
@@ -233,7 +237,7 @@ def robot_of_content(content: Any, where: Path | str) -> RobotSettings:
     """
     kind = content.get("kind") if isinstance(content, dict) else None
     if not isinstance(kind, str):
-        raise SettingsError(f"kind: Input should be a valid string (found {kind!r})", where=where)
+        raise SettingsError(f"kind: should be a valid string (found {kind!r})", where=where)
     try:
         schema: type[RobotSettings] = find_robot_kind(kind).settings
     except SettingsError as error:

@@ -4,6 +4,7 @@ import json
 import re
 import stat
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
@@ -16,7 +17,7 @@ from hal.errors import UserError
 
 
 class SettingsError(UserError, ValueError):
-    """Unusable settings file."""
+    """Error of a settings file that names the file, the key and what is allowed."""
 
 
 class Settings(BaseModel):
@@ -143,7 +144,8 @@ def _json_in(path: Path) -> str:
     try:
         return _as_json(text)
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise SettingsError(f"not valid YAML: {' '.join(str(error).split())}", where=path) from error
+        told = " ".join(str(error).split()).replace(' in "<unicode string>"', "")
+        raise SettingsError(f"not valid YAML: {told}", where=path) from error
 
 
 def load_settings(path: Path, schema: type[SettingsT], changes: Mapping[str, str] | None = None) -> SettingsT:
@@ -201,7 +203,7 @@ def _given_by(problem: ErrorDetails, changes: Mapping[str, str]) -> str:
     for key in changes:
         levels = key.split(".")
         if place and levels[: len(place)] == place[: len(levels)]:
-            return f"; --set {key} says so"
+            return f" (set by --set {key})"
     return ""
 
 
@@ -238,13 +240,19 @@ def _explain(problem: ErrorDetails, schema: type[Settings]) -> str:
     key = ".".join(str(part) for part in problem["loc"]) or "(whole file)"
     if problem["type"] == "extra_forbidden":
         allowed = problem.get("ctx", {}).get("allowed") or ", ".join(keys_at(schema, problem["loc"][:-1]))
-        return f"{key}: no such key; allowed here: {allowed}"
+        near = get_close_matches(str(problem["loc"][-1]), allowed.split(", "), n=1)
+        return f"{key}: no such key; allowed here: {allowed}{''.join(f'; did you mean {each}?' for each in near)}"
     if problem["type"] == "missing":
         return f"{key}: this key is missing"
     if problem["type"] == "union_tag_not_found":
         return f"{key}: the key {problem['ctx']['discriminator']} is missing"
+    if problem["type"] == "union_tag_invalid":
+        return "{key}: the key {discriminator} should be one of {expected_tags} (found {tag!r})".format(
+            key=key, **problem["ctx"]
+        )
     shown = repr(problem["input"])
-    return f"{key}: {problem['msg']} (found {shown if len(shown) <= 60 else shown[:57] + '...'})"
+    said = problem["msg"].removeprefix("Input ")
+    return f"{key}: {said} (found {shown if len(shown) <= 60 else shown[:57] + '...'})"
 
 
 def keys_at(schema: type[Settings], location: tuple[int | str, ...]) -> list[str]:

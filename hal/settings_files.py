@@ -121,9 +121,9 @@ def find_config(kind: str, name_or_path: str) -> Path:
             raise SettingsError(error.what, where=error.where, do=error.do) from error
     meant = "".join(f"; did you mean {name}?" for name in get_close_matches(given.stem, names, n=1))
     raise SettingsError(
-        f"no such file in {kind}",
+        "no such file" if given.suffix in YAML_SUFFIXES else f"no such name in {kind}",
         where=name_or_path,
-        do=f"give {plugins}a path to a .yaml file or one of: {', '.join(names)}{meant}",
+        do=f"give {plugins}the path of a .yaml file, or one of: {', '.join(names)}{meant}",
     )
 
 

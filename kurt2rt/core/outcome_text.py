@@ -28,7 +28,7 @@ _WORDS: dict[Surface, dict[str, str]] = {
         "until_go": "until GO",
         "take": "touch Take the robot",
         "press": "let go and press again",
-        "look": "look at the picture",
+        "look": "look at the page",
     },
     Surface.TERMINAL: {
         "go": "type go",
@@ -39,7 +39,7 @@ _WORDS: dict[Surface, dict[str, str]] = {
     },
     Surface.LOG: {
         "go": "say resume",
-        "until_go": "until it is told to resume",
+        "until_go": "until a teacher says resume",
         "take": "take the robot",
         "press": "let go and press again",
         "look": "look at the robot",
@@ -48,21 +48,21 @@ _WORDS: dict[Surface, dict[str, str]] = {
 """Names of the controls of each surface."""
 
 _TEXTS: dict[Code, str] = {
-    ResultCode.REPEATED: "had been taken already; counted once",
+    ResultCode.REPEATED: "received before; counted once",
     ResultCode.TAKEN: "{teacher} teaches",
     ResultCode.HANDED_OVER: "{teacher} teaches now",
     ResultCode.RELEASED: "the robot has no teacher now",
     ResultCode.STOPPED: "the robot stands {until_go}",
     ResultCode.RELEASE_SUPERSEDED: "that press is over; a later one drives",
-    ResultCode.HOLD_RELEASED: "let go; lessons on the way: {lessons}",
+    ResultCode.HOLD_RELEASED: "let go; lessons: {lessons}",
     ResultCode.RESUMED: "the robot may drive",
     ResultCode.PHASE_SET: "phase {phase}, {name}",
     ResultCode.LESSON_SPEED_SET: "lessons drive at {percent} % of the full speed",
     ResultCode.SESSION_BEGUN: "session {session!r} begins",
     ResultCode.SESSION_ENDED: "session {session!r} is over; the robot stands",
     ResultCode.ACTION_RUNS: "{action} for {ticks} ticks",
-    ResultCode.BEHAVIOUR_WANTED: "{wanted} is wanted",
-    ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "{wanted} is wanted until the next junction is passed",
+    ResultCode.BEHAVIOUR_WANTED: "follows {wanted}",
+    ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "follows {wanted} until it has passed the next junction",
     ResultCode.GOAL_SOUGHT: "{sought}",
     ResultCode.GOAL_DROPPED: "no goal is sought",
     ResultCode.LOCATED: "the robot is at {name}",
@@ -94,7 +94,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.CRITICS_NAME: "{name} is the name of the robot's own critic; teach under another name",
     RefusalCode.TEACHER_ABSENT: "a behaviour runs only while its teacher is there and watches",
     RefusalCode.RESTARTED: "the robot program was started again; {look}, then repeat the command",
-    RefusalCode.OLD_PICTURE: "given on an old picture; {look}, then repeat the command",
+    RefusalCode.OLD_PICTURE: "what you saw of the robot was old; {look}, then repeat the command",
     RefusalCode.OVERTAKEN: "a newer message came before this one",
     RefusalCode.TOO_OFTEN: "asked too often; ten times a second is enough",
     RefusalCode.TOO_MANY: "too many commands wait; repeat the command",
@@ -114,13 +114,13 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.NO_BEHAVIOUR: "there is no taught behaviour {behaviour!r}; this task has: {known}",
     RefusalCode.NO_APPRAISAL: "there is no appraisal {appraisal!r}; the critic knows: {known}",
     RefusalCode.NO_RLA: "there is no RLA {rla}; it may have been deleted",
-    RefusalCode.NO_LEVEL: "nothing is taught at a level {level!r}; there are: {known}",
+    RefusalCode.NO_LEVEL: "there is no level {level!r}; levels are: {known}",
     RefusalCode.NO_MID_LEVEL: "this robot has no mid level",
     RefusalCode.NO_CRITIC: "this robot has no critic",
-    RefusalCode.NO_PLACE: "there is no place {name!r}; named were: {known}; RLA 12 is the place that this RLA knows",
+    RefusalCode.NO_PLACE: "there is no place {name!r}; places are: {known}, or an RLA's own such as RLA 12",
     RefusalCode.NO_PLACES: "this robot's mid level does not know places",
-    RefusalCode.NOT_NAMED: "nothing was named {name!r}; named were: {known}",
-    RefusalCode.BAD_NAME: "{name!r} is no name for a situation; give 1 to {longest} letters on one line",
+    RefusalCode.NOT_NAMED: "nothing has the name {name!r}; names are: {known}",
+    RefusalCode.BAD_NAME: "{name!r} cannot name a situation; give 1 to {longest} letters on one line",
     RefusalCode.NO_FEATURE: "{features} cannot be sought; level {level} knows: {known}",
     RefusalCode.SESSION_ON: "the session {session!r} is on; end it first",
     RefusalCode.NO_SESSION: "no session is on",
@@ -131,7 +131,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.SAYS_SO: "{title} says {action} there already; delete RLA {delete} instead",
     RefusalCode.NO_DEMONSTRATION: "there is no drive by hand to teach; drive by hand and let go first",
     RefusalCode.NO_SEGMENT: "the drive by hand has {segments} segments; name some of them",
-    RefusalCode.NO_RLA_DECIDES: "a learner that is no RLA system decides; teach it, or undo a lesson",
+    RefusalCode.NO_RLA_DECIDES: "the learner that decides has no RLAs; teach it, or undo a lesson",
     RefusalCode.NO_SIGNALS: "the learner that decides does not learn from rewards; answer or correct it",
     RefusalCode.NO_RLA_DROVE: "no RLA drove the robot then; there is nothing to reward or to punish",
     RefusalCode.OUTSIDE_RADIUS: "the situation lay outside the radius of {title}, or it stood; no RLA is rewarded",
@@ -140,12 +140,12 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.NO_LESSON: "there is no lesson to undo",
     RefusalCode.NO_SUCH_LESSON: "there is no lesson {lesson!r}",
     RefusalCode.UNDONE_ALREADY: "lesson {lesson!r} was undone already",
-    RefusalCode.STANDS_ALREADY: "lesson {lesson!r} stands; there is nothing to redo",
-    RefusalCode.TAUGHT_AFTER: "lesson {later!r} came after {lesson!r} ({says}); undo that one first",
-    RefusalCode.TAUGHT_INSTEAD: "lesson {later!r} came in the place of {lesson!r} ({says}); undo that one first",
-    RefusalCode.STANDS_ON_UNDONE: "{lesson!r} was taught after {earlier!r} ({says}); redo that one first",
-    RefusalCode.ACTION_NOT_IN_TASK: "{title} would say {action} again, which this task does not have; "
-    "undo it with the task that it was taught with",
+    RefusalCode.STANDS_ALREADY: "lesson {lesson!r} is not undone; there is nothing to redo",
+    RefusalCode.TAUGHT_AFTER: "lesson {later!r} came after {lesson!r} ({says}); undo it first",
+    RefusalCode.TAUGHT_INSTEAD: "lesson {later!r} replaced {lesson!r} ({says}); undo it first",
+    RefusalCode.STANDS_ON_UNDONE: "{lesson!r} was taught after {earlier!r} ({says}); redo {earlier!r} first",
+    RefusalCode.ACTION_NOT_IN_TASK: "{title} would say {action} again, which this task lacks; "
+    "undo it with the task that it was taught for",
     RefusalCode.DOES_NOT_FIT: "{says}",
     RefusalCode.NOT_SIMULATED: "this robot is not simulated",
     RefusalCode.NO_WALL: WorldRefusal.NO_WALL.text,
@@ -163,7 +163,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.NO_TASK: "task: {task!r} is not known; give one of {known}",
     RefusalCode.COPY_FAILED: "{says}",
     RefusalCode.COPY_CRASHED: "the copy failed: {error}",
-    RefusalCode.NO_FILE: "{name}: is no copy of this run of the program; save or export again",
+    RefusalCode.NO_FILE: "{name}: not a copy of this run of the program; save or export again",
     RefusalCode.FILE_UNREADABLE: "{says}",
     RefusalCode.UPLOAD_UNKNOWN: "this upload was not begun here, or another one has taken its place; begin again at 0",
     RefusalCode.UPLOAD_GAP: "a part is missing: got the part at {offset}, the next byte is {size}",
@@ -172,10 +172,10 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.UPLOAD_INCOMPLETE: "the file did not arrive whole (SHA-256); upload it again",
     RefusalCode.MALFORMED: "{says}",
     RefusalCode.STOPPED_MEANWHILE: "{command} was stopped meanwhile",
-    RefusalCode.NO_PICTURE: "no picture of the robot: nothing is sent to it",
-    RefusalCode.PICTURE_LOST: "no picture of the robot: the press is over",
+    RefusalCode.NO_PICTURE: "no word from the robot: nothing is sent to it",
+    RefusalCode.PICTURE_LOST: "no word from the robot: the press is over",
     RefusalCode.RESTARTED_MEANWHILE: "the robot program was started again: the press is over",
-    RefusalCode.NOT_UNDERSTOOD: "the robot is not understood: {says}",
+    RefusalCode.NOT_UNDERSTOOD: "the robot's answer is not understood: {says}",
 }
 
 _TICKS_PER_S = 100
@@ -188,10 +188,10 @@ _EVENT_TEXTS = {
     EventFault.BAD_CONDITION: "RLA {rla_id}: {error}",
     EventFault.NOT_FINITE: "the situation named {name!r} holds a value that is not finite",
     EventFault.BAD_SITUATION: "the situation named {name!r} has {got} values, level {level} matches {expected}",
-    EventFault.BAD_ACTION: "{action!r} is no action that can be taught; withdraw the RLA's action instead",
+    EventFault.BAD_ACTION: "the action {action!r} cannot be taught; withdraw the RLA's action instead",
     EventFault.BAD_REWARD: "RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)",
     EventFault.WITHDRAWN_ALREADY: "{title} has no action; withdraw an action once",
-    EventFault.NO_LEVEL: "{title} is of the level {level!r}, of which the file does not name the features",
+    EventFault.NO_LEVEL: "{title} is of the level {level!r}, but the file does not list its features",
 }
 
 _ONLY_BEHAVIOUR = "the only behaviour"
@@ -237,7 +237,7 @@ def _no_lesson_text(outcome: Outcome) -> str:
     """Return why a hold taught nothing, as the end of its sentence; empty for other outcomes."""
     if outcome.code is not ResultCode.HOLD_RELEASED or outcome.fields.get("lessons") != 0:
         return ""
-    return "; the robot does so there already, or an answer stands there, which a short press corrects"
+    return "; the robot does this here already, or was answered here, which a short press corrects"
 
 
 def _late_press_text(fields: Mapping[str, Field]) -> str:

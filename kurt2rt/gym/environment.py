@@ -271,7 +271,7 @@ def _pose(start: Any) -> Pose:
     except (TypeError, ValueError):
         pose = Pose(math.nan, math.nan, math.nan)
     if not all(map(math.isfinite, pose)):
-        raise SettingsError(f"reset: start is no pose (got {start!r}, allowed three numbers x_m, y_m, heading_rad)")
+        raise SettingsError(f"reset: start is not a pose (got {start!r}, allowed three numbers x_m, y_m, heading_rad)")
     return pose
 
 

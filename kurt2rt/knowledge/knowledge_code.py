@@ -43,8 +43,8 @@ class KnowledgeCode(ErrorCode):
     STATUS_UNREADABLE = ("status unreadable", "its status cannot be read ({error})", _HEALTH)
     FILE_GONE = (
         "file gone",
-        "is gone, but its log {log} is still there and may hold lessons",
-        "put the file back next to it, or move the log away",
+        "is gone, but its log {log} is there and may hold lessons",
+        "put the file back, or move the log away",
     )
     FOREIGN_LOG = ("foreign log", "a log {log} of another file is next to it", "give another path")
     NOT_CREATED = ("not created", "cannot be created ({error})", _ROOMY_FOLDER)
@@ -73,7 +73,7 @@ class KnowledgeCode(ErrorCode):
     MOVED_IN_USE = (
         "moved in use",
         "it or its log was moved, deleted or replaced while in use",
-        "put the same files back, or stop the robot and give a knowledge file",
+        "put the files back, or start with another file",
     )
     FOLDER_NOT_MADE = ("folder not made", "cannot be made ({error})", "give a file in another folder")
     # Its content
@@ -117,7 +117,7 @@ class KnowledgeCode(ErrorCode):
     NOT_DURABLE = ("not durable", "{reason}", "")
     NOT_YET_DURABLE = ("not yet durable", "the newest lessons are not saved yet", "try again later")
     NOT_SIMULATED = ("not simulated", "this robot is not simulated here", "examine its knowledge with kurt2rt exam")
-    UNKNOWN_COPY = ("unknown copy", "is no copy of this run of the program", "save or export again")
+    UNKNOWN_COPY = ("unknown copy", "not a copy of this run of the program", "save or export again")
     COPY_UNREADABLE = ("copy unreadable", "cannot be read ({error})", "save or export again")
     FOLDER_NOT_WRITABLE = (
         "folder not writable",
@@ -136,11 +136,11 @@ class KnowledgeCode(ErrorCode):
     )
     # Packages
     PACKAGE_NOT_A_FILE = ("package not a file", "is a folder or device", _PACKAGE)
-    PACKAGE_TOO_LARGE = ("package too large", "is larger than {allowed_mb} MB, which no knowledge is", _PACKAGE)
+    PACKAGE_TOO_LARGE = ("package too large", "is larger than {allowed_mb} MB, too large for knowledge", _PACKAGE)
     PACKAGE_UNREADABLE = ("package unreadable", "cannot be read ({error})", _PACKAGE)
     PACKAGE_DAMAGED = (
         "package damaged",
-        "is torn or changed, or no file of kurt2rt knowledge export ({error})",
+        "is damaged, or not a file of kurt2rt knowledge export ({error})",
         _NEW_COPY,
     )
     PACKAGE_PART_MISSING = ("package part missing", "has no {name}", _NEW_COPY)
@@ -156,7 +156,7 @@ class KnowledgeCode(ErrorCode):
         "is packed in a way that kurt2rt knowledge export does not use",
         _NEW_COPY,
     )
-    PACKAGE_NOT_OURS = ("package not ours", "its {name} is none of kurt2rt", _PACKAGE)
+    PACKAGE_NOT_OURS = ("package not ours", "its {name} was not made by kurt2rt", _PACKAGE)
     PACKAGE_OTHER_FORMAT = (
         "package other format",
         "has format {version}, this kurt2rt knows format {allowed}",
@@ -172,10 +172,10 @@ class KnowledgeCode(ErrorCode):
     MANIFEST_DAMAGED = ("manifest damaged", "its {name} is damaged ({error})", _NEW_COPY)
     # Versions
     NO_LESSON = ("no lesson", "holds no lesson that {state}", "")
-    NO_LESSON_BY = ("no lesson by", "holds no lesson by {teacher} that stands", "{others}")
+    NO_LESSON_BY = ("no lesson by", "holds no lesson by {teacher} that is not undone", "{others}")
     NO_UNDONE_LESSON_BY = (
         "no undone lesson by",
-        "holds no undone lesson by {teacher} that can stand again{reason}",
+        "holds no undone lesson by {teacher} that can be redone{reason}",
         "",
     )
     LESSON_REFUSED = ("lesson refused", "{reason}", "kurt2rt knowledge lessons shows the ids of lessons")

@@ -38,7 +38,7 @@ def _require_vcan(name: str, net: Path) -> None:
     interface = net / name
     # The name has to tell as well: an adapter on a serial line (slcan) has no device either.
     if not name.startswith("vcan") or (interface / "device").exists():
-        raise UserError(f"is no virtual CAN interface (allowed {_KINDS})", where=f"bus {name!r}")
+        raise UserError(f"is not a virtual CAN interface (allowed {_KINDS})", where=f"bus {name!r}")
     try:
         kind = (interface / "type").read_text(encoding="ascii").strip()
         flags = int((interface / "flags").read_text(encoding="ascii"), base=16)

@@ -30,7 +30,7 @@ from kurt2rt.service.settings import ServiceSettings
 
 @dataclass(frozen=True, slots=True)
 class RunSettings:
-    """Settings of one run."""
+    """Settings of robot, task and service of one run."""
 
     robot: RobotSettings
     task: TaskSettings

@@ -157,7 +157,7 @@ class RobotProgram:
         self._log(f"world {run.world}, task {run.task.name}, knowledge {run.knowledge}")
 
     async def _serve_run(self) -> ProgramStatus | None:
-        """Open the robot and serve one run; return None if the program is told to end while it waits for the robot."""
+        """Open the robot and serve one run; return None if the program has to end while it waits for the robot."""
         context = self._context
         context.notifier.ready()
         settings = RunSettings(self._robot, self._task, self._service)

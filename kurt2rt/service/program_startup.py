@@ -60,7 +60,7 @@ class ProgramStartup:
     async def open(self) -> OpenedRobot | None:
         """Open the robot, the knowledge and the keys, and return the robot; a service waits for what is missing.
 
-        Returns None if the program is told to end while it waits.
+        Returns None if the program has to end while it waits.
 
         Raises:
             BusError, SettingsError: the robot cannot be opened.
@@ -80,7 +80,7 @@ class ProgramStartup:
         return self.opened
 
     async def _wait_for_all(self, waiting: anyio.CancelScope) -> None:
-        """Wait for all dependencies; cancel `waiting` if the program is told to end meanwhile."""
+        """Wait for all dependencies; cancel `waiting` if the program has to end meanwhile."""
         loop = asyncio.get_running_loop()
         context = self._context
         dependencies = (

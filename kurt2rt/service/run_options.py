@@ -33,7 +33,7 @@ class RunOptions:
     page_port: int | None = None
     """TCP port of the page; None: as the settings say."""
     page_address: str | None = None
-    """Address of the page that a phone is told; None: as the settings say."""
+    """Address of the page for phones; None: as the settings say."""
     can_log: Path | None = None
     """New file for all frames; None: frames are not logged."""
     record: bool = True

@@ -25,7 +25,7 @@ def _priority_of(value: object) -> int | Literal["auto"]:
 
 
 def page_address_of(value: object) -> str:
-    """Return an address that a phone is told, as it was given. Raises ValueError unless it is an address or a name."""
+    """Return an address for phones, as it was given. Raises ValueError unless it is an address or a name."""
     if isinstance(value, str) and (re.fullmatch(r"[A-Za-z0-9.-]+", value) or _is_ipv6(value)):
         return value
     raise ValueError(f"has to be {AUTO}, an address or a name, without http:// and port")
@@ -39,7 +39,7 @@ def _is_ipv6(text: str) -> bool:
 
 
 class ServiceSettings(Settings):
-    """Settings of `kurt2rt run`."""
+    """Schema of `config/runtime/*.yaml`: the runtime settings of `kurt2rt run`."""
 
     name: str
     robot: str

@@ -80,7 +80,7 @@ class ShutdownClock:
         return self._began_s < math.inf
 
     def start(self) -> None:
-        """Begin at 0."""
+        """Begin to count at 0; time in which threads wait for a processor does not count."""
         self._delayed_before_s = self._delayed_s()
         self._slowness_before = min(1.0 + self._delayed_before_s / max(self._worked_s(), 1e-3), _MOST)
         self._began_s = self._now_s()

@@ -51,7 +51,7 @@ def test_task_takes_parts_by_module_name_and_by_entry_point(plugin_folder: Path)
 @pytest.mark.parametrize(
     ("policy", "told"),
     [
-        ({"kind": "parts_b:Turning", "front_m": 2.0}, "policy.front_m: Input should be less than"),
+        ({"kind": "parts_b:Turning", "front_m": 2.0}, "policy.front_m: should be less than"),
         ({"kind": "parts_b:Turning", "fornt_m": 0.2}, "policy.fornt_m: no such key; allowed here: kind, front_m"),
         (
             {"kind": "parts_b:Moving"},

@@ -29,7 +29,7 @@ async def test_endpoint_without_ipv6_answers_over_ipv4(
 
 async def test_endpoint_without_ipv6_has_no_ipv6_address(monkeypatch: pytest.MonkeyPatch) -> None:
     remove_family(monkeypatch, socket.AF_INET6)
-    with pytest.raises(ChannelError, match="::1 is no address of this machine"):
+    with pytest.raises(ChannelError, match="::1 is not an address of this machine"):
         await open_endpoint(Site(), "::1", 0)
 
 

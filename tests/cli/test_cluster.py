@@ -63,9 +63,9 @@ def test_cluster_file_of_an_address_without_tls_is_refused(cluster: Path, addres
 def test_study_and_worker_without_a_cluster_file_are_refused(kurt2rt: CommandLine, cluster: Path) -> None:
     Path("other").write_text("tls://lab:8786\n")
     Path("other").chmod(0o600)
-    with pytest.raises(ClusterError, match="local: is no file of a cluster"), open_executor(Path("local"), 1):
+    with pytest.raises(ClusterError, match="local: is not a cluster file"), open_executor(Path("local"), 1):
         pytest.fail("a study began")
-    assert "other: is no file of a cluster" in kurt2rt.refused("study", "worker", "--to", "other")
+    assert "other: is not a cluster file" in kurt2rt.refused("study", "worker", "--to", "other")
     cluster.chmod(0o640)
     assert f"others may read it, and run programs by it; chmod 600 {cluster}" in kurt2rt.refused(
         "study", "worker", "--to", cluster

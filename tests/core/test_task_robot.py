@@ -40,5 +40,5 @@ def test_copy_of_a_robots_task_says_how_to_name_its_robot(tmp_path: Path) -> Non
 
 def test_situation_that_does_not_exist_keeps_its_own_error() -> None:
     task = load_task("fleeing").model_copy(update={"situation": "nowhere"})
-    with pytest.raises(SettingsError, match="no such file in situations"):
+    with pytest.raises(SettingsError, match="no such name in situations"):
         require_robot_of(task, "fleeing", load_robot("kurt2"))

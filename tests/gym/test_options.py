@@ -25,8 +25,8 @@ def test_reset_sets_the_robot_down_at_the_start_given() -> None:
     [
         ({"wind": 1}, "unknown option (got wind, allowed world, start)"),
         ({"world": "nowhere"}, "nowhere"),
-        ({"start": (1.0, 2.0)}, "start is no pose"),
-        ({"start": (float("nan"), 1.0, 0.0)}, "start is no pose"),
+        ({"start": (1.0, 2.0)}, "start is not a pose"),
+        ({"start": (float("nan"), 1.0, 0.0)}, "start is not a pose"),
         ({"start": (-5.0, 1.0, 0.0)}, "no room at start"),
     ],
 )

@@ -58,5 +58,5 @@ def test_robot_without_a_learner_has_none(tmp_path: Path) -> None:
 
 
 def test_setting_of_an_unknown_task_is_one_clear_error() -> None:
-    with pytest.raises(kurt2rt.Error, match="no such file in tasks"):
+    with pytest.raises(kurt2rt.Error, match="no such name in tasks"):
         kurt2rt.learner_setting("walling")

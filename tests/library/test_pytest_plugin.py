@@ -82,8 +82,8 @@ def test_plugin_in_another_project(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(
         [
             "mark kurt2: unknown (got worlds, allowed task=, world=, seed=, robot=, lesson_seed=, lesson_seconds=)",
-            "moon: no such file in worlds; *",
-            "juggling: no such file in tasks; *",
+            "moon: no such name in worlds; *",
+            "juggling: no such name in tasks; *",
             "SKIPPED *bus 'vcan_not_there': the kernel has no such interface; sudo modprobe vcan && *",
         ]
     )

@@ -9,7 +9,10 @@ from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 
 @dataclass(frozen=True, slots=True)
 class Trouble:
-    """A fault of the robot, its program or its machine."""
+    """Fault of the robot, its program or its machine, with its remedy: an entry of the health report.
+
+    `HealthMonitor` finds it, `trouble_text` words it; page, `kurt2rt status` and /diagnostics show it.
+    """
 
     code: TroubleCode
     since_s: float
@@ -29,7 +32,7 @@ class Trouble:
 
     @property
     def what(self) -> str:
-        """Text of the fault."""
+        """Sentence on the fault, from its code and numbers."""
         return trouble_text(self.code, self.name, self.numbers, self.line)[0]
 
     @property
@@ -87,7 +90,7 @@ class BusHealth:
 
 @dataclass(frozen=True, slots=True)
 class DiskSpace:
-    """Room for one kind of file."""
+    """Free room on the disk of one kind of file, such as recordings."""
 
     of: str
     """Content of the disk: knowledge, recordings."""

@@ -10,7 +10,7 @@ FINE, WARNS, URGENT = "", "warns", "urgent"
 
 
 class HealthRow(NamedTuple):
-    """Row of one subject."""
+    """Line of a health report: a subject, such as bus, and its state in words."""
 
     name: str
     text: str
@@ -44,7 +44,7 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
     written = "all durable" if not report.safety.unwritten else f"{report.safety.unwritten} not durable yet"
     took_ms = report.safety.last_write_ms
     took = "" if took_ms is None else f"; the disk took {took_ms:.0f} ms for the last"
-    rows.append(("lessons", f"{report.lessons} stand, {report.rlas} RLAs, {written}{took}"))
+    rows.append(("lessons", f"{report.lessons} in force, {report.rlas} RLAs, {written}{took}"))
     rows.append(("progress", progress_in(report.progress)))
     rooms = [
         f"{each.of}: {'no answer' if each.free_bytes is None else f'{size(each.free_bytes)} free'}"

@@ -41,7 +41,7 @@ class AppraisalName(NamedTuple):
 
 
 class MidIntroduction(NamedTuple):
-    """Description of the mid level."""
+    """Part of `Hello` on the mid level: the kind and length of its situation, and R."""
 
     kind: str
     """Kind of its situation: history, place."""
@@ -63,7 +63,7 @@ class SensorPlace(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """Description of the robot."""
+    """Answer to /hello: the robot's names, limits and features, which stay for a whole start of it."""
 
     version: int
     """Version of the wire contract."""

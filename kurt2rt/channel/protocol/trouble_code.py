@@ -47,7 +47,7 @@ class TroubleCode(StrEnum):
 
     @property
     def about(self) -> str:
-        """Subject on the wire."""
+        """Subject of the trouble as a word of the wire contract, such as bus."""
         return _ABOUT[self]
 
 

@@ -6,8 +6,8 @@ from typing import Final
 
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 
-_SWITCH_ON = "look whether the robot is switched on and its cable sits; the robot stands until they are back"
-_END_OTHER_WORK = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"
+_SWITCH_ON = "check that the robot is switched on and its cable is plugged in; the robot stands until they are back"
+_END_OTHER_WORK = "end other work on this machine; kurt2rt doctor shows what it lacks, real_time_priority helps"
 _CHECK_CABLE = "check cable, termination and bit rate"
 _CHECK_SENSOR = "check its plug and its lens; until then the sensors next to it stand in for it"
 _LINE: Final = ("", "")
@@ -44,7 +44,7 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
     ),
     TroubleCode.LESSONS_UNSAVED: _LINE,
     TroubleCode.SLOW_DISK: (
-        "in the last minute the disk took up to {0:.1f} s to keep a lesson",
+        "in the last minute the disk took up to {0:.1f} s to save a lesson",
         "end what else writes to it; kurt2rt doctor measures it",
     ),
     TroubleCode.DISK_SILENT: ("the disk of {name} does not answer", "look at its health and its mount"),
@@ -55,7 +55,7 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
     TroubleCode.LOW_BATTERY: ("this machine's battery has {0:.0%} left", "plug it in"),
     TroubleCode.LITTLE_MEMORY: ("this machine has {0:.0f} MB of memory left", "end other programs"),
     TroubleCode.DROPS: (
-        "{name}: {0:.0f} thrown away in the last minute, for they came quicker than they were taken",
+        "{name}: {0:.0f} thrown away in the last minute, because they came too fast",
         "",
     ),
     TroubleCode.PROGRAM: _LINE,

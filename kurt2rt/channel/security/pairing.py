@@ -64,7 +64,10 @@ class Device:
 
 @dataclass(frozen=True, slots=True)
 class Pairing:
-    """Both sides of a pairing."""
+    """Folders with the common keys of robot and device (OSCORE, RFC 8613), as `kurt2rt pair` makes them.
+
+    The robot keeps `teacher`; `device` goes to the program of the device, once: its message numbers count up.
+    """
 
     teacher: Path
     """Folder of the robot's side."""
@@ -217,7 +220,7 @@ def pairing_names(teachers: Path) -> tuple[str, ...]:
 def _require_name(name: str) -> None:
     if not _NAME.fullmatch(name):
         raise CredentialsError(
-            "is no name for a device", where=repr(name), do="give 1 to 24 of a-z, 0-9 and -, such as anna-phone"
+            "cannot name a device", where=repr(name), do="give 1 to 24 of a-z, 0-9 and -, such as anna-phone"
         )
 
 

@@ -21,7 +21,9 @@ def bound_socket(host: str, port: int) -> socket.socket:
     try:
         address = ipaddress.ip_address(host)
     except ValueError as error:
-        raise ChannelError(f"{host!r} is no address", do="give one of this machine, such as 127.0.0.1 or ::") from error
+        raise ChannelError(
+            f"{host!r} is not an address", do="give one of this machine, such as 127.0.0.1 or ::"
+        ) from error
     try:
         return open_udp_socket(f"::ffff:{address}" if address.version == 4 else str(address), port)
     except (OSError, OverflowError) as error:
@@ -33,7 +35,7 @@ def _why(error: OSError | OverflowError, host: str, port: int) -> str:
         case OSError(errno=errno.EADDRINUSE):
             return f"UDP port {port} is in use, by another kurt2rt run perhaps; end that one, or give another port"
         case OSError(errno=errno.EADDRNOTAVAIL | errno.EAFNOSUPPORT):
-            return f"{host} is no address of this machine; give one that is, or :: for all"
+            return f"{host} is not an address of this machine; give one of its own, or :: for all"
         case OSError(errno=errno.EACCES):
             return f"UDP port {port} is not allowed to this user; give one above 1023"
         case _:

@@ -98,7 +98,7 @@ class ConsoleOperator:
                 self.tell(answer)
             if question.free or answer in [choice.key for choice in choices]:
                 return answer
-            self.tell(f"{answer!r} is no answer here.", Tone.BAD)
+            self.tell(f"{answer!r} is not an answer here.", Tone.BAD)
 
     def _line(self, text: str, style: str = "", end: str = "\n") -> None:
         # A terminal is wide as it is, and words stay whole; in a file a line is a line.

@@ -92,7 +92,7 @@ class StepFault:
 
 
 class SkippedError(Exception):
-    """Step that is not run now."""
+    """Raised by a step that cannot run now, with the reason."""
 
     def __init__(self, code: SkipCode) -> None:
         super().__init__(code)

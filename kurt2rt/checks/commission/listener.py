@@ -34,7 +34,7 @@ class Listener:
             self._add(message, now_s - age_s, heard)
 
     def close(self) -> None:
-        """Close the interface."""
+        """Close the CAN interface; nothing is heard afterwards."""
         self._bus.shutdown()
 
     def _add(self, message: can.Message, at_s: float, heard: FrameStatistics) -> None:

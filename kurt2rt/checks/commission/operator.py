@@ -9,7 +9,7 @@ LEAVE = "q"
 
 
 class QuestionKind(StrEnum):
-    """Subject of a question."""
+    """Subject of a question to the operator; a script answers by it."""
 
     BEGIN = "begin"
     """Start of a step."""
@@ -61,7 +61,7 @@ class OperatorQuestion:
 
 
 class Tone(StrEnum):
-    """Style of a line."""
+    """Style of a line on the operator's screen: a title, a measurement, a fault and others."""
 
     TITLE = "title"
     PLAIN = "plain"
@@ -72,7 +72,7 @@ class Tone(StrEnum):
 
 
 class Operator(Protocol):
-    """Person at the robot."""
+    """Person who stands next to the robot, reads the lines of a step and answers its questions."""
 
     async def answer(self, question: OperatorQuestion) -> str:
         """Return the key of a choice, or free text if the question has no choices.

@@ -28,7 +28,7 @@ class StepRecord(Settings):
 
 
 class Progress(Settings):
-    """Commissioning of one robot."""
+    """State of a commissioning between sessions: findings and passed steps, stored as YAML."""
 
     name: str
     base: str

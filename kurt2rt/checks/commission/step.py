@@ -11,7 +11,7 @@ from kurt2rt.checks.commission.test_stand import TestStand
 
 
 class StepOutcome(StrEnum):
-    """Outcome of a step."""
+    """Outcome of one step of the checklist."""
 
     PASSED = "passed"
     FAILED = "failed"

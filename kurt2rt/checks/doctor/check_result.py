@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class CheckStatus(StrEnum):
-    """Suitability of the machine in one respect."""
+    """Suitability of the machine in one respect: ok, a warning, or missing."""
 
     OK = "ok"
     WARNING = "warning"
@@ -65,7 +65,7 @@ class FindingCode(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """Result of one check."""
+    """Result of one check of `kurt2rt doctor`: a finding, and whether something is missing."""
 
     code: FindingCode
     status: CheckStatus

@@ -22,7 +22,7 @@ _MAPPED = f"{_LIMIT_MIB}, a process like this one maps {{mapped_mib:.0f}} MiB"
 
 
 class FindingText(NamedTuple):
-    """Words of one finding."""
+    """Texts of one finding of `kurt2rt doctor`: its subject, what was found, and a remedy."""
 
     subject: str
     found: str

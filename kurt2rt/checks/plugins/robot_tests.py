@@ -82,7 +82,7 @@ class Drive:
         return self.is_near(before)
 
     def is_near(self, before: Pose) -> bool:
-        """Return whether the robot is where it was."""
+        """Return whether the robot has not moved since the pose `before`."""
         return math.dist(before, self.pose) < _STANDS_M
 
 
@@ -132,7 +132,7 @@ class RobotTests:
 
     def test_equal_set_points_drive_it_ahead_and_its_encoders_count_the_way(self, drive: Drive) -> None:
         start, turned = drive.pose, 0
-        # It stands at the end, so that a turn that is told late is counted, too.
+        # It stands at the end, so that a turn that is reported late is counted, too.
         for wanted in (drive.ahead,) * _TICKS + (STANDSTILL,) * _TICKS:
             readings = drive.tick(wanted, 1).readings
             turned += readings.encoder_left_ticks + readings.encoder_right_ticks

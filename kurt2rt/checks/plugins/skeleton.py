@@ -69,7 +69,7 @@ def write_skeleton(kind: SkeletonKind, name: str, folder: Path) -> list[Path]:
 def _require_free(kind: SkeletonKind, name: str) -> None:
     if not _NAME.fullmatch(name):
         raise NoPluginError(
-            f"is no name of a plug-in (got {name!r}, allowed are a-z, 0-9 and _, a letter first, 40 at most)",
+            f"cannot name a plug-in (got {name!r}, allowed are a-z, 0-9 and _, a letter first, 40 at most)",
             where="NAME",
             do="give one such as wandering",
         )

@@ -59,7 +59,7 @@ class PolicyTests(_PartTests, ABC):
     @property
     @abstractmethod
     def policy(self) -> PolicySettings:
-        """Settings of the policy."""
+        """Settings of the policy under test; the plug-in's test gives them."""
 
     def test_policy_is_the_same_once_it_was_written_as_json(self) -> None:
         assert _through_json(self.policy) == self.policy
@@ -122,7 +122,7 @@ class MetricTests(_PartTests, ABC):
     @property
     @abstractmethod
     def metric(self) -> MetricSettings:
-        """Settings of the metric."""
+        """Settings of the metric under test; the plug-in's test gives them."""
 
     @pytest.fixture
     def simulation(self) -> Iterator[Simulation]:
@@ -186,7 +186,7 @@ class ActionTests(_PartTests, ABC):
     @property
     @abstractmethod
     def action(self) -> PluginAction:
-        """Settings of the action."""
+        """Entry of the action under test; the plug-in's test gives it."""
 
     def test_action_is_the_same_once_it_was_written_as_json(self) -> None:
         assert _through_json(self.action) == self.action

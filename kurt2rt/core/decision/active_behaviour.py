@@ -4,7 +4,11 @@ from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 
 class ActiveBehaviour:
-    """Selection of one of a task's taught behaviours; only its RLAs compete. A teacher or the mid level changes it."""
+    """Selection of one of a task's taught behaviours, such as turn_left; only its RLAs compete.
+
+    Both levels share one: a teacher's `Pursue` or the mid level sets it, the basic level reads it. A task with a single
+    behaviour has the name "".
+    """
 
     def __init__(self, behaviours: tuple[str, ...] = ("",)) -> None:
         """`behaviours`: names to select from, the first active at the start; a single behaviour has no name."""

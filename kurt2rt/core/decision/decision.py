@@ -33,7 +33,7 @@ class JunctionEvent(NamedTuple):
 
 
 class GoalStatus(StrEnum):
-    """Status of the goal."""
+    """State of the way to the goal, after each tick."""
 
     NONE = "none"
     """No goal; the mid level commands by its RLAs."""
@@ -125,7 +125,11 @@ class MidDecision(NamedTuple):
 
 
 class Decision(NamedTuple):
-    """Decision of one tick."""
+    """Choice of one tick: wheel speeds in m/s, their cause, and the RLAs that were compared.
+
+    A level returns one in each tick; the guard may still limit its speeds. Recording, page and `kurt2rt why` explain
+    the robot from it. Without an action the speeds are 0.
+    """
 
     wheel_speeds: WheelSpeeds
     cause: DecisionCause

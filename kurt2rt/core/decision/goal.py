@@ -46,6 +46,10 @@ class PartialGoal:
 
 
 Goal = NamedGoal | RlaGoal | PartialGoal
+"""Situation of the mid level that the robot is sent to: by name, by an RLA, or by the values of some features.
+
+`Seek` carries one; `Navigator` plans to it, and the robot stands there. For example NamedGoal("door").
+"""
 
 
 _TEXTS: Mapping[str, str] = {

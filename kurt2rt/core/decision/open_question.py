@@ -22,7 +22,9 @@ def is_sure(decision: Decision) -> bool:
 
 
 class OpenQuestion:
-    """Account of asking: it changes no decision.
+    """One question from its first tick to its end, so that noise does not make many of it (debouncing).
+
+    It only counts, and changes no decision.
 
     A question ends by an answer, by a press, by another behaviour, after 0.5 s inside R with a margin, after 1 s of
     driving without asking, and when the robot is put elsewhere.

@@ -14,7 +14,11 @@ from kurt2rt.core.rla.rla import MID
 
 
 class StandReason(StrEnum):
-    """Code for why the wheels stand."""
+    """Code for why the wheels stand; DRIVES if they turn.
+
+    It is a word of the wire contract: page, terminal, log and `kurt2rt status` word the same code. The guard's reason
+    comes before a stop, and a stop before the decision's cause.
+    """
 
     DRIVES = "drives"
     """The wheels turn."""

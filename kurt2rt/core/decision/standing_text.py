@@ -38,13 +38,13 @@ _TEXTS: dict[StandReason, _Text] = {
     StandReason.FOREIGN_TELEMETRY: _Text("another program sends its readings, too", "Find and end that one"),
     StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
     StandReason.INFRARED_FROZEN: _Text("its range sensors are frozen", "Switch it off and on"),
-    StandReason.ROBOT_FAULT: _Text("it tells a fault of its own", "Mend what the fault names"),
+    StandReason.ROBOT_FAULT: _Text("it reports a fault of its own", "Mend what it names"),
     StandReason.HALTED: _Text("{says}"),
     StandReason.LATE: _Text("the computer is too slow", "End other work on it"),
     StandReason.CLOCK: _Text("the computer's clock ran backwards", "Wait until it is right again"),
     StandReason.ENCODERS_SILENT: _Text("its encoders are silent", "Check its power and cable"),
     StandReason.BUMPERS_SILENT: _Text("its bumpers are silent", "Check its power and cable"),
-    StandReason.NOT_A_NUMBER: _Text("what was decided is no speed", "Teach it another action here"),
+    StandReason.NOT_A_NUMBER: _Text("the decided speed is not a number", "Teach it another action here"),
     StandReason.LEARNER_FAILED: _Text("its learner failed: {says}", "Mend it and begin again"),
 }
 

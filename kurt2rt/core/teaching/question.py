@@ -24,7 +24,11 @@ class FeatureDifference:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """Question of the basic level."""
+    """Message to the teacher: no RLA is near enough, or the robot doubts its action (paper, section IV.A).
+
+    It names the nearest RLA and the features that differ most, such as "front left: 13 cm, was 46 cm". Page, terminal
+    and log show its text.
+    """
 
     nearest_rla: int | None
     """None before the first lesson."""
@@ -60,8 +64,8 @@ class Question:
         if self.doubts:
             return f"I doubt {nearest}, which says {self.action} here, teach me{'; ' if features else ''}{features}"
         if self.action == ASK and self.distance <= self.radius:
-            worth = "" if self.worth is None else f": worth {self.worth:.2f} now"
-            return f"{nearest} was blamed{worth}, teach me again"
+            value = "" if self.worth is None else f" (value {self.worth:.2f})"
+            return f"{nearest} was marked wrong{value}, teach me again"
         if self.action != ASK and self.distance <= self.radius:
             # The action is a taught system itself, and none of its RLAs is near enough.
             return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"
@@ -91,7 +95,7 @@ class MidQuestion:
         if self.nearest_rla is None:
             return f"I don't know any way yet, teach me which behaviour to follow{came_by}"
         if math.isinf(self.distance):
-            return "I don't know where I am: set me down at a place that has a name, and say at which one I am"
+            return "I don't know where I am: set me down at a place with a name, and give me the name"
         nearest = rla_title(self.nearest_rla, "", MID)
         action = "its action was withdrawn" if self.behaviour == ASK else self.behaviour
         return (

@@ -41,7 +41,7 @@ class Pupil:
             pupil = cls(name, float(gate) if equals else None)
         except ValueError as error:
             raise NoLearnerError(
-                f"{gate!r} is no number", where=f"learner {name}", do="give NAME=GATE, such as k-nn=0.8"
+                f"{gate!r} is not a number", where=f"learner {name}", do="give NAME=GATE, such as k-nn=0.8"
             ) from error
         if pupil.is_learner:
             find_learner(name)

@@ -45,7 +45,10 @@ class WorldResult:
 
 @dataclass(frozen=True, slots=True)
 class CurriculumResult:
-    """Training run and exams."""
+    """Result of a training run: a simulated session with a teacher, then an exam in each world.
+
+    `kurt2rt lesson` prints one per robot. The seed decides all of it, bit for bit.
+    """
 
     lesson: TrainingResult
     exams: tuple[WorldResult, ...]

@@ -47,17 +47,21 @@ class SensorBreak(NamedTuple):
 def parse_break(text: str, infrared: InfraredSettings) -> SensorBreak:
     """Return the break of a sensor that is given as `s15=low`. Raises SettingsError."""
     name, _, kind = text.partition("=")
-    if name not in infrared.names or kind not in list(FaultKind):
-        raise SettingsError(
-            f"is no SENSOR=FAULT (allowed sensors {', '.join(infrared.names)}; faults {', '.join(FaultKind)})",
-            where=f"broken sensor {text}",
-            do="give e.g. s15=low",
-        )
+    for given, what, known in ((name, "sensor", infrared.names), (kind, "fault", tuple(FaultKind))):
+        if given not in known:
+            raise SettingsError(
+                f"there is no {what} {given!r}",
+                where=f"broken sensor {text}",
+                do=f"give SENSOR=FAULT, such as s15=low; the {what}s are {', '.join(known)}",
+            )
     return SensorBreak(infrared.names.index(name), FaultKind(kind))
 
 
 class FaultySensor(RobotProxy):
-    """Proxy of a robot one of whose infra-red sensors breaks."""
+    """Proxy of a robot that replaces the readings of one range sensor from a time on (fault injection).
+
+    `kurt2rt exam --broken-sensor s15=low` drives one; the runtime and the guard see only the false readings.
+    """
 
     def __init__(self, robot: Robot, infrared: InfraredSettings, place: int, kind: FaultKind, from_s: float) -> None:
         """Break the sensor at `place` of the sensor table from `from_s` of the runtime's clock on, in s."""

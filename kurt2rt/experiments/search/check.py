@@ -94,7 +94,7 @@ def read_record(path: Path) -> CheckRecord:
     try:
         return CheckRecord.model_validate_json(path.read_bytes())
     except ValidationError as error:
-        raise StudyError("is no record of a check", where=path, do="give a new folder with --out") from error
+        raise StudyError("is not the record of a check", where=path, do="give a new folder with --out") from error
 
 
 def best_trials(trials: Sequence[FrozenTrial], count: int, shipped: Values) -> list[FrozenTrial]:

@@ -49,7 +49,7 @@ class TrialJournal:
                 name = plan.search.name
                 self._study = optuna.create_study(study_name=name, storage=storage, direction="maximize")
         except (ValueError, KeyError) as error:
-            raise StudyError("is no journal of trials", where=path, do="give a new folder with --out") from error
+            raise StudyError("is not a journal of trials", where=path, do="give a new folder with --out") from error
         self._require_same_make(plan.made_of, path)
 
     @property

@@ -90,7 +90,7 @@ def require_no_difference(results: Results, sources: Iterable[str]) -> None:
         try:
             outcome = BusWitnessOutcome.model_validate_json(path.read_bytes())
         except ValidationError as error:
-            raise StudyError("is no witness of this program", where=path, do="delete it, and run again") from error
+            raise StudyError("is not a witness of this program", where=path, do="delete it, and run again") from error
         if outcome.made_of.source in wanted:
             _require_equal(outcome)
 

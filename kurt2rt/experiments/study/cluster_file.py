@@ -55,7 +55,7 @@ def read_cluster_file(path: Path) -> ClusterFile:
         security = Security(require_encryption=True, tls_ca_file=str(path), **dict.fromkeys(names, str(path)))
         security.get_connection_args("client")
     except (OSError, ValueError) as error:
-        raise ClusterError(f"is no file of a cluster ({error})", where=path, do=_MAKE) from error
+        raise ClusterError(f"is not a cluster file ({error})", where=path, do=_MAKE) from error
     _require_tls(address, path)
     return ClusterFile(address, security)
 

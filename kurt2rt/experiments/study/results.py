@@ -142,4 +142,4 @@ class Results:
         try:
             return schema.model_validate_json(path.read_bytes())
         except (ValidationError, OSError) as error:
-            raise StudyError("is no result of this program", where=path, do=_NEW_FOLDER) from error
+            raise StudyError("is not a result of this program", where=path, do=_NEW_FOLDER) from error

@@ -67,7 +67,7 @@ def require_times(lessons: Iterable[KnownLesson]) -> None:
         except ValueError:
             whole = False
         if not whole:
-            raise ValueError(f"{KNOWLEDGE}: line {number}: its stamp {lesson.stamped_at[:40]!r} is no time")
+            raise ValueError(f"{KNOWLEDGE}: line {number}: its stamp {lesson.stamped_at[:40]!r} is not a time")
 
 
 def require_expectations(statistics: Statistics, lessons: Iterable[KnownLesson], binding: KnowledgeBinding) -> None:

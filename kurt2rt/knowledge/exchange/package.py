@@ -45,7 +45,10 @@ _MOST_FEATURES_TOLD = 6
 
 @dataclass(frozen=True)
 class KnowledgePackage:
-    """Content of an exported file."""
+    """Content of a file of `kurt2rt knowledge export`: lessons, counts, and the settings of their task.
+
+    `import_knowledge` makes a knowledge file from it, if features and hashes fit.
+    """
 
     path: Path
     binding: KnowledgeBinding
@@ -61,7 +64,7 @@ class KnowledgePackage:
 
 @dataclass(frozen=True, slots=True)
 class ImportResult:
-    """Result of an import."""
+    """Imported knowledge, and the settings that differ from those it was exported with."""
 
     package: KnowledgePackage
     differing_settings: tuple[str, ...]

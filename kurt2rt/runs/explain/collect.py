@@ -240,7 +240,7 @@ class _Reader:
         )
 
     def _passes_over(self, rla: Rla, level_name: str) -> bool:
-        """Return whether neighbours answer in place of an RLA, because no teacher can be asked."""
+        """Return whether neighbours answer instead of an RLA, because no teacher can be asked."""
         return level_name == BASIC and self._runtime.level.skip_withdrawn and self._system.passes_over(rla)
 
     def _passed_over(self, level_name: str, ranking: Sequence[tuple[int, float]], match: Match) -> RlaFacts | None:

@@ -27,9 +27,9 @@ class LessonDescriber:
         by = event.origin.teacher
         match event:
             case LessonUndone(lesson):
-                return f"taken back: {self._texts.get(lesson, 'a lesson')} ({by})"
+                return f"undone: {self._texts.get(lesson, 'a lesson')} ({by})"
             case LessonRedone(lesson):
-                return f"stands again: {self._texts.get(lesson, 'a lesson')} ({by})"
+                return f"redone: {self._texts.get(lesson, 'a lesson')} ({by})"
             case SessionBegun(name):
                 return f"session {name} begun by {by}"
             case SessionEnded():

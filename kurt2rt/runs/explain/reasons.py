@@ -82,7 +82,7 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
         lines += _autonomous_action(facts)
     elif facts.cause == DecisionCause.LEARNER:
-        lines.append(f"A learner that is no RLA system drives: {facts.action}. It gives no reasons for its decisions.")
+        lines.append(f"A learner without RLAs drives: {facts.action}. It gives no reasons for its decisions.")
     elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == DecisionCause.UNKNOWN:
@@ -173,8 +173,8 @@ def _doubts(level: LevelFacts, doubt: DoubtFacts | None) -> list[str]:
     if leader is None or doubt is None:
         return ["The robot doubts its action, so it asks."]
     return [
-        f"{format_rla(leader)} would drive, at {format_nearness(leader)}, but the robot doubts it and asks: "
-        f"{_why_doubt(doubt)}. Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}."
+        f"{format_rla(leader)} would drive, at {format_nearness(leader)}, but the robot doubts it and asks. "
+        f"Reason: {_why_doubt(doubt)}. Doubt {doubt.score:.1f}, it asks from {doubt.threshold:.1f}."
     ]
 
 
@@ -201,7 +201,7 @@ def _why_doubt(doubt: DoubtFacts) -> str:
 def _asks(level: LevelFacts) -> list[str]:
     nearest, of = level.nearest, f" of {level.behaviour}" if level.behaviour else ""
     if nearest is None and level.count:
-        return [f"A learner that is no RLA system decides{of}, and does not know this situation: the robot asks."]
+        return [f"A learner without RLAs decides{of}, and does not know this situation: the robot asks."]
     if nearest is None:
         return [f"Nothing{of} was taught yet, so the robot asks."]
     if nearest.distance <= nearest.radius:
@@ -225,7 +225,7 @@ def _limit(level: LevelFacts, nearest: RlaFacts) -> str:
     if level.radius_share >= 1.0:
         return f"R ({limit})"
     whole = format_distance(nearest.radius / level.radius_share)
-    return f"{level.radius_share:g} R ({limit} of {whole}), beyond which it asks while it is taught"
+    return f"{level.radius_share:g} R ({limit} of {whole}), its limit while it is taught"
 
 
 def _asks_the_way(level: LevelFacts) -> list[str]:
@@ -255,7 +255,7 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     if stands is not None:
         return [f"By itself it would stand: {_STANDS[DecisionCause(stands)]}."]
     if nearest is None and facts.basic.count:
-        return ["By itself it would do as its learner decides, which is no RLA system."]
+        return ["By itself it would do as its learner decides, which has no RLAs."]
     if nearest is None or leader is None:
         return ["By itself it would ask: nothing was taught yet."]
     if known:
@@ -282,4 +282,4 @@ def _format_percent(rla: RlaFacts) -> str:
 
 
 def _format_value(rla: RlaFacts) -> str:
-    return "" if rla.value is None else f" and is worth {rla.value:.2f}"
+    return "" if rla.value is None else f" and has the value {rla.value:.2f}"

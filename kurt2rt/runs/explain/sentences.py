@@ -22,7 +22,7 @@ def format_runner_up(level: LevelFacts) -> list[str]:
     ]
     if otherwise is not None and otherwise is not runner_up:
         lines.append(
-            f"It says the same; the nearest that says something else is {format_rla(otherwise)} "
+            f"It says the same. The nearest with another action is {format_rla(otherwise)} "
             f"at {format_distance(otherwise.distance)}{_margin(level, otherwise)}."
         )
     return lines
@@ -81,9 +81,9 @@ def format_usage(rla: RlaFacts) -> str:
     else:
         text += f" since, {format_count(rla.uses)} with the actions it had before"
     if rla.rewards or rla.punishments:
-        text += f"; praised {format_count(rla.rewards)}, blamed {format_count(rla.punishments)}"
+        text += f"; rewarded {format_count(rla.rewards)}, punished {format_count(rla.punishments)}"
         if rla.value is not None:
-            text += f", worth {rla.value:.2f}"
+            text += f", value {rla.value:.2f}"
     return f"{text}."
 
 

@@ -20,7 +20,7 @@ MOST_SAMPLES = 5000
 
 
 class Kind(StrEnum):
-    """Kind of a stretch."""
+    """Kind of an interval of a run: who or what moved the robot, or that it stood."""
 
     DRIVES = "drives"
     """Driving by RLAs."""
@@ -52,13 +52,13 @@ class Stretch:
 
     @property
     def lasts_s(self) -> float:
-        """Duration in s."""
+        """Length of the interval in s."""
         return self.to_s - self.from_s
 
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Event of one tick."""
+    """Lesson, alarm or other event of a run, at the time of its tick."""
 
     at_s: float
     kind: str
@@ -243,21 +243,21 @@ def format_summary(timeline: Timeline) -> str:
     if not whole_s > 0:
         return "Nothing was recorded in that time."
     words = {Kind.DRIVES: "drove by its RLAs", Kind.LED: "was led", Kind.ASKS: "asked", Kind.STANDS: "stood"}
-    parts = []
+    shares = []
     for kind, word in words.items():
         lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
         if lasts_s > 0:
             often = (
                 f" ({format_count(len(kind_intervals(timeline, kind)))})" if kind in (Kind.ASKS, Kind.STANDS) else ""
             )
-            parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
+            shares.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
     lessons = sum(note.kind == "lesson" for note in timeline.notes)
     alarms = sum(note.kind == "alarm" for note in timeline.notes)
-    parts += [_counted(lessons, "lesson")] if lessons else []
-    parts += [_counted(alarms, "alarm")] if alarms else []
-    parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
-    parts += [f"{timeline.unrecorded} ticks not recorded"] if timeline.unrecorded else []
-    return f"{whole_s:.1f} s: {', '.join(parts)}"
+    counts = [_counted(lessons, "lesson")] if lessons else []
+    counts += [_counted(alarms, "alarm")] if alarms else []
+    counts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
+    counts += [f"{timeline.unrecorded} ticks not recorded"] if timeline.unrecorded else []
+    return f"{whole_s:.1f} s: {', '.join(shares)}{'. ' if shares and counts else ''}{', '.join(counts)}"
 
 
 def _kind(event: TeachingEvent) -> str:

@@ -7,7 +7,7 @@ MEGA = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """Disk space of recordings."""
+    """Limits of the disk space that recordings may take."""
 
     total_bytes: int
     """Limit of all runs together."""

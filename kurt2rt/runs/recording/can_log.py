@@ -84,7 +84,7 @@ def _create_numbered(path: Path) -> Path:
         except FileExistsError:
             continue
         return numbered
-    raise RecordingError("so many logs of this name are there already", where=path, do="move them away")
+    raise RecordingError("too many logs have this name already", where=path, do="move them away")
 
 
 def _with_error_flag(frame: can.Message) -> can.Message:

@@ -66,7 +66,7 @@ class OpinionEntry(NamedTuple):
 
 
 class ResultEntry(NamedTuple):
-    """Result of a command."""
+    """Recorded answer to a command."""
 
     command_id: str
     accepted: bool

@@ -39,7 +39,7 @@ class LiveView:
 
     @property
     def address(self) -> str:
-        """URL for Foxglove."""
+        """Address that Foxglove opens."""
         return f"ws://{self._host}:{self.port}"
 
     def poll(self) -> None:

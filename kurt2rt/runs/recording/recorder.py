@@ -31,7 +31,7 @@ _NS_PER_S = 1_000_000_000
 
 
 class TickNote(NamedTuple):
-    """Record of one tick."""
+    """Note of one tick on its way to the recorder's thread."""
 
     record: TickRecord
     time_ns: int
@@ -43,7 +43,7 @@ class TickNote(NamedTuple):
 
 
 class QuestionNote(NamedTuple):
-    """Question of the robot."""
+    """Note that a question begins, on its way to the recorder's thread."""
 
     question: object
     """Object whose `str` is the question."""

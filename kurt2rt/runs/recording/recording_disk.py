@@ -117,7 +117,7 @@ class LockedFolder:
                 raise
 
     def close(self) -> None:
-        """Release the lock."""
+        """Release the lock, so that another program may record there."""
         os.close(self._descriptor)
 
 

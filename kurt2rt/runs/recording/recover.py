@@ -62,7 +62,7 @@ def _copy(reader: SegmentReader, file: BinaryIO) -> None:
             case Metadata():
                 writer.add_metadata(record.name, record.metadata)
     if not started:
-        raise NothingRecoverableError("is no file of a run, or nothing of it was written", where=reader.path)
+        raise NothingRecoverableError("is not the file of a run, or nothing of it was written", where=reader.path)
     if reader.truncated:
         writer.add_metadata(TRUNCATED_METADATA, {"why": reader.truncated})
     writer.finish()  # type: ignore[no-untyped-call]

@@ -184,4 +184,4 @@ class RunFiles:
                 raise
             self.folders += 1
             return path
-        raise FileExistsError(f"{self._recordings / name}: so many runs of this name are there already")
+        raise FileExistsError(f"{self._recordings / name}: too many runs have this name already")

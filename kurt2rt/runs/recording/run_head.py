@@ -15,7 +15,7 @@ RUN_METADATA = "run"
 
 @dataclass(frozen=True, slots=True)
 class RunHead:
-    """Circumstances of one run."""
+    """First entry of a recording: versions, task, robot and the state in which the run began."""
 
     kurt2rt: str
     """Version of the program."""

@@ -33,7 +33,7 @@ _MESSAGE_HEAD = struct.Struct("<HIQQ")
 
 
 class LoggedMessage(NamedTuple):
-    """Message of a recording."""
+    """Message of a recording, with its topic, time and schema."""
 
     topic: str
     time_ns: int

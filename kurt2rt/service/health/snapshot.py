@@ -15,7 +15,7 @@ from kurt2rt.service.health.probes import JournalStats, Probes
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """Values of the program after one tick."""
+    """Values of the program after one tick, from which the health report is made."""
 
     tick: int
     now_s: float

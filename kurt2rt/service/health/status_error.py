@@ -8,8 +8,8 @@ class StatusCode(ErrorCode):
 
     NO_PROGRAM = (
         "no program",
-        "no robot program runs with the knowledge {knowledge}, or it waits for its disk",
-        "start one with kurt2rt run, or name its knowledge file",
+        "no robot program runs with {knowledge}, or it waits for its disk",
+        "start kurt2rt run, or give its knowledge file",
     )
     NOT_READ = ("not read", "cannot be read ({error})", "be the user of the robot program")
     WAITS = ("waits", "the robot program stands and waits for {missing}", "")

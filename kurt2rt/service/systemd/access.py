@@ -13,7 +13,7 @@ from kurt2rt.service.systemd.installation import required_paths
 _HOMES = (Path("/home"), Path("/root"), Path("/run/user"))
 _OF_ITS_OWN = (Path("/tmp"), Path("/var/tmp"), Path("/dev"))  # PrivateTmp and PrivateDevices
 _COPIES = Path("/etc/kurt2rt")
-_UNREADABLE = "{path}: the service's own user may not read it, for {closed} is closed to others"
+_UNREADABLE = "{path}: the service's user cannot read it, because {closed} is closed to others"
 _HIDDEN = "{path}: the service does not see what is in {closed}"
 _COPY = "say: sudo install -D -m 644 {path_word} {copy_word}, and name that one"
 
@@ -120,12 +120,11 @@ def _both(path: Path) -> tuple[Path, Path]:
 
 
 _TEXTS: Mapping[AccessCode, str] = {
-    AccessCode.INSTALLATION_UNREADABLE: f"{_UNREADABLE}; install kurt2rt where everybody may read, "
-    "in a virtual environment in /opt/kurt2rt, for instance",
+    AccessCode.INSTALLATION_UNREADABLE: f"{_UNREADABLE}; install kurt2rt in a folder for all, such as /opt/kurt2rt",
     AccessCode.FILE_UNREADABLE: f"{_UNREADABLE}; {_COPY}",
     AccessCode.FILE_HIDDEN: f"{_HIDDEN}; {_COPY}",
     AccessCode.FOLDER_HIDDEN: f"{_HIDDEN}; name a folder elsewhere",
-    AccessCode.FOLDER_UNREACHABLE: "{path}: the service's own user cannot get there, for {closed} is closed to others; "
+    AccessCode.FOLDER_UNREACHABLE: "{path}: the service's user cannot get there, because {closed} is closed to others; "
     "name a folder elsewhere, or say: sudo chmod o+x {closed_word}",
     AccessCode.FOLDER_OF_ANOTHER: "{path}: belongs to {owner}; say: sudo chown {user}: {path_word}",
 }

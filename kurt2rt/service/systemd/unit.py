@@ -23,7 +23,7 @@ _PLAIN = re.compile(r"[\w@+,./:=-]+")
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """Files of one unit."""
+    """Text of a unit, and of the file that makes its user."""
 
     name: str
     """Name of the unit and of its user."""

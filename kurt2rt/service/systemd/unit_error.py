@@ -9,7 +9,7 @@ _OTHER_NAME = "give another --name"
 class UnitCode(ErrorCode):
     """Condition that keeps a unit from being made, installed or checked."""
 
-    BAD_NAME = ("bad name", "is no name for a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
+    BAD_NAME = ("bad name", "cannot name a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
     UNPRINTABLE = ("unprintable", "cannot stand in a unit", "give a path without control characters")
     RELATIVE_PATH = (
         "relative path",

@@ -33,7 +33,7 @@ class OpenSetting(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class UnitVerification:
-    """Result of systemd's tools."""
+    """Result of systemd's own checks of a unit."""
 
     complaints: tuple[str, ...]
     """Lines of `systemd-analyze verify`; empty if the unit loads."""

@@ -27,7 +27,7 @@ class NoAnswer(StrEnum):
 
 
 _NO_ANSWER_TEXTS: Final = {
-    NoAnswer.NO_STATE: "there is no picture of the robot, so nothing was sent to it",
+    NoAnswer.NO_STATE: "no word from the robot, so nothing was sent to it",
     NoAnswer.SILENT: "no state of the robot for {after_s:g} s",
     NoAnswer.NO_REPLY: "no answer for {after_s:g} s: it is not known whether it counted; look at the lessons",
     NoAnswer.STOP_UNANSWERED: "the stop is not answered: no answer for {after_s:g} s; it is sent on until it is",

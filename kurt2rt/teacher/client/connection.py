@@ -158,14 +158,14 @@ async def subscribe(requests: OscoreRequests, stream: StateStream, now: Callable
 
 def _publish(response: Response, requests: OscoreRequests, stream: StateStream) -> None:
     if not response.successful:
-        requests.trouble = f"the robot shows no picture: {response.code}"
+        requests.trouble = f"the robot sends no state: {response.code}"
         return
     try:
         state = decode_state(response.payload)
     except WireError as error:
         requests.trouble = (
-            f"the robot's picture is not understood, it may be of another version: {error}; install the same kurt2rt "
-            "on the robot and on this device"
+            f"the robot's state is not understood ({error}), perhaps of another version; install the same kurt2rt on "
+            "robot and device"
         )
     else:
         stream.publish(state)

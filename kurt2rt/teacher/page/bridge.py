@@ -85,7 +85,7 @@ class Bridge:
 
     @property
     def page_count(self) -> int:
-        """Number of open pages."""
+        """Number of pages that are open now."""
         return len(self._connections)
 
     def close_all(self) -> None:

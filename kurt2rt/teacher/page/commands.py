@@ -50,7 +50,7 @@ class PageCommand:
 
 @dataclass(frozen=True, slots=True)
 class CommandKind:
-    """One kind of command."""
+    """Command of the page: the call that sends it, checks of its fields, and what it may do."""
 
     send: _Send
     fields: Mapping[str, Check]

@@ -2,7 +2,12 @@
 
 
 class ControlLease:
-    """Holder of the lease. Times are seconds of a monotonic clock."""
+    """Lease by which one page at a time may command; the others watch, and can stop the robot.
+
+    A page that opens gets it if it is free, or if its holder was silent for `silent_s`; `claim` takes it from any
+    holder. It is not control authority: that is the robot's, and between devices. Times are seconds of a monotonic
+    clock.
+    """
 
     def __init__(self, silent_s: float = 1.0) -> None:
         """Create a free lease; a holder that is silent for `silent_s` loses it to the next page that is opened."""

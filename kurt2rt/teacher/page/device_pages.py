@@ -41,7 +41,7 @@ class PageSite:
     names: Collection[str]
     """Names of this machine, as a browser may write them in an address."""
     address: str
-    """Address or name of this machine that a phone is told; auto: its addresses in its networks."""
+    """Address or name of this machine for phones; auto: its addresses in its networks."""
     idle_s: float = IDLE_S
 
 

@@ -59,7 +59,7 @@ class Release:
 
 @dataclass(frozen=True, slots=True)
 class StopNow:
-    """Stop, from any page."""
+    """STOP of a page, also of one without control."""
 
     number: int
     """The page's own number of this message, repeated in the answer."""

@@ -13,7 +13,9 @@ _MAX_WAITING = 64
 
 
 class DeadmanSwitch:
-    """State of the press that drives. A press ends by release or silence, and never starts again.
+    """Deadman switch: the robot drives while a press is held, and stops when it ends.
+
+    A press ends by release, or 0.25 s without a message, and never starts again: driving needs a new press id.
 
     TCP may deliver late messages in a burst, so a message counts by the age of the state that the page showed, not by
     its arrival. Times are seconds of a monotonic clock.
@@ -52,7 +54,7 @@ class DeadmanSwitch:
         return True
 
     def release(self) -> None:
-        """End the press."""
+        """End the press; its id never drives again."""
         if self._press_id is not None:
             self._ended = self._press_id
             self._press_id = None

@@ -18,7 +18,7 @@ class PageAddress:
 
 @dataclass(frozen=True, slots=True)
 class ServedPages:
-    """Pages served at present."""
+    """Addresses of the page that are served now, and whether the network reaches them."""
 
     addresses: tuple[PageAddress, ...]
     """This machine's own first, then the others, the newest pairing first; of one device the likeliest first."""
@@ -42,7 +42,7 @@ def page_addresses(device: Device, named: str, port: int) -> tuple[PageAddress, 
 
     Args:
         device: paired device; a device of this machine has its page on loopback.
-        named: address or name that a phone is told; auto: this machine's addresses in its networks.
+        named: address or name for phones; auto: this machine's addresses in its networks.
         port: TCP port of the page.
     """
     hosts = ("127.0.0.1",) if device.name in OF_THIS_MACHINE else addresses_for_phones(named)

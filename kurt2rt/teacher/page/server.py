@@ -1,4 +1,4 @@
-"""Server of the page, until it is told to end."""
+"""Server of the page, until it has to end."""
 
 import contextlib
 import errno

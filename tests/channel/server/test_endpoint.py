@@ -175,8 +175,8 @@ async def test_a_second_robot_on_the_port_is_refused(second: str) -> None:
 @pytest.mark.parametrize(
     ("host", "port", "why"),
     [
-        ("192.0.2.1", 0, "192.0.2.1 is no address of this machine"),
-        ("kurt", 0, "'kurt' is no address"),
+        ("192.0.2.1", 0, "192.0.2.1 is not an address of this machine"),
+        ("kurt", 0, "'kurt' is not an address"),
         ("::", 70000, "UDP port 70000 at :: cannot be opened"),
     ],
 )

@@ -45,7 +45,7 @@ def test_skeleton_installs_and_passes_its_tests(kurt2rt: CommandLine, plugin_fol
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("learners", "Nearest"), "is no name of a plug-in (got 'Nearest', allowed are a-z, 0-9 and _, "),
+        (("learners", "Nearest"), "cannot name a plug-in (got 'Nearest', allowed are a-z, 0-9 and _, "),
         (("learners", "tree"), "'tree' is the name of a shipped part or a module"),
         (("robots", "json"), "'json' is the name of a shipped part or a module"),
         (("robots", "hal"), "'hal' is the name of a shipped part or a module"),
@@ -95,8 +95,8 @@ def test_show_prints_the_settings_of_a_shipped_action(kurt2rt: CommandLine, name
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("tasks", "fleing"), "no such file in tasks; give module:NAME, a path to a .yaml file or one of: circle"),
-        (("worlds", "rooms-3"), "no such file in worlds; give a path to a .yaml file or one of: a, b"),
+        (("tasks", "fleing"), "no such name in tasks; give module:NAME, the path of a .yaml file, or one of: circle"),
+        (("worlds", "rooms-3"), "no such name in worlds; give the path of a .yaml file, or one of: a, b"),
         (("judges", "harsh"), "there is no kind 'harsh'; give module:Name, or one of: eight, fleeing"),
         (("behaviours", "leap"), "there is no such action; give module:Name, or one of: motor"),
         (("policies", "parts_broken:NUMBER"), "is a int, allowed is a subclass of PolicySettings"),

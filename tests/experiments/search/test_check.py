@@ -103,7 +103,7 @@ def test_check_is_made_once(tmp_path: Path) -> None:
 def test_damaged_record_of_a_check_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "check.json"
     path.write_text("{}")
-    with pytest.raises(StudyError, match="is no record of a check"):
+    with pytest.raises(StudyError, match="is not the record of a check"):
         read_record(path)
 
 

@@ -150,7 +150,7 @@ def test_damaged_journal_is_refused_in_one_line(tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
     plan.folder.mkdir()
     (plan.folder / FILE).write_text("no journal\nat all\n")
-    with pytest.raises(StudyError, match="is no journal of trials"), opened(plan):
+    with pytest.raises(StudyError, match="is not a journal of trials"), opened(plan):
         pass
 
 

@@ -76,5 +76,5 @@ def test_damaged_witness_is_named(tmp_path: Path) -> None:
     plan = run(tmp_path)
     path = tmp_path / witness_of(plan).file
     path.write_text("{}")
-    with pytest.raises(StudyError, match=f"{path.name}: is no witness"):
+    with pytest.raises(StudyError, match=f"{path.name}: is not a witness"):
         require_no_difference(Results(tmp_path), [source_hash()])

@@ -284,7 +284,7 @@ class FakeRobot(TeacherClient):
     async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
         await self._answer("file_parts", name)
         if name not in self.files:
-            raise RefusedError(f"{name}: is no copy of this run of the program; save or export again")
+            raise RefusedError(f"{name}: not a copy of this run of the program; save or export again")
         for offset in range(0, len(self.files[name]), 1000):
             yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
 

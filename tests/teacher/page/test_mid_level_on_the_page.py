@@ -194,7 +194,7 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
         phone.touch("[data-meant=once]")
         phone.touch("[data-way=straight_on]")
         phone.wait(lambda: "teacher's choice" in phone.text("#mid-sentence"), "the teacher overrides it")
-        answer = "straight_on is wanted until the next junction is passed"
+        answer = "follows straight_on until it has passed the next junction"
         phone.wait(lambda: phone.text("#said") == answer, "the robot answers")
         phone.touch("#tab-goals")
         phone.write("#situation-name", "home")

@@ -158,7 +158,7 @@ async def test_health_prints_the_report_and_cures(pairing: Pairing, robot: Stand
         console.type("health")
         await console.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
         await console.reads("disk      knowledge: 412 MB free, recordings: no answer")
-        await console.reads("!! the range sensors are silent, the newest is 2.5 s old (for 2 s): look whether")
+        await console.reads("!! the range sensors are silent, the newest is 2.5 s old (for 2 s): check that")
         await console.reads("! 3 ticks missed in the last minute")
 
 

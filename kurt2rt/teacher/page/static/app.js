@@ -398,7 +398,7 @@ function showLink(state) {
   const both = rtt === null ? null : rtt + (link.pageRttMs ?? 0);
   const parts = [`${Math.round(rate ?? 0)}/s`, both === null ? "" : `${both.toFixed(0)} ms`, age > 150 ? `${age} ms old` : ""];
   setText($("link-text"), parts.filter(Boolean).join(" · "));
-  $("link").title = `pictures a second; round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
+  $("link").title = `updates a second; round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
 }
 
 function showFreshness() {
@@ -407,7 +407,7 @@ function showFreshness() {
   for (const id of CONTROLLED) $(id).inert = lost || !inControl();
   if (lost) {
     releaseAll();
-    setText($("link-text"), "no picture");
+    setText($("link-text"), "no word");
     $("go").disabled = true;
   }
 }

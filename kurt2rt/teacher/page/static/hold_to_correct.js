@@ -83,7 +83,7 @@ export class TapOrHold {
   }
 }
 
-// Lets a finger tap or hold a button; a hold is no click.
+// Lets a finger tap or hold a button; a hold does not click.
 export function holdButton(button, action, press) {
   let pointer = null;
   let wasHeld = false;

@@ -22,6 +22,6 @@ export function showProgress(state, measure) {
   const line = document.getElementById("progress");
   setText(line, progress(state, measure));
   line.title =
-    "In the last minute: time driven by its own rules, and how often it asked: it stood, because nothing that it was taught is near enough, until " +
-    "it was told what to do. Progress in the task is since the start of the run";
+    "In the last minute: time driven by its own rules, and how often it stood and asked, because no rule was near enough. " +
+    "Progress in the task is since the start of the run";
 }

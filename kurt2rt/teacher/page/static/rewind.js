@@ -22,7 +22,7 @@ export class Rewind {
   #onOpen;
   open = false;
 
-  // `stop` stops the robot; `onChange` draws the page again; `onOpen` is told when rewind is entered or left.
+  // `stop` stops the robot; `onChange` draws the page again; `onOpen` is called when rewind is entered or left.
   constructor({ stop, onChange, onOpen }) {
     this.#onChange = onChange;
     this.#onOpen = onOpen;

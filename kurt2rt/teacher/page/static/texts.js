@@ -1,21 +1,21 @@
 // The page's own sentences; texts of the robot's codes come from its server.
 
 const TEXTS = {
-  commandWithoutPicture: "no picture of the robot: nothing was sent",
-  whyWithoutPicture: "no picture of the robot: nothing was asked",
+  commandWithoutPicture: "no word from the robot: nothing was sent",
+  whyWithoutPicture: "no word from the robot: nothing was asked",
   linkBroke: "the link broke: it is not known whether the command was carried out; look at the lessons",
   stopUnanswered: "STOP has no answer yet; it is sent again until the robot answers",
   stopWithoutLink: "no link: STOP is sent as soon as the link is back; {meanwhile}",
   autonomousMeanwhile: "in phase 5 the robot drives on until then",
   supervisedMeanwhile: "without its teacher the robot stops by itself",
-  awaitPicture: "{action} was not sent: wait for the picture after the last answer",
+  awaitPicture: "{action} was not sent: wait until the page shows the robot after the last answer",
   questionChanged: "{action} was not sent: the question has just changed, look again",
   undoAgain: "undo {lesson}? touch again",
   undoEarlier: "your last touch taught nothing; undo the lesson before it, {lesson}? touch again",
   contradicts: "RLA {rla} says {action}; all near it say {others} (RLA {nearest} first). A slip?",
   nothingToUndo: "the list has no lesson to undo; nothing was sent",
   driveEnded: "the drive was ended; press again",
-  awaitRobot: "waiting for the robot's picture …",
+  awaitRobot: "waiting for the robot …",
   awaitServer: "no link to this page's server; trying again …",
   otherTeacher: "{teacher} is the teacher. This page only watches; it can stop the robot.",
   controlElsewhere: "Another page has control. This page only watches; it can stop the robot.",
@@ -37,11 +37,11 @@ const TEXTS = {
   bubbleWhy: "Here you read what the robot does and why. When it asks, this turns yellow.",
   bubblePanel: "Take the robot, then touch the right action: each touch is a lesson and acts at once.",
   bubbleStop: "STOP stops the robot, from every device. GO lets it drive on.",
-  phase1: "In an unknown situation it stops and asks; your answer becomes a rule.",
+  phase1: "In an unknown situation it stops and asks. Your answer becomes a rule.",
   phase2: "It drives by its rules, and you also correct it while it drives.",
-  phase3: "Right and wrong change the values of its rules; a rule with too low a value is asked for again.",
+  phase3: "Right and wrong change the values of its rules. If a value is too low, the robot asks again.",
   phase4: "Right and wrong teach its critic to judge by itself.",
-  phase5: "It drives without a teacher and never asks; a trusted critic repairs its rules.",
+  phase5: "It drives without a teacher and never asks. A trusted critic repairs its rules.",
 };
 
 // The sentence of a key, with the values of its fields.
