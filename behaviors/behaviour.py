@@ -6,7 +6,12 @@ from hal.robot import SensorReadings, WheelSpeeds
 
 
 class Behaviour(Protocol):
-    """Action of the repertoire; `start` resets its state."""
+    """Action that an RLA can name, such as curve_left: wheel speeds from readings (paper, section III.A.2).
+
+    The level that chose it calls `start` in the first tick, then `step` once in each tick while it is active. It may
+    have a state, but no clock and no chance: the same readings after `start` give the same speeds. If it is
+    `finished` or `lost`, it stands.
+    """
 
     @property
     def finished(self) -> bool:

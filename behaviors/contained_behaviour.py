@@ -44,7 +44,7 @@ class ContainedBehaviour:
         return self._call(lambda: bool(self._made.lost), instead=True)
 
     def start(self) -> None:
-        """Reset the action's state."""
+        """Reset the state of the plug-in's action; an error makes it lost."""
         self._call(self._made.start, instead=None)
 
     def step(self, readings: SensorReadings) -> WheelSpeeds:

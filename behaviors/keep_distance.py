@@ -7,7 +7,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class KeepDistanceNumbers(NamedTuple):
-    """Numbers of the loop."""
+    """Constants of the control loop that keeps a distance from a wall."""
 
     towards_left: float
     """1 for sensors on the left, -1 for sensors on the right."""

@@ -24,7 +24,10 @@ from hal.settings import SettingsError, load_settings
 from hal.settings_files import find_config
 
 Repertoire = Mapping[str, Behaviour]
-"""Behaviours by their names in an RLA's action part."""
+"""All actions of a task, by the names that RLAs and commands use, such as {"forward": MotorPrimitive(...)}.
+
+A file of `config/repertoires` lists them; `load_repertoire` builds them for one robot. A robot is not started with an
+RLA whose action its repertoire lacks."""
 
 
 BuildTaught = Callable[[TaughtAction | TaskAction, Path], Behaviour]

@@ -214,7 +214,11 @@ TRACED_TICKS = 10
 
 
 class Batch(Protocol):
-    """Robots that drive at once, each in a world of its own."""
+    """Robots that compiled loops drive at once, each in a world of its own, 100 times as fast as on the CAN bus.
+
+    Each gives the same bits as the CAN loop would. A robot for which that cannot hold leaves (`reason_to_leave`), and
+    its whole drive is repeated on the bus. Studies compare some with a witness.
+    """
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -258,7 +262,7 @@ class Batch(Protocol):
         ...
 
     def select(self, robot: int, behaviour: str) -> None:
-        """Let a taught behaviour be wanted of a robot from its next decision on."""
+        """Make a taught behaviour of a robot active from its next decision on."""
         ...
 
     def put(self, robot: int, pose: Pose) -> None:
@@ -290,7 +294,7 @@ class FollowedSimulation(Simulation, Protocol):
         ...
 
     def carry(self, pose: Pose) -> None:
-        """Be at a pose in m and rad at which the robot was put in the batch."""
+        """Set the robot to the pose in m and rad at which the batch put it."""
         ...
 
 
@@ -306,7 +310,7 @@ class BatchFactory(SimulationFactory, Protocol):
     """Opens simulations, and batches of their robots."""
 
     def open(self, world: str, seed: int, purpose: str) -> FollowedSimulation:
-        """Open a simulation (hal.simulation.SimulationFactory)."""
+        """Open a simulation of a robot (hal.simulation.SimulationFactory)."""
         ...
 
     def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:

@@ -76,7 +76,7 @@ class TaughtRlas(NamedTuple):
 
 
 class LessonMode(NamedTuple):
-    """Orders that hold until the next command."""
+    """Orders that hold until the teacher's next command: a stop, a held action, a lesson speed."""
 
     stopped: bool = False
     """The robot stands until a resume."""
@@ -102,7 +102,7 @@ class LessonDriveSettings:
     ticks: int
     """Length of the lesson."""
     choose: Choose | None = None
-    """Choice of the action in each tick, in place of the RLAs, for the situation by `features`; None: RLAs decide.
+    """Choice of the action in each tick, instead of the RLAs, for the situation by `features`; None: RLAs decide.
 
     An error that it raises ends `LessonRobot.drive`, which raises it.
     """
@@ -134,7 +134,7 @@ class LessonRobot(Simulation, Protocol):
         ...
 
     def select(self, behaviour: str) -> None:
-        """Let a taught behaviour be wanted from the next decision on."""
+        """Make a taught behaviour active from the next decision on."""
         ...
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
@@ -162,7 +162,7 @@ class LessonRobot(Simulation, Protocol):
         ...
 
     def go_back(self, tick: int) -> None:
-        """Be at the end of an earlier tick since the last `keep` again."""
+        """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         ...
 
     def keep(self) -> list[Pose]:

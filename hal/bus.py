@@ -16,7 +16,9 @@ from hal.tap import Tap
 
 
 class CanInterface(Protocol):
-    """One end of a bus of some kind. Nothing here waits; errors are can.CanError, OSError or ValueError.
+    """One end of a CAN bus of any kind: SocketCAN, between programs, or in memory (an interface of python-can).
+
+    Nothing here waits; errors are can.CanError, OSError or ValueError.
 
     A frame arrives once at every other end, in the order in which the bus carried it. Error frames of the bus are
     delivered too (`is_error_frame`, laid out as Linux does).
@@ -287,7 +289,7 @@ class FramePort:
         self._bus._send(frame, is_control=self._is_control)
 
     def send_all(self, frames: Sequence[Frame]) -> None:
-        """Send frames in order, as so many calls of `send`, but check all of them first.
+        """Send frames in order, as one call of `send` for each would, but check all of them first.
 
         Raises BusError at the first that fails, ValueError for a frame that this port does not carry.
         """

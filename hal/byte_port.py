@@ -10,7 +10,10 @@ from hal.bus import BusError
 
 
 class BytePort(Protocol):
-    """One end of a line that carries bytes. Nothing here waits."""
+    """One end of a line that carries bytes, such as a serial port, for the link of a robot. Nothing here waits.
+
+    A link owns one; `MemoryPort.pair()` is a line for a simulated robot in the same program.
+    """
 
     name: str
 

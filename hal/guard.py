@@ -16,7 +16,10 @@ _LONGEST_SLEW_CYCLES = 2  # a late tick must not turn into a jump of the set poi
 
 
 class Guard:
-    """Filter that applies what is safe of the wanted wheel speeds, and brakes on request. Thread safe.
+    """Only sender of set points: applies what is safe of the wanted wheel speeds, and brakes on request.
+
+    It limits speed and acceleration, blocks the way of a pressed bumper, and stands for old readings or commands.
+    A trouble of the link latches it until `release`. Thread safe: watchdog and signal handlers call `emergency_stop`.
 
     Every rule demands proof that driving is safe, so a NaN in any input stops the robot.
     """

@@ -100,7 +100,7 @@ class InProcessBus(VirtualBus):
             raise can.CanOperationError("a listener has too many frames waiting")
 
     def send_all(self, frames: Sequence[Frame]) -> None:
-        """Send frames in order, as so many calls of `send`, in a third of the time if there is one listener.
+        """Send frames in order, as one call of `send` for each would, in a third of the time if there is one listener.
 
         Raises can.CanOperationError at the first frame for which a listener is full.
         """

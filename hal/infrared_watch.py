@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 
 class Board:
-    """Electronics that reads some of the distance sensors."""
+    """Electronics that samples some of the distance sensors, and may freeze as a whole."""
 
     __slots__ = ("name", "still_s")
 
@@ -39,7 +39,7 @@ class InfraredWatch:
     def check_frozen(self, now_s: float, *, driving: bool) -> str:
         """Return one line about a frozen board; empty while all boards work. Call it in each tick.
 
-        `now_s`: time of the tick in s. `driving`: whether the wheels are told to turn.
+        `now_s`: time of the tick in s. `driving`: whether the set points turn the wheels.
         """
         looked_at_s, self._looked_at_s = self._looked_at_s, now_s
         if not driving:

@@ -18,7 +18,7 @@ _BRAKE: Final = object()
 _LATE_S = 0.01
 """A report from later than this after the present is junk: the clocks do not agree."""
 _LONGEST_FAULT = 200
-"""Characters of a fault or notice that are told, in one line."""
+"""Characters of a fault or notice that are shown, in one line."""
 
 
 class LinkPort:

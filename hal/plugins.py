@@ -32,7 +32,7 @@ class UnknownPluginError(PluginError):
 
 
 class Plugin(NamedTuple):
-    """Plug-in, not necessarily imported."""
+    """Entry point of a plug-in, found but not necessarily imported."""
 
     group: str
     """Kind, such as policies."""

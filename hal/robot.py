@@ -23,7 +23,10 @@ STANDSTILL = WheelSpeeds(0.0, 0.0)
 
 
 class SensorReadings(NamedTuple):
-    """Newest value of each sensor channel, as of `time_s`."""
+    """Newest value of each sensor channel, as of `time_s`, with its age: counts, encoder ticks, bumper bits.
+
+    `Robot.sense` returns one in each tick without waiting. The guard stops a robot whose readings are too old.
+    """
 
     time_s: float
     """Time of the tick on the runtime's clock."""
@@ -43,7 +46,7 @@ class SensorReadings(NamedTuple):
 
 
 def readings_before_the_first(sensors: int) -> SensorReadings:
-    """Return readings of so many distance sensors before anything arrived: all ages are infinite."""
+    """Return the readings of `sensors` distance sensors before anything arrived: all ages are infinite."""
     return SensorReadings(
         time_s=-math.inf,
         infrared_counts=(0,) * sensors,
@@ -57,7 +60,10 @@ def readings_before_the_first(sensors: int) -> SensorReadings:
 
 
 class GuardResult(NamedTuple):
-    """Set points that the guard applied, and its reasons."""
+    """Answer of the guard to one request: the applied set points in m/s, and why they differ from the wanted ones.
+
+    `Robot.drive` returns it; tick record, page and recording show the reasons.
+    """
 
     wheel_speeds: WheelSpeeds
     """Set points that stand in the CONTROL frame of this tick."""

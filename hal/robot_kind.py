@@ -11,7 +11,11 @@ from hal.tap import Tap
 
 
 class RobotKind(Protocol):
-    """Kind of robot. Its imports are light: a driver imports what it needs in `open`, a simulation in `simulations`."""
+    """Kind of robot, as a plug-in of `kurt2rt.robots` offers it: schema of its settings, driver and simulation.
+
+    Importing it is light: a driver imports its packages in `open`, a simulation in `simulations`. Shipped are kurt2,
+    school and turtlebot; `kind:` in a robot's settings names one.
+    """
 
     @property
     def settings(self) -> type[RobotSettings]:

@@ -30,7 +30,7 @@ class WheelReport(NamedTuple):
 
 
 class BumperReport(NamedTuple):
-    """Bumpers that are pressed."""
+    """Bumpers that are pressed at one time."""
 
     at_s: float
     """Time of the measurement on the runtime's clock."""
@@ -64,9 +64,12 @@ Report = RangeReport | WheelReport | BumperReport | ForeignCommandReport | Alarm
 
 
 class RobotLink(Protocol):
-    """Link to a robot. Nothing here waits.
+    """Transport to a robot without CAN: reports come in, set points go out. Nothing here waits.
 
-    A message that cannot be read raises nothing: the link counts it as `junk`, and what it would have told grows old.
+    A plug-in implements it, for example over a serial line; `LinkedRobot` puts guard and watchdog in front of it.
+
+    A message that cannot be read raises nothing: the link counts it as `junk`, and its readings age until the guard
+    stops the robot.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Neighbours of each infra-red sensor, and a reading in place of a broken sensor's."""
+"""Neighbours of each infra-red sensor, and a reading instead of a broken sensor's."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -55,17 +55,21 @@ def _ring_key(sensor: SensorSettings) -> tuple[float, float]:
 
 
 class SubstituteReadings:
-    """Function that replaces the readings of broken sensors by those of their neighbours."""
+    """Function that replaces the readings of broken sensors by those of the sensors next to them.
+
+    The highest (nearest) of the working neighbours counts. The tick applies it after `SensorWatch` found a fault, so
+    that the robot can go on after a resume.
+    """
 
     def __init__(self, infrared: InfraredSettings) -> None:
         self._neighbours = neighbours_of(infrared.sensors)
         self._near_counts = infrared.plateau_counts
 
     def __call__(self, counts: tuple[int, ...], broken: Collection[int]) -> tuple[int, ...]:
-        """Return the counts, one per sensor, with the highest of the neighbours in place of each broken sensor.
+        """Return the counts, one per sensor, with the highest of the neighbours instead of each broken sensor.
 
-        A sensor without a working neighbour reads as if something were right before it, so that the robot turns away
-        or asks.
+        For a sensor without a working neighbour an obstacle right in front of it is assumed, so that the robot turns
+        away or asks.
         """
         if not broken:
             return counts

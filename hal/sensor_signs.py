@@ -16,7 +16,11 @@ _DIGITS = 12
 
 
 class Beam(NamedTuple):
-    """Place and direction of a sensor, and the numbers of its law."""
+    """Sensor model: place and direction of a range sensor, and its law.
+
+    distance_m = numerator / (counts + bias) - offset, along `heading`. `motion_m` says how a standing obstacle moves
+    in the beam when the robot drives; `SensorSigns` compares that with the readings.
+    """
 
     place: int
     """Place in the sensor table."""
@@ -124,7 +128,11 @@ class SensorLimits(NamedTuple):
 
 
 class SensorSigns:
-    """Signs of one sensor, in ticks of driving."""
+    """Counters, in ticks of driving, of the signs that one sensor is broken (symptoms).
+
+    For example STUCK: within STUCK_BAND of 2 counts for 4 s, while the others flicker. `SensorWatch` owns one for
+    each sensor.
+    """
 
     __slots__ = (
         "_across_m",

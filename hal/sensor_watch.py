@@ -24,7 +24,7 @@ from hal.sensor_signs import (
 
 
 class BrokenSensor(NamedTuple):
-    """Sensor that was noticed."""
+    """Finding of `SensorWatch`: a sensor and the sign that it is broken."""
 
     place: int
     """Place in the sensor table."""
@@ -42,7 +42,11 @@ class BrokenSensor(NamedTuple):
 
 
 class SensorWatch:
-    """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
+    """Detector of one dead, stuck, unplugged or dark sensor among its neighbours (fault detection).
+
+    The tick calls `update` with fresh readings and stops the robot at a finding. It finds nothing unless more than
+    half of all sensors show no sign, because a frozen board is not the fault of one sensor.
+    """
 
     def __init__(self, robot: RobotSettings) -> None:
         infrared = robot.infrared

@@ -39,7 +39,7 @@ WallSide = Literal["left", "right"]
 
 @dataclass(frozen=True, slots=True)
 class SimulatedPlace:
-    """True pose of the simulated robot, and counts of its drive."""
+    """True pose of the simulated robot in m and rad, with its laps and collisions so far."""
 
     x_m: float
     y_m: float
@@ -91,7 +91,11 @@ class WorldPlan(NamedTuple):
 
 
 class Simulation(Protocol):
-    """A robot in a world, with the truth about both. Neither the runtime nor a teacher gets it."""
+    """Simulated robot in a world, in lockstep with the runtime, with the truth about both.
+
+    Exams, metrics and pictures read pose, collisions and laps from it. The runtime and the teacher get only its
+    `robot`. `SimulationFactory` opens one, by seed and world.
+    """
 
     @property
     def robot(self) -> Robot:
@@ -110,7 +114,7 @@ class Simulation(Protocol):
 
     @property
     def plan(self) -> WorldPlan:
-        """World from above."""
+        """World seen from above, for drawings."""
         ...
 
     def nearest_all_m(self, positions: Sequence[Position]) -> list[float]:

@@ -8,7 +8,10 @@ from hal.settings import SettingsError
 
 
 class Tap(Protocol):
-    """Observer of each frame that passes an end. Methods never wait, raise or change a frame. Any thread calls them."""
+    """Observer of each CAN frame that passes an end, such as the log of `kurt2rt run --can-log` (listener).
+
+    Methods never wait, raise or change a frame. Any thread calls them.
+    """
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
         """Note a frame of another end that the bus carried `age_s` seconds ago, at least 0."""

@@ -13,7 +13,9 @@ POLL_S = 0.01
 
 
 class Watchdog:
-    """Thread that stops the wheels if `beat` is not called for `ticks_ceased_s`, from the first beat on.
+    """Thread that brakes through the guard if ticks cease: no `beat` for `ticks_ceased_s` (0.1 s for KURT2).
+
+    It watches from the first beat on; the loop beats at the end of each tick.
 
     It cannot run in a stuck interpreter; there the controller's own watchdog stops the motors.
     """

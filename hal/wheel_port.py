@@ -15,7 +15,10 @@ class WheelCommand(NamedTuple):
 
 
 class WheelPort(Protocol):
-    """Only way to a robot's wheels. Only a guard may have one."""
+    """Output port of a guard over any link: the only way to a robot's wheels.
+
+    Only a guard has one, so no set point reaches a motor without its rules. A kind of robot implements it.
+    """
 
     @property
     def name(self) -> str:

@@ -69,7 +69,7 @@ class RuntimeOptions:
     """Level that drives instead of the basic level, such as the teacher's own policy. Knowledge and teaching stay
     connected to the basic level; a mid level commands the override as well."""
     learners: LearnerTeam | None = None
-    """Learners that decide in place of the RLAs and get each lesson; the RLAs are taught, too, as the journal's record.
+    """Learners that decide instead of the RLAs and get each lesson; the RLAs are taught, too, as the journal's record.
     None: RLAs decide. Not with a `level_override`."""
     active_behaviour: ActiveBehaviour | None = None
     """Shared with a `level_override` that reads it; made from the task by default."""

@@ -50,7 +50,7 @@ class Kurt2Simulation(RobotSimulation):
         self.simulated_robot.follow(poses)
 
     def carry(self, pose: Pose) -> None:
-        """Be at a pose at which a batch put the robot."""
+        """Set the robot to the pose at which the batch put it."""
         self.simulated_robot.carry(pose)
 
     def attach_tap(self, tap: Tap | None) -> None:

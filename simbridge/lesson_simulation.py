@@ -25,7 +25,7 @@ class LessonSimulation(Kurt2Simulation):
 
     @property
     def log(self) -> LessonLog:
-        """Course of the lesson."""
+        """Log of the lesson so far."""
         return self._lesson.log
 
     @property
@@ -34,11 +34,11 @@ class LessonSimulation(Kurt2Simulation):
         return self._lesson.reason_to_leave(0)
 
     def watch(self, borders: Borders) -> None:
-        """Let `drive` end at borders. Raises BatchRefusedError for too many areas."""
+        """Stop `drive` where the robot crosses a border. Raises BatchRefusedError for too many areas."""
         self._lesson.watch_borders(borders)
 
     def select(self, behaviour: str) -> None:
-        """Let a taught behaviour be wanted from the next decision on."""
+        """Make a taught behaviour active from the next decision on."""
         self._lesson.select_behaviour(behaviour)
 
     def set_rlas(self, rlas: TaughtRlas) -> None:
@@ -58,7 +58,7 @@ class LessonSimulation(Kurt2Simulation):
         return self._lesson.run(until)
 
     def go_back(self, tick: int) -> None:
-        """Be at the end of an earlier tick since the last `keep` again."""
+        """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         self._lesson.go_back(tick)
 
     def keep(self) -> list[Pose]:

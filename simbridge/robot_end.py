@@ -83,7 +83,7 @@ class CanRobotEnd:
         return SimulatedKurt2(self._settings, world, self._reconnecting, seed, robot_seed=robot_seed)
 
     def close(self) -> None:
-        """Shut the bus down."""
+        """Shut the robot's end of the bus down."""
         self._bus.shutdown()
 
 

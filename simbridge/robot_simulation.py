@@ -29,7 +29,7 @@ from simbridge.worlds.world_settings import WorldSettings
 
 
 class Clearance:
-    """Distance query in a world with movable walls."""
+    """Distances in m to the nearest wall, in a world whose walls may be moved."""
 
     def __init__(self, world: World) -> None:
         self._world = world

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RobotWorlds:
-    """Part of a factory of simulations (hal.simulation.SimulationFactory) that opens none."""
+    """Worlds of a robot's simulations: checks, plans and drawings, for factories of simulations to inherit."""
 
     settings: RobotSettings
 

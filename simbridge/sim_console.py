@@ -16,13 +16,13 @@ from simbridge.worlds.world_settings import WorldSettings
 HELP = """\
 start N               put the robot down at a start pose of the world, 1, 2, ...
 place X Y HEADING     put it down elsewhere: metres, degrees counter-clockwise from x
-move NAME DX DY       shift a wall or an obstacle by so many metres
+move NAME DX DY       shift a wall or an obstacle, in metres
 lift, lower           put the robot on a block, wheels in the air, and down again
 help                  this"""
 
 
 class SimConsole:
-    """Executor of typed commands."""
+    """Executor of the lines that a user types into `kurt2rt sim`."""
 
     def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: RealtimeWorld) -> None:
         self._standalone = standalone

@@ -29,11 +29,11 @@ class InstantLink:
     """Link without a time of its own (SimulatedLink)."""
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
-        """Step the robot."""
+        """Step the robot; its reports arrive at once."""
         step_robot()
 
     def live(self) -> AbstractContextManager[None]:
-        """Return an empty context."""
+        """Return an empty context, because nothing runs in real time."""
         return nullcontext()
 
     def close(self) -> None:
@@ -60,11 +60,11 @@ class CanLine(InstantLink):
         self._delivery_s = 0.0 if ":" in spec else _KERNEL_DELIVERY_S
 
     def cycle(self, step_robot: Callable[[], None]) -> None:
-        """Step the robot."""
+        """Step the robot, then wait until the bus has delivered its frames."""
         step_robot()
         if self._delivery_s:
             time.sleep(self._delivery_s)
 
     def close(self) -> None:
-        """Shut the robot's end."""
+        """Shut the robot's end of the bus down."""
         self.robot_end.shutdown()

@@ -155,7 +155,7 @@ class SimulatedRobot:
         return progress
 
     def carry(self, pose: Pose) -> None:
-        """Be at a pose where the robot was put that a batch simulates; no lap is counted on the way there."""
+        """Set the robot to the pose in m and rad at which the batch put it; the way there counts no lap."""
         self._passed.append(_Put(pose))
         self._followed = pose
 

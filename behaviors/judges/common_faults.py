@@ -14,7 +14,7 @@ TurnRate = Annotated[float, Field(ge=0, le=4)]
 
 
 class CommonFaults(Settings):
-    """Thresholds of the faults."""
+    """Thresholds of faults that every judge punishes, such as creeping and backing."""
 
     creeps_m_s: Speed
     """Speed below which lack of progress counts as a fault."""

@@ -6,7 +6,7 @@ from behaviors.policies.sectors import Metres
 
 
 class EightSettings(JudgeSettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the judge of the eight; distances in m from the sensors' faces."""
 
     trouble: CommonFaults
     front_m: Metres

@@ -6,7 +6,7 @@ from behaviors.policies.sectors import Metres
 
 
 class FleeingSettings(JudgeSettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the judge of fleeing; distances in m from the sensors' faces."""
 
     trouble: CommonFaults
     front_m: Metres

@@ -53,7 +53,10 @@ def mirrored(features: AppraisalFeatures) -> AppraisalFeatures:
 
 
 class Judge(Protocol):
-    """Memoryless reward function: a critic can only learn from its appraisal situation."""
+    """Reward function of a task: names bad driving (-1) and good driving (+1) from distances and motion.
+
+    Scripted teachers reward by it in phases 3 and 4. It has no memory, because a critic learns from one situation.
+    """
 
     def judge(self, features: AppraisalFeatures) -> int:
         """Return the reward: -1 bad, 0 neutral, +1 good."""

@@ -37,7 +37,7 @@ class AngleAbout:
         self._angle_rad = angle_rad
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Add the angles to poses in a row, as so many calls of `update` would."""
+        """Add the angles to poses in a row, as one call of `update` for each would."""
         angles_rad = [round_portable(math.atan2(y_m - self._y_m, x_m - self._x_m)) for x_m, y_m, _ in poses]
         if not angles_rad:
             return

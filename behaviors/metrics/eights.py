@@ -18,7 +18,7 @@ _WHOLE = 5 / 6
 
 
 class EightsSettings(MetricSettings):
-    """Settings of the metric `eights`."""
+    """Settings of the metric `eights`: rounds about two posts, and the distance to them."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance from the robot's centre to the face of the nearer post."""
@@ -83,7 +83,7 @@ class Eights:
         self._sides[side].update(pose)
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        """Update the metric with the poses of ticks in a row, as one call of `update` for each would."""
         west_m, east_m = (
             [each - post.radius_m for each in swept.all_away_m(poses)]
             for swept, post in zip(self._sides, self._posts, strict=True)

@@ -14,7 +14,7 @@ from hal.simulation import Pose, Simulation, WorldPlan
 
 
 class ErrandsSettings(MetricSettings):
-    """Settings of the metric `errands`."""
+    """Settings of the metric `errands`: junctions passed, and goals reached by short ways."""
 
     names: Annotated[int, Field(ge=1, le=1000)]
     """Number of named places without home; goals are among them."""
@@ -68,7 +68,7 @@ class Errands:
 
     @property
     def findings(self) -> Metrics:
-        """Number of junctions that the robot left, by its name."""
+        """Number of junctions that the robot left, under the name of this measure."""
         return {JUNCTIONS: self.progress}
 
     def reset(self, pose: Pose) -> None:

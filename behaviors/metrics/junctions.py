@@ -22,7 +22,7 @@ _LEFT_BEHIND_M = 0.1
 
 
 class JunctionsSettings(MetricSettings):
-    """Settings of the metric `junctions`."""
+    """Settings of the metric `junctions`: junctions left through the required side."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
@@ -72,7 +72,7 @@ class Junctions:
 
     @property
     def borders(self) -> Borders:
-        """Borders of the junctions."""
+        """Borders of all junctions, at which a robot enters or leaves one."""
         return Borders(_LOOK_EVERY, _LEFT_BEHIND_M, tuple(each.area for each in self._streets.junctions))
 
     @property

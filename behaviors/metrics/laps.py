@@ -18,11 +18,11 @@ from behaviors.metrics.task_metric import (
 from hal.simulation import Pose, Position, Simulation, WallSide
 
 _MEASURED_AT_ONCE = 100
-"""Positions of one measurement, which takes a tenth of the time of so many single ones: 10 s of a drive."""
+"""Positions of one measurement, which takes a tenth of the time of single ones: 10 s of a drive."""
 
 
 class LapsSettings(MetricSettings):
-    """Settings of the metric `laps`."""
+    """Settings of the metric `laps`: way along walls, in lengths of the outer wall."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance that is wanted from the robot's centre to the nearest wall."""
@@ -72,13 +72,13 @@ class Laps:
         """Do nothing: the simulation measures the laps."""
 
     def update(self, pose: Pose) -> None:
-        """Enter the pose of one tick; every tenth one counts for the distance error."""
+        """Add the pose of one tick; every tenth one counts for the distance error."""
         if self._ticks % MEASURE_EVERY == 0:
             self._enter([pose])
         self._ticks += 1
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Enter the poses of ticks in a row, as so many calls of `update` would."""
+        """Add the poses of ticks in a row, as one call of `update` for each would."""
         self._enter(poses[-self._ticks % MEASURE_EVERY :: MEASURE_EVERY])
         self._ticks += len(poses)
 

@@ -84,7 +84,7 @@ class Rounds:
             self._swept.update(pose)
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        """Update the metric with the poses of ticks in a row, as one call of `update` for each would."""
         away_m = [each - self._radius_m for each in self._swept.all_away_m(poses)]
         for each in away_m[-self._ticks % MEASURE_EVERY :: MEASURE_EVERY]:
             self._error_m.add(abs(each - self._settings.wanted_m))

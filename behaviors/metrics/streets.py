@@ -24,7 +24,7 @@ class Side(IntEnum):
     SOUTH = 3
 
     def turned(self, quarters: int) -> "Side":
-        """Return the side after so many quarter turns to the left; negative: to the right."""
+        """Return the side after a number of quarter turns to the left; negative: to the right."""
         return Side((self + quarters) % 4)
 
     @property
@@ -46,7 +46,7 @@ def side_towards(dx: float, dy: float) -> Side:
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """Junction of streets."""
+    """Place where streets meet, and the sides at which they go on."""
 
     area: Area
     """Its extent is the width of the streets that lead there."""
@@ -55,12 +55,12 @@ class Junction:
 
     @property
     def x_m(self) -> float:
-        """Centre in x."""
+        """Centre of the junction in x, in m."""
         return self.area.x_m
 
     @property
     def y_m(self) -> float:
-        """Centre in y."""
+        """Centre of the junction in y, in m."""
         return self.area.y_m
 
     @property

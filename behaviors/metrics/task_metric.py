@@ -29,7 +29,10 @@ RIGHT = "junctions right"
 
 
 class TaskMetric(Protocol):
-    """Metric of one drive: the required behaviour, and measures of the result."""
+    """Metric of one drive: progress in laps, metres, junctions or turns, and other measures such as distance error.
+
+    Exams call `update` with the true pose in every tick. For some tasks it also says which behaviour is required next.
+    """
 
     @property
     def unit(self) -> str:
@@ -71,10 +74,10 @@ class TaskMetric(Protocol):
 
 @runtime_checkable
 class StretchMetric(TaskMetric, Protocol):
-    """Metric that takes the poses of many ticks at once, and is quicker so."""
+    """Metric that can take the poses of many ticks at once, which is faster."""
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Update the metric with the true poses of ticks in a row, as so many calls of `update` would.
+        """Update the metric with the true poses of ticks in a row, as one call of `update` for each would.
 
         Only in a simulation that follows a batch (hal.batch.FollowedSimulation).
         """

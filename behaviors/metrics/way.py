@@ -9,7 +9,7 @@ from hal.simulation import Pose, Simulation
 
 
 class WaySettings(MetricSettings):
-    """Settings of the metric `way`."""
+    """Settings of the metric `way`: distance driven, in m."""
 
     least_speed_m_s: LeastSpeed = LEAST_SPEED_M_S
     """Mean speed below which a drive gets nowhere."""
@@ -44,12 +44,12 @@ class Way:
         self._pose = pose
 
     def update(self, pose: Pose) -> None:
-        """Update the metric with the robot's pose."""
+        """Add the distance from the pose before; call it in every tick."""
         self.progress += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
 
     def update_all(self, poses: Sequence[Pose]) -> None:
-        """Update the metric with the poses of ticks in a row, as so many calls of `update` would."""
+        """Update the metric with the poses of ticks in a row, as one call of `update` for each would."""
         progress, x_m, y_m = self.progress, self._pose.x_m, self._pose.y_m
         for next_x_m, next_y_m, _ in poses:
             progress += math.hypot(next_x_m - x_m, next_y_m - y_m)

@@ -8,7 +8,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class CircleSettings(PolicySettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the policy that circles round a post; distances in m from the sensors' faces."""
 
     near_m: Distance
     """Distance to the object on the left below which the robot drives straight on."""

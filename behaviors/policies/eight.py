@@ -14,7 +14,7 @@ _NOWHERE = 5
 
 
 class EightSettings(PolicySettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the policy that drives an eight; distances in m from the sensors' faces."""
 
     near_m: Distance
     """Distance to a column at the side below which the robot widens the curve."""

@@ -8,7 +8,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class FleeingSettings(PolicySettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the policy that flees from walls; distances in m from the sensors' faces."""
 
     front_m: Distance
     """Distance ahead below which the robot turns on the spot."""

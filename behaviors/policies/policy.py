@@ -8,7 +8,11 @@ from hal.settings_by_kind import KindSettings
 
 
 class ReferencePolicy(Protocol):
-    """Memoryless choice of the right action: a robot cannot learn from hidden state of the teacher."""
+    """Rules that drive a task right, as an expert would: what scripted teachers answer, and what exams compare with.
+
+    It has no memory, because a robot cannot learn from hidden state of the teacher. For example wall following: nearer
+    than 15 cm to the wall, curve away.
+    """
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
         """Return the name of the action that is right in this tick.

@@ -7,7 +7,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class SectorCircleSettings(PolicySettings):
-    """Sectors and thresholds."""
+    """Sectors and thresholds of the policy that circles round a post."""
 
     chooses_among = ("spin_right", "curve_right", "forward", "sharp_left")
 

@@ -7,7 +7,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class SectorFleeingSettings(PolicySettings):
-    """Sectors and thresholds."""
+    """Sectors and thresholds of the policy that flees from walls."""
 
     chooses_among = ("whirl_left", "curve_left", "curve_right", "flee")
 

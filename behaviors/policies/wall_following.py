@@ -17,7 +17,7 @@ from hal.robot_settings import InfraredSettings
 
 
 class WallFollowingSettings(PolicySettings):
-    """Thresholds; distances from the sensors' faces."""
+    """Thresholds of the policy that follows a wall; distances in m from the sensors' faces."""
 
     wanted_m: Distance
     """Set distance to the wall on the left."""

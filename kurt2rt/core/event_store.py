@@ -7,7 +7,11 @@ from kurt2rt.core.rla.events import TeachingEvent
 
 
 class EventStore(Protocol):
-    """Store of teaching events; it works outside the tick, and its methods return at once."""
+    """Queue of teaching events to the disk; it works outside the tick, and its methods return at once.
+
+    A full disk appears as `saving_error`, and the robot stands until lessons can be saved. The tick submits events
+    in order, and none is dropped.
+    """
 
     @property
     def saving_error(self) -> str | None:

@@ -15,7 +15,11 @@ _STANDS: dict[GoalStatus | None, DecisionCause] = {
 
 
 class LayerStack:
-    """Mid level over a basic level; itself a Level, so the tick calls one level."""
+    """Mid level over a basic level (paper, section V); itself a Level, so the tick calls one level.
+
+    In each tick the mid level chooses the active behaviour first, then the basic level decides among its RLAs. While
+    the mid level asks, the robot stands. A goal's `Navigator` breaks ties between equally near mid-level RLAs.
+    """
 
     def __init__(self, basic: Level, mid: MidLevel, navigator: Navigator | None = None) -> None:
         """Connect two levels that share one ActiveBehaviour: the mid level sets it, the basic level reads it.

@@ -33,5 +33,5 @@ class LessonSpeed:
         return WheelSpeeds(share * wheel_speeds.left_m_s, share * wheel_speeds.right_m_s)
 
     def end(self) -> None:
-        """Note a tick at full speed, or at standstill."""
+        """End the slow lesson's tick: it is at full speed, or at standstill."""
         self.slows, self.counts = False, True

@@ -68,7 +68,7 @@ class LearningSettings(Settings):
     holds_yield: bool = False
     """Keep the action of an RLA that an answer or a press taught where a lesson of a hold would replace it."""
     passes_over_guesses: bool = False
-    """Let neighbours answer, without a teacher, in place of a lesson of a hold that differs from its five nearest
+    """Let neighbours answer, without a teacher, instead of a lesson of a hold that differs from its five nearest
     neighbours of other presses."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
     teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
@@ -112,7 +112,7 @@ class TeacherSettings(Settings):
 
 
 class TeachingSettings(Settings):
-    """Settings of a training run."""
+    """Settings of a training run: world, length of phases 1 and 2, lesson speed and teacher."""
 
     world: str
     supervised_s: Seconds
@@ -131,7 +131,7 @@ class TeachingSettings(Settings):
     name in `config/teachers`, or a path."""
     teacher: TeacherSettings
     profile: TeacherProfile = QUICK_TEACHER
-    """Teacher by name; its own limits count in place of `teacher` where it has some."""
+    """Teacher by name; its own limits count instead of `teacher` where it has some."""
 
     @property
     def duration_s(self) -> float:
@@ -194,7 +194,10 @@ class PaperResult(Settings):
 
 
 class TaskSettings(Settings):
-    """Task: what is taught, with which features and actions, and how it is examined."""
+    """Schema of `config/tasks/*.yaml`: what is taught, with which features and actions, and how it is examined.
+
+    `load_task` reads one, by name or path. Robot, studies and exams all build their levels from it.
+    """
 
     name: Name
     """Name of the task, also in the names of its files."""
@@ -217,7 +220,7 @@ class TaskSettings(Settings):
     selects."""
     learning: LearningSettings
     plain: PlainSettings
-    """Settings in place of `learning` for the plain reading of the paper."""
+    """Settings instead of `learning` for the plain reading of the paper."""
     reinforcement: ReinforcementSettings = ReinforcementSettings()
     critic: AnyCritic = "basic"
     """Critic, which is taught in phase 4: a name in `config/critics`, or of a robot's plug-in, or its settings."""
@@ -279,7 +282,7 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
 
     Args:
         name_or_path: a name in `config/tasks`, or a path.
-        plain: take the plain reading of the paper in place of `learning`.
+        plain: take the plain reading of the paper instead of `learning`.
         changes: values by dotted key, as in hal.settings.load_settings; none of `learning` if `plain`.
 
     Raises:

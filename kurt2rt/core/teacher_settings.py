@@ -55,7 +55,7 @@ Delay = Annotated[LogNormalDelay | GammaDelay, Field(discriminator="kind")]
 
 
 class LinkSettings(Settings):
-    """Screen and network between robot and teacher."""
+    """Delays of screen and network between robot and teacher."""
 
     pictures_per_s: Annotated[float, Field(gt=0, le=100)]
     """Rate of the states that the teacher sees."""
@@ -120,7 +120,11 @@ class PersonSettings(Settings):
 
 
 class TeacherProfile(Settings):
-    """Scripted teacher by name."""
+    """Scripted teacher of `config/teachers`: its way to answer and correct, and its limits.
+
+    `superhuman` reacts at once and never errs; `ordinary` has the delays and slips of a person. Studies name one, so
+    that all robots and learners get the same teacher.
+    """
 
     name: Name
     what: Sentence

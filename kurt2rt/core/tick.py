@@ -87,7 +87,9 @@ _TEACHABLE = BY_KNOWLEDGE | ASKING
 
 
 class Tick:
-    """One control cycle: bus -> sense -> perceive -> decide -> guard -> bus, then learn -> publish.
+    """One control cycle of 10 ms: bus -> sense -> perceive -> decide -> guard -> bus, then learn -> publish.
+
+    Runtime, batch checks and replay call `run` once per tick.
 
     A deterministic function of its state, the readings and the commands: no wall clock, no unseeded chance, no I/O
     except the bus.

@@ -35,12 +35,12 @@ class TickParts:
     sensor_watch: SensorWatch | None = None
     """Detector of single broken sensors; None: all readings are trusted."""
     substitute: SubstituteReadings | None = None
-    """Readings in place of those of broken sensors; given with a `sensor_watch`."""
+    """Readings instead of those of broken sensors; given with a `sensor_watch`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TickOptions:
-    """Settings of a tick."""
+    """Limits of a tick that the robot's and the service's settings give."""
 
     stale_infrared_s: float
     """The robot is blind if its infra-red readings are older."""

@@ -65,11 +65,11 @@ class BatchDrive:
 
     @property
     def moment(self) -> Moment:
-        """Newest state."""
+        """State after the newest tick."""
         return self._moment
 
     def drive(self, action: str, ticks: int) -> Moment:
-        """Drive by an action for so many ticks, or until the episode is over; return the state then.
+        """Drive by an action for `ticks` ticks, or until the episode is over; return the state then.
 
         Raises KeyError for an action outside the repertoire.
         """

@@ -1,4 +1,4 @@
-"""Drive of an agent over the simulated CAN bus: the robot's runtime, with the agent in place of the RLAs."""
+"""Drive of an agent over the simulated CAN bus: the robot's runtime, with the agent instead of the RLAs."""
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
@@ -72,7 +72,7 @@ class BusDrive(Episode):
 
     @property
     def moment(self) -> Moment:
-        """Newest state."""
+        """State after the newest tick."""
         record = self._record
         return Moment(
             situation=record.situation.vector,
@@ -88,7 +88,7 @@ class BusDrive(Episode):
         )
 
     def drive(self, action: str, ticks: int) -> Moment:
-        """Drive by an action for so many ticks, or until the episode is over; return the state then.
+        """Drive by an action for `ticks` ticks, or until the episode is over; return the state then.
 
         Raises KeyError for an action outside the repertoire.
         """

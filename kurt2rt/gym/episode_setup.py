@@ -15,7 +15,7 @@ PURPOSE = "exam"
 
 @dataclass(frozen=True, slots=True)
 class EpisodeSetup:
-    """Settings of one episode."""
+    """Robot, task, world, seed and start of one episode of an environment."""
 
     settings: RobotSettings
     task: TaskSettings

@@ -44,7 +44,7 @@ class AgentDrive(Protocol):
 
     @property
     def moment(self) -> Moment:
-        """Newest state."""
+        """State after the newest tick."""
         ...
 
     @property
@@ -53,12 +53,12 @@ class AgentDrive(Protocol):
         ...
 
     def drive(self, action: str, ticks: int) -> Moment:
-        """Drive by an action for so many ticks, or until the episode is over; return the state then.
+        """Drive by an action for `ticks` ticks, or until the episode is over; return the state then.
 
         Raises KeyError for an action outside the repertoire.
         """
         ...
 
     def close(self) -> None:
-        """Stop the robot."""
+        """Stop the robot and free its simulation."""
         ...

@@ -11,7 +11,7 @@ from kurt2rt.core.task_settings import TaskSettings
 
 
 class RewardKind(StrEnum):
-    """Source of the rewards."""
+    """Source of an environment's rewards, by its option `reward`."""
 
     JUDGE = "judge"
     """The task's judge, which sees how the robot drives."""

@@ -47,7 +47,7 @@ class Drive(Episode):
         return self._record
 
     def step(self) -> None:
-        """Take the next tick."""
+        """Run the next tick, and what follows each tick."""
         number = self.ticks + 1
         self._clock.step_until(number * self.period_s)
         self._record = self.runtime.tick.run(number, self._clock.now_s())

@@ -36,7 +36,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the mark."""
+    """Register the mark of the fixtures in pytest."""
     config.addinivalue_line(
         "markers",
         f"{_MARK}({', '.join(f'{name}=...' for name in (*_ROBOT, *_LESSON))}): task, world and seed of the robot that "

@@ -76,7 +76,7 @@ class SimulatedRobot:
             bus: that carries its CAN frames, so that your own code hears them: a vcan interface such as vcan0,
                 shared:NAME between processes, or virtual:NAME in this one. None: a bus of its own.
             record: folder of recordings, in which this run gets a folder, for `kurt2rt.replay`; None: no recording.
-            learner: class or function that makes a learner of a setting, which decides in place of the RLAs; not with
+            learner: class or function that makes a learner of a setting, which decides instead of the RLAs; not with
                 `knowledge` or `record`. None: RLAs decide.
 
         Raises:
@@ -163,7 +163,7 @@ class SimulatedRobot:
 
         Args:
             at: time of the step, in s as `seconds`; None: the newest step.
-            tick: number of the step, from 1, in place of `at`.
+            tick: number of the step, from 1, instead of `at`.
 
         Raises:
             UserError: as kurt2rt.Error, there was no such step, or other programs on `bus` changed the drive.
@@ -230,7 +230,7 @@ class SimulatedRobot:
 
     @property
     def learner(self) -> Learner | None:
-        """Learner that decides in place of the RLAs; None if they decide."""
+        """Learner that decides instead of the RLAs; None if they decide."""
         return None if self._team is None else self._team.learner(self._drive.runtime.active_behaviour.behaviour)
 
     @property

@@ -7,7 +7,10 @@ from anyio.lowlevel import checkpoint
 
 
 class Clock(Protocol):
-    """Time of the runtime. Seconds from an arbitrary start, never backwards."""
+    """Time of the runtime in s from an arbitrary start, never backwards; passed in, never read from the system.
+
+    A robot has the computer's clock; simulation and studies have `LockstepClock`, which jumps to each deadline.
+    """
 
     def now_s(self) -> float:
         """Return the present time in s."""

@@ -52,7 +52,7 @@ def fsync_file(path: Path) -> None:
 
 
 def write_durably(path: Path, text: str) -> None:
-    """Write a text file (UTF-8) in place of the one before; after a power cut it is whole, or as it was before.
+    """Write a text file (UTF-8) instead of the one before; after a power cut it is whole, or as it was before.
 
     Raises OSError.
     """

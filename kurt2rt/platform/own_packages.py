@@ -21,7 +21,7 @@ def hidden_packages(names: tuple[str, ...] = _NAMES, here: Path = _HERE) -> str:
     if not foreign:
         return ""
     return (
-        f"Python finds foreign packages in place of those of kurt2rt, which are in {here}: {', '.join(foreign)}; "
+        f"Python finds foreign packages instead of those of kurt2rt, which are in {here}: {', '.join(foreign)}; "
         "rename or uninstall them, or take their folder off Python's path (PYTHONPATH, the folder of the script)"
     )
 

@@ -1,4 +1,4 @@
-"""Tables for a terminal that break no word: if a table is too wide, each row becomes a block of name: value lines."""
+"""Tables for a terminal without broken words: if one is too wide, each row becomes a block of name: value lines."""
 
 import itertools
 import re
@@ -45,7 +45,7 @@ class TextTable:
 
     @property
     def row_count(self) -> int:
-        """Number of rows."""
+        """Number of rows, without the heading."""
         return len(self._rows)
 
     def add_column(self, heading: str, *, number: bool = False, whole: bool = False) -> None:
@@ -144,7 +144,7 @@ def wrapped(text: Text, width: int) -> list[Text]:
 
 
 def print_whole(console: Console, *parts: RenderableType) -> None:
-    """Print tables and paragraphs and break no word; an empty line parts a table from what is above and below it.
+    """Print tables and paragraphs without breaking a word; an empty line parts a table from what is above and below it.
 
     A text with `no_wrap`, such as a command to be copied, stays in one line. Raises TypeError for a part that is
     neither a table nor a text.

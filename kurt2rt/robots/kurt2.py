@@ -11,7 +11,7 @@ from hal.tap import Tap
 
 
 class Kurt2Kind:
-    """KURT2 (hal.robot_kind.RobotKind)."""
+    """Kind kurt2 (hal.robot_kind.RobotKind): CAN driver and simulation of the paper's robot."""
 
     settings: type[RobotSettings] = Kurt2Settings
     folder: Path = CONFIG_DIR

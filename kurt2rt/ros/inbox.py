@@ -40,7 +40,7 @@ class StampedAge:
 
 
 class Clock(Protocol):
-    """Clocks of this machine."""
+    """Clocks of this machine: monotonic for ages, and wall time for stamps."""
 
     def now_s(self) -> float:
         """Return the present in s, from any start, never backwards."""

@@ -28,7 +28,7 @@ class Twists:
 
     @property
     def message_class(self) -> type[Message]:
-        """Class of the messages."""
+        """Class of the messages: TwistStamped or Twist, by the settings."""
         return TwistStamped if self._settings.stamped else Twist
 
     def of_wheels(self, speeds: WheelSpeeds) -> PlaneTwist:

@@ -222,7 +222,7 @@ class RobotBatch:
         record["command"] = action
 
     def watch(self, robot: int, borders: Borders) -> None:
-        """Let the stretches of a robot end at borders. Raises BatchRefusedError for too many areas."""
+        """Stop stretches of a robot where it crosses a border. Raises BatchRefusedError for too many areas."""
         record, count = self._robots[robot], len(borders.areas)
         if count > MOST_AREAS:
             raise BatchRefusedError(f"a world has {count} areas (a batch knows {MOST_AREAS} at most)", do=ON_THE_BUS)
@@ -232,7 +232,7 @@ class RobotBatch:
         record["area"] = area_of(record)
 
     def select(self, robot: int, behaviour: str) -> None:
-        """Let a taught behaviour be wanted of a robot; its next decision may change the action at once."""
+        """Make a taught behaviour of a robot active; its next decision may change the action at once."""
         record, place = self._robots[robot], self._behaviours.index(behaviour)
         if record["behaviour"] != place:
             record["behaviour"], record["question_left"] = place, 0

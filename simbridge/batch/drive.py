@@ -161,7 +161,7 @@ def put_down(robot: Robot, world: World, laws: Laws) -> bool:
 
 @compiled
 def trace(robot: Robot, k: int) -> None:
-    """Enter the readings of a commanded robot in tick `k` of the stretch, and the limits that its guard met."""
+    """Store the readings of a commanded robot in tick `k` of the stretch, and the limits of its guard."""
     for i in range(robot.counts.shape[0]):
         robot.track_counts[k, i] = robot.counts[i]
     robot.track_left_ticks[k], robot.track_right_ticks[k] = robot.left_ticks, robot.right_ticks

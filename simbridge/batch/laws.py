@@ -55,7 +55,7 @@ class SensorLaw(NamedTuple):
 
 
 class WatchLaw(NamedTuple):
-    """Limits of the watches."""
+    """Numbers of SensorWatch and of the check for a frozen board, for the compiled loop."""
 
     lowest: float
     highest: float
@@ -73,7 +73,7 @@ class WatchLaw(NamedTuple):
 
 
 class GuardLaw(NamedTuple):
-    """Limits of the guard."""
+    """Numbers of hal.guard.Guard for the compiled loop."""
 
     cycle_s: float
     maximum_speed_m_s: float
@@ -116,7 +116,7 @@ class MindLaw(NamedTuple):
 
 
 class Features(NamedTuple):
-    """Features of a situation."""
+    """Features of a situation as arrays, for the compiled loop."""
 
     kind: Integers
     """Kind of each feature (simbridge.batch.minds)."""

@@ -87,12 +87,12 @@ class CompiledLesson(RobotBatch):
         return bool(self._robots[0]["waits"])
 
     def watch_borders(self, borders: Borders) -> None:
-        """Let `run` end at borders. Raises BatchRefusedError for too many areas."""
+        """Stop `run` where the robot crosses a border. Raises BatchRefusedError for too many areas."""
         self.watch(0, borders)
         self._keep_state()
 
     def select_behaviour(self, behaviour: str) -> None:
-        """Let a taught behaviour be wanted from the next decision on."""
+        """Make a taught behaviour active from the next decision on."""
         self.select(0, behaviour)
         self._keep_state()
 
@@ -168,7 +168,7 @@ class CompiledLesson(RobotBatch):
         return self.tick
 
     def go_back(self, tick: int) -> None:
-        """Be at the end of an earlier tick since the last `keep` again; what had begun of the next one is forgotten."""
+        """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         if tick == self.tick and not self.waits and not self._robots[0]["left"]:
             return
         self._robots[0] = self._saved[0]

@@ -54,7 +54,7 @@ class Table(NamedTuple):
     added: Integers
     """Ticks whose features were added to the averages, (ticks + 1,)."""
     mind: int
-    """Address of the PythonMind that decides in place of the RLAs; 0: they decide."""
+    """Address of the PythonMind that decides instead of the RLAs; 0: they decide."""
 
 
 STEPS, SENSED, DROVE = range(3)

@@ -64,7 +64,7 @@ class ReconnectingBus:
 
 
 class ReconnectingPort:
-    """Sender of a ReconnectingBus."""
+    """Port through which a ReconnectingBus sends; what it refuses is counted as lost."""
 
     def __init__(self, bus: ReconnectingBus, port: FramePort) -> None:
         self._bus = bus
@@ -79,6 +79,6 @@ class ReconnectingPort:
             self._bus._record(error)
 
     def send_all(self, frames: Sequence[Frame]) -> None:
-        """Send frames as so many calls of `send`, each of which may be lost. Raises ValueError for CONTROL."""
+        """Send frames in order; each may be lost, as by `send`. Raises ValueError for CONTROL."""
         for frame in frames:
             self.send(frame)

@@ -39,7 +39,7 @@ class Noise:
         return self._block[self._used - 1]
 
     def next_normals(self, count: int) -> list[float]:
-        """Return the next `count` standard normal numbers, as so many calls of `normal` would."""
+        """Return the next `count` standard normal numbers, as one call of `normal` for each would."""
         begin, end = self._used, self._used + count
         if end > len(self._block):
             return [self.normal() for _ in range(count)]
@@ -48,13 +48,13 @@ class Noise:
         return self._block[begin:end]
 
     def normals(self, count: int) -> NDArray[np.float64]:
-        """Return the next `count` standard normal numbers, shape (count,), as so many calls of `normal` would."""
+        """Return the next `count` standard normal numbers, shape (count,), as one call of `normal` for each would."""
         numbers = np.empty(count)
         self.fill(numbers)
         return numbers
 
     def fill(self, numbers: NDArray[np.float64]) -> None:
-        """Fill an array, shape (count,), with the next standard normal numbers, as so many calls of `normal` would."""
+        """Fill an array (count,) with the next standard normal numbers, as one call of `normal` for each would."""
         if self._used < len(self._block):
             self._ahead = np.concatenate((self._block[self._used :], self._ahead))
         self._block, self._used = [], 0

@@ -35,7 +35,7 @@ Ring = shapely.LinearRing
 
 
 class RingPlace(NamedTuple):
-    """Place on a ring."""
+    """Place on a ring of walls: the ring and the way along it."""
 
     ring: int
     """Index of the ring; 0 is the outer wall's."""

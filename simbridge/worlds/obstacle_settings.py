@@ -42,7 +42,7 @@ class WallSettings(Settings):
 
 
 class RoundObstacleSettings(Settings):
-    """Round post."""
+    """Entry of a world file for a round post."""
 
     name: str
     x_m: Coordinate

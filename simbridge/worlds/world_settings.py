@@ -49,7 +49,10 @@ class StreetSettings(Settings):
 
 
 class WorldSettings(Settings):
-    """One world; the outline's corners are the inner faces of the outer walls."""
+    """Schema of `config/worlds/*.yaml`: outline, walls, obstacles, streets and starts, in m and degrees.
+
+    The outline's corners are the inner faces of the outer walls. Generators and maps of map_server make one, too.
+    """
 
     name: str
     size_m: tuple[Size, Size]

@@ -18,7 +18,7 @@ from kurt2rt.platform.simulated_clock import Speed
 
 @dataclass(frozen=True, slots=True)
 class JournalStatus:
-    """Queries of the journal on the disk."""
+    """Queries about saving: lessons that wait, the error, and the time at which one became durable."""
 
     unsaved: Callable[[], int]
     """Number of lessons that are not durable yet."""
@@ -77,7 +77,7 @@ class TaskProgress(Protocol):
 
     @property
     def unit(self) -> str:
-        """Unit of `progress`."""
+        """Unit of `progress`, such as laps or m."""
         ...
 
 

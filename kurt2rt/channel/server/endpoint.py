@@ -19,7 +19,7 @@ from kurt2rt.channel.server.udp_port import bound_socket
 
 
 class Site(Protocol):
-    """Answerer of requests."""
+    """Resources of the robot that answer the requests of a context (a site of aiocoap)."""
 
     async def render_to_pipe(self, pipe: Any) -> None:
         """Answer one request by adding responses to `pipe` (aiocoap.pipe.Pipe); called in a task of its own."""

@@ -23,7 +23,7 @@ class ReplyStatus(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """Reply to a request."""
+    """Status and body of an answer to a device, before it is encoded as CBOR."""
 
     status: ReplyStatus
     body: Mapping[str, Any] = field(default_factory=dict)

@@ -52,7 +52,11 @@ def _require_known(rlas: Iterable[Rla], repertoire: Repertoire, behaviours: Sequ
 
 
 class BasicLevel:
-    """Winner-takes-all level with a minimum time per action against dithering between neighbours."""
+    """Level that drives by sensors (paper, section III.A): the action of the nearest RLA inside R, else a question.
+
+    An action drives for a minimum time, so that the robot does not alternate between neighbouring RLAs. Only RLAs of
+    the active behaviour compete. `Tick` calls `decide` once per tick, directly or through `LayerStack`.
+    """
 
     def __init__(
         self,

@@ -102,7 +102,10 @@ def set_points(repertoire: Mapping[str, Behaviour]) -> dict[str, WheelSpeeds]:
 
 
 class DoubtMeter:
-    """Score of doubt: distance of the nearest RLA, an obstacle ahead nearer than in lessons, and a coming contact.
+    """Score of an action inside R that lessons say little about; the robot asks from `threshold` on.
+
+    score = (distance / R - usual) / (rare - usual) + (reading - taught) / rare_counts, each part at least 0. An
+    action that would meet a remembered obstacle adds the threshold. 1 is usual for 1 % of the ticks of a drive.
 
     Deterministic: a function of the situation, the knowledge and the remembered obstacles.
     """

@@ -1,4 +1,4 @@
-"""Held action: it drives for a minimum time, against dithering between neighbours."""
+"""Held action: it drives for a minimum time, so that the robot does not alternate between neighbouring RLAs."""
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire

@@ -70,7 +70,9 @@ class _Sweep(NamedTuple):
 
 
 class ObstacleMemory:
-    """Obstacles seen in the last seconds, by dead reckoning, and the actions that would meet them.
+    """Obstacles seen in the last seconds of driving, and the actions that would meet them (local map).
+
+    Places in m come from readings and wheel odometry; `DoubtMeter` asks it for each action.
 
     A thin post is seen for a moment and then stands between two beams, where no reading tells of it. Deterministic,
     with a fixed amount of state.

@@ -8,7 +8,7 @@ from kurt2rt.core.perception.perception import Perception
 
 
 class Restartable(Protocol):
-    """Part with a history."""
+    """Part with a history, which a taught action restarts when it takes over the wheels."""
 
     def restart(self) -> None:
         """Forget the history; knowledge stays."""

@@ -1,4 +1,4 @@
-"""Autonomy: the critic's signals in place of a teacher's rewards (paper, phase 5)."""
+"""Autonomy: the critic's signals instead of a teacher's rewards (paper, phase 5)."""
 
 from typing import NamedTuple
 
@@ -55,7 +55,7 @@ class Signal(NamedTuple):
 
 
 class Autonomy:
-    """Converter from opinions of a trusted critic to signals, at most as often as a person's."""
+    """Source of rewards in phase 5: opinions of a trusted and needed critic, at most as often as a person presses."""
 
     def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
         """`period_s`: duration of a tick in s."""

@@ -35,7 +35,11 @@ class Opinion(NamedTuple):
 
 
 class Critic:
-    """Matcher of appraisal situations against the appraisal RLAs of a system."""
+    """Internal critic: RLAs whose actions are opinions replace the teacher's rewards (paper, section IV.D).
+
+    It is taught by `Appraise` in phase 4, and speaks in phase 5 once it agreed with its teacher often enough.
+    The opinion of an unknown situation is 0. For example: near a wall on the left, "bad", -1.
+    """
 
     def __init__(self, system: RlaSystem, settings: CriticSettings) -> None:
         self.settings = settings
@@ -89,7 +93,7 @@ class Critic:
 
 
 class CriticState(StrEnum):
-    """Use of the critic's opinions."""
+    """Use that is made of the critic's opinions in this phase."""
 
     LISTENS = "listens"
     """None: before phase 5, or while the critic is not trusted."""

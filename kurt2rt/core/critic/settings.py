@@ -33,7 +33,7 @@ class SideSensors(Settings):
 
     @property
     def used(self) -> frozenset[str]:
-        """Names of all sensors."""
+        """Names of the sensors of all sides."""
         return frozenset(name for names in self.model_dump().values() for name in names)
 
 
@@ -80,7 +80,7 @@ class AppraisalSettings(Settings):
 
 
 class CirclingSettings(Settings):
-    """Settings of the feature circling."""
+    """Limits of the feature circling: the robot has turned to one side for more than `round_rad`."""
 
     round_rad: Annotated[float, Field(gt=0, le=100)]
     """Turn to one side from which on the robot is circling."""
@@ -91,7 +91,7 @@ class CirclingSettings(Settings):
 
 
 class GrazingSettings(Settings):
-    """Settings of the feature grazing."""
+    """Limits of the feature grazing: something is very near at a side."""
 
     near_m: Metres
     """Distance at a side, from the sensors' faces, below which something is very near."""
@@ -100,7 +100,7 @@ class GrazingSettings(Settings):
 
 
 class SpunSettings(Settings):
-    """Settings of the feature spun."""
+    """Limits of the feature spun: the robot turns on the spot."""
 
     turn_rad_s: Annotated[float, Field(gt=0, le=10)]
     """Turn rate to either side above which the robot turns on the spot, together with `speed_m_s`."""
@@ -224,7 +224,7 @@ class RollbackSettings(Settings):
 
 
 class CriticSettings(Settings):
-    """Settings of a critic."""
+    """Schema of `config/critics/*.yaml`: opinions, their features, and from when a critic is trusted."""
 
     name: Name
     appraisals: Annotated[tuple[AppraisalSettings, ...], Field(min_length=1)]

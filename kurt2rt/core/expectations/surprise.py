@@ -12,7 +12,11 @@ LEAST_USUAL_SHARE = 0.05
 
 
 class Surprise(NamedTuple):
-    """Real end of an RLA compared with its expectation."""
+    """Comparison of an RLA's real end with its expectation, after at least LEAST_ENDS ends.
+
+    `distance` is ||w (situation - mean)||, `usual` the root of the summed weighted variances. It is surprising beyond
+    BEYOND times the usual distance. Page and recording show it; it changes no decision.
+    """
 
     level: str
     rla_id: int

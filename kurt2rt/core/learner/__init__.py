@@ -1,1 +1,1 @@
-"""Learners that may decide in place of the RLAs, and the level that drives by them."""
+"""Learners that may decide instead of the RLAs, and the level that drives by them."""

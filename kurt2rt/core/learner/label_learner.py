@@ -71,7 +71,7 @@ class LabelLearner(ABC):
         self._is_fitted = False
 
     def snapshot(self) -> bytes:
-        """Return all labels."""
+        """Return all labels as bytes, for `restore`."""
         situations = np.array(self._situations).reshape(len(self._actions), self.setting.dimensions)
         return pack(situations, self._actions)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 
 class Why(StrEnum):
-    """Occasion of a lesson."""
+    """Occasion of a lesson; a learner may weigh lessons by it."""
 
     ANSWER = "answer"
     """The robot asked, and its teacher answered."""
@@ -24,11 +24,14 @@ class Why(StrEnum):
 
 
 class Learner(Protocol):
-    """Learner of one behaviour: `decide` and `lesson` are all that it and a robot tell each other.
+    """Part that is taught actions for situations, and decides by them: the RLA system, or one to compare with it.
+
+    A robot calls only `decide` and `lesson`; each taught behaviour has a learner of its own.
+    For example k-NN: `lesson` stores a row, `decide` returns the majority of the nearest rows, None far from all.
 
     A situation is a read-only vector (d,) in counts and m/s: the features of now, then their averages. A learner is
     deterministic: the same lessons in the same order give the same decisions. It draws by `LearnerSetting.seed`.
-    A learner that raises an error never drives again before it is made new: the robot stands and says so.
+    A learner that raises an error never drives again before it is made new: the robot stands, and reports the error.
     """
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
@@ -47,12 +50,16 @@ class Learner(Protocol):
         ...
 
     def restore(self, data: bytes) -> None:
-        """Know what a snapshot of a learner of the same kind and setting holds, and nothing else."""
+        """Replace all knowledge by that in a snapshot of a learner of the same kind and setting."""
         ...
 
 
 class LearnerSetting(NamedTuple):
-    """Task's numbers that every learner is made with."""
+    """Numbers of a task that every learner is made with: length, weights, R, actions, seed and gate.
+
+    A `LearnerFactory` gets one at the start of a run. For example gate 0.8 of k-NN: it asks unless 80 % of the nearest
+    labels agree.
+    """
 
     dimensions: int
     """Length d of a situation."""
@@ -77,7 +84,11 @@ LearnerFactory = Callable[[LearnerSetting], Learner]
 
 
 class Label(NamedTuple):
-    """Lesson as a learner gets it, and the command that gave it."""
+    """Right action for one situation: a lesson in the form that every learner can use.
+
+    `LearnerLevel` makes one from each lesson that gives or changes an action. An undo removes the labels of its
+    command, and the learner learns the rest again.
+    """
 
     situation: NDArray[np.float64]
     """Situation that the lesson is about, read-only, shape (d,)."""

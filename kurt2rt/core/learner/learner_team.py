@@ -9,7 +9,7 @@ from kurt2rt.core.learner.learner import Label, Learner, LearnerFactory, Learner
 from kurt2rt.core.rla.lesson_history import hold_of
 
 _LONGEST_ERROR = 200
-"""Characters of a learner's error that are told."""
+"""Characters of a learner's error that are shown."""
 
 
 class LearnerTeam:
@@ -68,7 +68,7 @@ class LearnerTeam:
         self._give(label)
 
     def teach_all(self, labels: Iterable[Label]) -> None:
-        """Give labels in order."""
+        """Give labels to the learners of their behaviours, in order."""
         for label in labels:
             self.teach(label)
 

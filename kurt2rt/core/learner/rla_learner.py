@@ -10,7 +10,7 @@ from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 _ESTIMATED = (Why.LATE, Why.HOLD, Why.SHOWN)
-"""Occasions on which nothing is learned where the RLAs know the situation and say so already."""
+"""Occasions on which nothing is learned if the RLAs say this action there already."""
 
 
 class RlaLearner:

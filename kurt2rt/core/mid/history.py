@@ -33,7 +33,7 @@ class HistorySettings(MidSituationSettings):
 
     @property
     def metric(self) -> Metric:
-        """Metric of symbols."""
+        """Metric of symbols: the number of places that differ."""
         return "hamming"
 
     def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
@@ -71,7 +71,7 @@ class SymbolHistory:
         return True
 
     def restart(self) -> None:
-        """Remove all symbols."""
+        """Remove all symbols, because the robot was put elsewhere."""
         self._detector.restart()
         self.passed = None
         self.vector = np.full(self.dimensions, _NONE)

@@ -28,7 +28,10 @@ class TieBreaker(Protocol):
 
 
 class MidLevel:
-    """Winner takes all among mid-level RLAs; the winner's action is the active behaviour of the basic level.
+    """Level that chooses a taught behaviour at junctions (paper, section V), such as turn_left after two crossings.
+
+    Its situation is the last junctions (the paper counts twelve, R 6), or a place. The action of the nearest mid-level
+    RLA inside R becomes the basic level's active behaviour; beyond R it asks for the way.
 
     The search runs only after a change of situation or knowledge.
     """

@@ -47,7 +47,7 @@ class PlaceSettings(MidSituationSettings):
 
     @property
     def metric(self) -> Metric:
-        """Metric of places."""
+        """Metric of places: Euclidean, in m."""
         return "euclidean"
 
     def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:

@@ -26,7 +26,7 @@ class MidSituation(Protocol):
 
     @property
     def dimensions(self) -> int:
-        """Length of the vector."""
+        """Length d of the situation vector of this level."""
         ...
 
     @property
@@ -64,7 +64,7 @@ class MidSituationSettings(KindSettings):
     @property
     @abstractmethod
     def metric(self) -> Metric:
-        """Metric of distances."""
+        """Metric of the distances between situations of this kind."""
 
     def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
         """Return a text per feature of a situation or condition (d,); all empty for an unknown position."""

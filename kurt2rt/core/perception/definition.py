@@ -73,7 +73,11 @@ Feature = Annotated[Reading | Extreme | Orientation | WheelSpeed, Field(discrimi
 
 
 class SituationDefinition(Settings):
-    """Features of a situation: recent values first, then their averages."""
+    """Names and order of the features: n values of now, then their n averages (paper, section VI.B.1).
+
+    A file of `config/situations` holds it. `history_steps` is the window of the averages in ticks, 1000 for 10 s.
+    Knowledge fits one definition only: its `hash` is stored with the lessons, and another one is refused.
+    """
 
     name: str
     history_steps: Annotated[int, Field(ge=1, le=100_000)]

@@ -49,7 +49,11 @@ def _expression(feature: Feature, place: Mapping[str, int], scale: int) -> str:
 
 
 class Situation(NamedTuple):
-    """Feature vector of one tick."""
+    """Feature vector of one tick, which the levels compare with conditions (paper, section VI.B.1).
+
+    With `config/situations/basic.yaml` it has 72 values: 36 of now, then their averages over 10 s of driving.
+    `Perception` makes one in each tick with fresh readings; no reader changes it.
+    """
 
     vector: NDArray[np.float64]
     """Recent features, then their averages over the history; shape (dimensions,)."""
@@ -95,7 +99,7 @@ class History:
         self._set_filled(len(self._ring))
 
     def clear(self) -> None:
-        """Remove all steps."""
+        """Remove all steps; the averages are zeros then."""
         self._ring[:] = 0
         self._sums[:] = 0
         self._next = 0

@@ -25,13 +25,13 @@ _STANDING = {
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Consecutive edges in driving order."""
+    """Edges from the present place to the goal, in driving order."""
 
     edges: tuple[Edge, ...]
 
     @property
     def ticks(self) -> float:
-        """Expected duration in ticks."""
+        """Expected time of the whole way, in ticks."""
         return math.fsum(edge.ticks for edge in self.edges)
 
     @property

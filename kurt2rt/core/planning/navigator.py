@@ -72,7 +72,7 @@ class Navigator:
 
     @property
     def goal_status(self) -> GoalStatus:
-        """Status of the goal."""
+        """State of the way to the goal; NONE without a goal."""
         return self._pursuit.status
 
     @property

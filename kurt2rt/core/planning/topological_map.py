@@ -22,7 +22,7 @@ _RLAS_PER_PIECE = 8
 
 
 class Forecast(Protocol):
-    """Expectation of one RLA."""
+    """Expectation of one RLA, as far as a map needs it."""
 
     @property
     def mean(self) -> Vector:
@@ -31,7 +31,7 @@ class Forecast(Protocol):
 
     @property
     def ticks(self) -> float:
-        """Expected duration in ticks."""
+        """Mean duration until its end, in ticks."""
         ...
 
 
@@ -67,7 +67,11 @@ class Edge(NamedTuple):
 
 
 class TopologicalMap:
-    """Directed graph of places and edges."""
+    """Directed graph of places, and of the RLAs that lead from one to another (paper, sections III.B and V.C).
+
+    Nothing draws it by hand: each mid-level RLA is an edge from its condition to its expectation. An edge costs
+    `ticks / share`, so unreliable ones are dear. `GoalPursuit` finds the cheapest way (Dijkstra).
+    """
 
     def __init__(self) -> None:
         self.places: dict[int, Place] = {}

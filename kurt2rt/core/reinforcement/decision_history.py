@@ -47,7 +47,7 @@ class DecisionHistory:
         circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
     ) -> None:
-        """Store a tick in place of the oldest one.
+        """Store a tick instead of the oldest one.
 
         Args:
             tick: number of the tick.

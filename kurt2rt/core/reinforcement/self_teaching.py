@@ -1,4 +1,4 @@
-"""Self-teaching: the critic's signals in place of a teacher, and the rollback of bad lessons (phase 5)."""
+"""Self-teaching: the critic's signals instead of a teacher, and the rollback of bad lessons (phase 5)."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

@@ -24,7 +24,11 @@ LEAST_SHARE = 0.001
 
 
 EligibilityTrace = Mapping[int, float]
-"""RLA id -> share of a reward about one tick. The sum is at most 1, less after standstill or outside all radii."""
+"""RLA id -> its share of a reward about one tick (paper, section IV.C, "temporal aspect").
+
+A tick k ticks earlier counts (1 - d) d^k with d = exp(-1 / trace_ticks). The sum is at most 1, and less after
+standstill or outside all radii. For example {17: 0.7, 4: 0.2}.
+"""
 
 
 def make_trace(
@@ -118,7 +122,11 @@ class CreditUpdate(NamedTuple):
 
 
 class TdLambda:
-    """Values of RLAs, and the eligibility trace of those that drive. An undo subtracts credits only."""
+    """Learning rule of phase 3: values of RLAs, by the formulas above this module (Sutton 1988; paper, section IV.C).
+
+    `update` follows each tick; rewards arrive as events with credits, so that replay and undo need no formula.
+    An undo subtracts the credits of its lesson only.
+    """
 
     def __init__(self, settings: ReinforcementSettings, values: ValueSettings, period_s: float) -> None:
         """`values`: first and highest value; `period_s`: duration of a tick in s."""

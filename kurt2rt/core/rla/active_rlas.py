@@ -16,7 +16,11 @@ from kurt2rt.core.rla.rla import BASIC, Rla
 
 
 class Match(NamedTuple):
-    """Nearest RLA of a situation, and the runner-up."""
+    """Nearest RLA of a situation, its distance, and the runner-up: the result of `RlaSystem.match`.
+
+    It answers if `distance` is at most its R (`radius`), 700 to 1180 counts in the shipped tasks. While a teacher is
+    there, `radius` is the smaller limit from which the robot asks.
+    """
 
     rla: Rla
     """Nearest RLA, also if the situation lies outside its radius."""

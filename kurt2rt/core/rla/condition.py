@@ -58,7 +58,10 @@ class PackedCondition(Sequence[float]):
 
 
 Condition = tuple[float, ...] | PackedCondition
-"""Point in feature space: one float64 per feature of the level."""
+"""Point in feature space where an RLA applies: its part C (paper, section III.A.1).
+
+One float64 per feature of the level, in the feature's unit; shape (72,) at the basic level. It is the situation in
+which the teacher gave the lesson, not weighted."""
 
 
 def pack_condition(condition: Condition) -> Condition:

@@ -20,7 +20,10 @@ _LOOKED_AT_OTHER_PRESSES = 6 * NEIGHBOURS + 1
 
 
 class Contradiction(NamedTuple):
-    """RLA of the basic level, and its nearest neighbours, each with an action of another group."""
+    """RLA of the basic level whose five nearest neighbours all have an action of another group.
+
+    Often a wrong press taught it: page and terminal offer an undo; `kurt2rt knowledge contradictions` lists all.
+    """
 
     rla: Rla
     neighbours: tuple[Rla, ...]

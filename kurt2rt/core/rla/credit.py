@@ -11,7 +11,7 @@ _MAX_ID = 2**32 - 1
 
 
 class Credit(NamedTuple):
-    """Share of one RLA in a reward."""
+    """Change of one RLA's value by one reward; an undo subtracts it."""
 
     rla_id: int
     change: float

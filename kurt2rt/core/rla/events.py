@@ -132,7 +132,11 @@ RlaLesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewa
 """Lesson about one RLA."""
 
 Lesson = RlaLesson | SituationNamed
-"""Teaching event that can be undone."""
+"""One change of knowledge that can be undone, such as a new RLA or a reward; never a whole session.
+
+Its id is the id of the command that gave it, so a repeated command counts once."""
 
 TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun | SessionEnded
-"""Entry of the knowledge journal; the RLA system is the fold of these events."""
+"""Entry of the knowledge journal: all that teaching can change. The RLA system is the fold of these events.
+
+The tick makes and applies one, then submits it to `EventStore`. A command is acknowledged once its event is on disk."""

@@ -29,7 +29,7 @@ LessonStack = int | tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class LessonRecord:
-    """Lesson with its state."""
+    """Lesson of the history, with the flag that says if it was undone."""
 
     event: Lesson
     undone: bool = False

@@ -7,7 +7,11 @@ from kurt2rt.core.rla.condition import Condition, pack_condition
 
 
 class Phase(IntEnum):
-    """Training phase (paper, section IV)."""
+    """One of five steps from supervision to autonomy (paper, section IV).
+
+    1 answers, 2 corrections, 3 rewards, 4 a critic is taught, 5 without a teacher. The teacher sets it by `SetPhase`;
+    each lesson stores the phase that it was given in.
+    """
 
     SUPERVISED = 1
     CORRECTIONS = 2
@@ -30,7 +34,7 @@ MID = "mid"
 """Level whose RLAs choose a taught behaviour of the basic level."""
 
 CRITIC = "critic"
-"""Level whose RLAs appraise situations in place of a teacher; also the critic's name as a teacher."""
+"""Level whose RLAs appraise situations instead of a teacher; also the critic's name as a teacher."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +57,12 @@ def rla_title(rla_id: int, behaviour: str, level: str = BASIC) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Rla:
-    """Rule-like association (paper, section III.A). `Statistics` holds its expectation."""
+    """Rule-like association (RLA): condition, action and expectation (paper, section III.A).
+
+    Near its condition (distance at most `radius`) the robot does its action. For example RLA 17: in a corner, turn
+    left. It never changes: `RlaSystem` replaces it at a lesson. Its expectation E stands in `Statistics` by its id,
+    because E changes while the robot drives, and only lessons change knowledge.
+    """
 
     rla_id: int
     """Number in the order of teaching, from 1; of two equally near RLAs the smaller one wins."""

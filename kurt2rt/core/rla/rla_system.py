@@ -69,7 +69,12 @@ def knowledge_hash_of(rlas: Iterable[Rla]) -> str:
 
 
 class RlaSystem:
-    """Fold of teaching events: active RLAs, named situations, numbers of rewards and the history of lessons."""
+    """Knowledge of a robot: the RLAs that lessons made, and the search for the nearest one (paper, section III).
+
+    `apply` folds one teaching event, so the same events in the same order give the same system, hash included.
+    `match` finds the RLA of least distance ||w (c - s)||, with feature weights w, condition c and situation s. Of
+    equal distances the older RLA wins. The tick calls `match` at each decision; only the tick applies events.
+    """
 
     def __init__(
         self,

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """Mean situation in which an RLA ended and another one took over. Arrays are packed float64."""
+    """Part E of an RLA (paper, section III.A.3): the mean situation in which it ended and another one took over.
+
+    The paper leaves E open; here it is mean and spread over `count` ends, by Welford's sums. `Expectations` updates
+    it at each end, the planner reads it as the end of an edge. Arrays are packed float64.
+    """
 
     lesson: str
     """Command id of the lesson that gave the RLA its action; another action has another expectation."""
@@ -85,7 +89,10 @@ def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:
 
 
 class Appraisal(NamedTuple):
-    """Number of rewards (+1) and punishments (-1) of one RLA."""
+    """Number of rewards (+1) and punishments (-1) that teachers and the critic gave one RLA.
+
+    Lists and explanations show it; the value of the RLA is kept by `TdLambda`.
+    """
 
     rewards: int = 0
     punishments: int = 0

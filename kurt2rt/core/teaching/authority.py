@@ -63,7 +63,7 @@ class ControlAuthority:
             self._set_teacher(teacher)
 
     def take_over(self, teacher: str, tick: int) -> Outcome | None:
-        """Give authority to `teacher` in place of another; return a refusal while that one drives by hand.
+        """Give authority to `teacher` instead of another; return a refusal while that one drives by hand.
 
         Returns None if `teacher` has authority now. `tick`: present tick.
         """

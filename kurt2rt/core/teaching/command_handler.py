@@ -154,7 +154,7 @@ class CommandHandler:
 
     @property
     def learner_failure(self) -> str | None:
-        """Failure of the learner that decides in place of the RLAs, in one line; None without one."""
+        """Failure of the learner that decides instead of the RLAs, in one line; None without one."""
         return None if self._learner is None else self._learner.team.failure or None
 
     @property

@@ -96,7 +96,7 @@ Stream = Watch | Drive | HoldAction
 
 @dataclass(frozen=True, slots=True)
 class RunBehaviour(SingleCommand):
-    """Run one action of the repertoire for `ticks` ticks in place of the RLAs; the robot stands afterwards."""
+    """Run one action of the repertoire for `ticks` ticks instead of the RLAs; the robot stands afterwards."""
 
     path: ClassVar[str] = "/behaviour"
     moves: ClassVar[bool] = True
@@ -125,10 +125,11 @@ class Teach(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Correct(SingleCommand):
-    """Replace the action in a situation (phase 2).
+    """Replace the action in a situation, because the robot does the wrong thing there (phase 2; paper, section IV.B).
 
-    Close to the nearest RLA's condition its action is replaced. Farther off a new RLA is inserted, because replacing
-    would flip one RLA between situations that contradict each other.
+    Close to the nearest condition, within a share of R that the task sets, its action is replaced. Farther off a new
+    RLA is inserted, because replacing would flip one RLA between situations that contradict each other.
+    `LessonBuilder` makes the event; the new action drives in the next tick.
     """
 
     path: ClassVar[str] = "/correct"
@@ -177,7 +178,11 @@ class DeleteRla(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Reward(SingleCommand):
-    """Reward of +1 or -1 for the RLAs that drove up to a tick of the last 1000 (phase 3)."""
+    """Reward of +1 or -1 for the RLAs that drove up to a tick of the last 1000 (phase 3; paper, section IV.C).
+
+    Each RLA gets its share of the eligibility trace; `TdLambda` adds it to the values. An RLA whose value falls
+    below the threshold loses its action, and the robot asks there. The page's buttons are called right and wrong.
+    """
 
     path: ClassVar[str] = "/reward"
     value: Annotated[int, OneOf((1, -1))]
@@ -201,7 +206,7 @@ class Appraise(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Undo(SingleCommand):
-    """Undo a lesson."""
+    """Undo a lesson: its RLA, name or reward is as before."""
 
     path: ClassVar[str] = "/undo"
     lesson: NameOrNone = None
@@ -266,7 +271,7 @@ class BeAt(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class SetPhase(SingleCommand):
-    """Set the training phase."""
+    """Set the training phase, 1 to 5."""
 
     path: ClassVar[str] = "/phase"
     phase: PhaseNumber
@@ -285,7 +290,7 @@ class SetLessonSpeed(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class BeginSession(SingleCommand):
-    """Begin a session; its teaching time runs."""
+    """Begin a named session; the clock of its teaching time starts."""
 
     path: ClassVar[str] = "/session/begin"
     name: Name
@@ -308,7 +313,7 @@ class Take(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class HandOver(SingleCommand):
-    """Give up control authority."""
+    """Give up control authority, to another teacher or to anyone."""
 
     path: ClassVar[str] = "/release"
     to: NameOrNone = None
@@ -317,7 +322,10 @@ class HandOver(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Stop(SingleCommand):
-    """Stand until `Resume`. Every teacher may send it at any time."""
+    """Stand until `Resume`. Every paired device may send it at any time, also one that does not teach.
+
+    The tick after its arrival brakes. Commands that were given on a state before it are refused.
+    """
 
     path: ClassVar[str] = "/stop"
     press_id: NumberOrNone = None
@@ -327,7 +335,11 @@ class Stop(SingleCommand):
 
 @dataclass(frozen=True, slots=True)
 class Resume(SingleCommand):
-    """Drive again after `Stop`, or after the guard latched an emergency stop."""
+    """Drive again after `Stop`, or after the guard latched an emergency stop: GO on the page, `go` in a terminal.
+
+    It is refused if the robot was stopped after the state that its teacher saw (`seen_tick`). The robot still stands
+    if it has another reason, such as silent sensors; the answer then names it.
+    """
 
     path: ClassVar[str] = "/resume"
     moves: ClassVar[bool] = True
@@ -362,6 +374,10 @@ Single = (
 """Command that counts once."""
 
 Command = Stream | Single
+"""Request of a teacher's device; a single one is acknowledged once its lesson is on disk.
+
+Scripted teachers, page and terminal give the same ones. `CommandHandler` carries them out at the start of a tick.
+"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -380,5 +396,5 @@ class CommandResult:
 
     @property
     def code(self) -> Code:
-        """Code of the outcome."""
+        """Code of the outcome, a word of the wire contract."""
         return self.outcome.code

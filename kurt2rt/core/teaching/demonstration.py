@@ -55,7 +55,11 @@ class _Sample(NamedTuple):
 
 
 class Demonstration:
-    """Record of the newest press of manual drive, in constant memory, and the lessons of its confirmed segments."""
+    """Record of the newest drive by hand, as segments of the nearest actions, which its teacher can then teach.
+
+    The driven speeds are compared with each action's by the angle between them. Nothing is learned before
+    `TeachShown` names the right segments. It keeps the last minute, in constant memory.
+    """
 
     def __init__(
         self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire, recent: DecisionHistory

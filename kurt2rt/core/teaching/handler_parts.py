@@ -37,7 +37,7 @@ class HandlerParts:
     holds_yield: bool = False
     """Keep what an answer or a press taught where a hold would replace it."""
     learner: LearnerLevel | None = None
-    """Level of a learner that decides in place of the RLAs and gets each lesson; None: RLAs decide."""
+    """Level of a learner that decides instead of the RLAs and gets each lesson; None: RLAs decide."""
     lesson_speed: float = 1.0
     """Fraction of their speed at which actions drive in lessons, until a teacher sets another one."""
 

@@ -32,7 +32,9 @@ _LONGEST_TICKS = 500
 
 
 class TeacherDelay:
-    """Median of each teacher's last times between question and answer, in ticks of real time.
+    """Time from a situation to a teacher's press about it: the median of their last 16 answers, in ticks of real time.
+
+    It dates presses that name no moment, such as a late correction (3/4 of it) or a held action (1/4 of it).
 
     A question counts from its first tick; an answer from the newest state that its teacher had, so that the link's
     delay is left out.
@@ -121,7 +123,11 @@ class TeacherDelay:
 
 
 class LatePresses:
-    """Assignment of presses to decisions by the delay of their teachers."""
+    """Assignment of corrections to the decision that the teacher reacted to (credit assignment).
+
+    With the teacher's delay d, a press on the state of tick t is about the first tick from t - 3/4 d on in which an
+    RLA drove. If the robot stood in t, the press is about t. The tick calls `assign` before the lesson is built.
+    """
 
     def __init__(self, recent: DecisionHistory, delay: TeacherDelay) -> None:
         self._recent = recent

@@ -31,7 +31,7 @@ Check = Callable[[str, object], Any]
 
 @dataclass(frozen=True, slots=True)
 class Bytes:
-    """Bytes of one length."""
+    """Check of a byte string of one exact length."""
 
     length: int
 
@@ -87,7 +87,7 @@ class Float:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """Printable text."""
+    """Check of a printable text of `least` to `most` characters."""
 
     most: int
     least: int = 0
@@ -120,7 +120,7 @@ class OneWord:
 
 @dataclass(frozen=True, slots=True)
 class Flag:
-    """True or False."""
+    """Check of a value that has to be true or false."""
 
     def __call__(self, what: str, value: object) -> bool:
         """Return the checked value. Raises WireError."""

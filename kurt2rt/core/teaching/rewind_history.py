@@ -22,7 +22,9 @@ class _Stretch(NamedTuple):
 
 
 class RewindHistory:
-    """Decisions of the last ticks of driving, however long the robot stood since or between them.
+    """Decisions of the last 12 s of driving, however long the robot stood since, for a teacher who looks back.
+
+    `Correct` with one of these ticks corrects that moment (rewind on the page).
 
     The history of recent decisions continues at standstill, so a teacher who thinks, and a robot that moves for
     moments only, would lose the drive. Memory is constant.

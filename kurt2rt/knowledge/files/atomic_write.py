@@ -17,7 +17,7 @@ _LONGEST_PART = 32
 
 @dataclass(frozen=True, slots=True)
 class SavedCopy:
-    """File that was saved."""
+    """Name, size and hash of a file that was saved for a teacher."""
 
     name: str
     """File name, without its folder."""

@@ -30,7 +30,7 @@ class StoredEntry:
 
 @dataclass(frozen=True, slots=True)
 class Receipt:
-    """Place of a lesson in the journal."""
+    """Confirmation that a lesson is in the journal: its row, its time, and whether it is new."""
 
     command_id: str
     sequence: int

@@ -26,7 +26,9 @@ def fold_journal(journal: Journal, radius: float) -> RlaSystem:
 
 
 def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:
-    """Return the RLA system that entries of the journal make.
+    """Return the RLA system that entries of the journal make, one after the other (fold, projection).
+
+    Equal entries give an equal system with an equal hash; robot, replay, undo and merge all use this.
 
     Args:
         journal: gives features and levels.

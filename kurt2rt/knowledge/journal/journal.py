@@ -25,7 +25,11 @@ _ROWS = "SELECT sequence, command_id, stamped_at, event, checksum FROM lesson OR
 
 
 class Journal:
-    """One knowledge file. Used by one thread at a time; all its errors are KnowledgeError."""
+    """One knowledge file: all lessons in order, in SQLite with a write-ahead log (event log).
+
+    `append` returns once the lessons are durable; only then is a command acknowledged. Nothing is changed in place:
+    an undo is another entry. Used by one thread at a time; all its errors are KnowledgeError.
+    """
 
     def __init__(self, path: Path, connection: sqlite3.Connection, lock: BinaryIO | None = None) -> None:
         self.path = path

@@ -36,7 +36,7 @@ class SchoolKind:
         return LinkedRobot(settings, link)
 
     def simulations(self, settings: RobotSettings) -> SimulationFactory:
-        """Return what opens simulations."""
+        """Return the factory of simulations over a line in memory."""
         from kurt2rt.robots.school.simulated import MemoryLine
         from simbridge.link_simulation import LinkSimulationFactory
 

@@ -30,7 +30,7 @@ class TurtlebotKind:
         return LinkedRobot(checked, TurtlebotLink(checked, session, session.name))
 
     def simulations(self, settings: RobotSettings) -> SimulationFactory:
-        """Return what opens simulations."""
+        """Return the factory of simulations over topics within this program."""
         from kurt2rt.robots.turtlebot.lidar import lidar_of
         from kurt2rt.robots.turtlebot.simulated import LocalLink
         from simbridge.link_simulation import LinkSimulationFactory

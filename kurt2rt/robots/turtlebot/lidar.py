@@ -57,7 +57,7 @@ class Lidar:
         return range(len(self.counts))
 
     def measure_all(self, pose: Pose) -> None:
-        """Measure now."""
+        """Take a scan at this pose; its sectors are `counts`."""
         limits_m = (self._lidar.nearest_m, self._lidar.farthest_m)
         exact_m = distances_m(self._world.settings, pose, pose.heading_rad + self._angles_rad)
         measured_m = exact_m + self._lidar.noise_m * self._noise.normals(self._lidar.rays)

@@ -11,7 +11,7 @@ from kurt2rt.ros.twist_settings import TwistSettings
 
 
 class TopicSettings(RosSettings):
-    """Topics of the base."""
+    """Names of the base's ROS 2 topics, and of the diagnostics that stop it."""
 
     scan: RosName
     odom: RosName
@@ -35,7 +35,7 @@ class LidarSettings(Settings):
 
 
 class TurtlebotSettings(RobotSettings):
-    """Settings of the base."""
+    """Schema of a base of ROS 2 with a laser scanner: topics, twist and lidar."""
 
     ros: TopicSettings
     twist: TwistSettings

@@ -41,7 +41,10 @@ class Feature:
 
 @dataclass(frozen=True, slots=True)
 class Episode:
-    """Frames without a gap."""
+    """Frames of one run without a gap, in time order, for a data set (episode of LeRobotDataset v3.0).
+
+    A missing tick or 1 000 s end it, and the next one begins.
+    """
 
     columns: dict[str, Column]
     """Values by feature: (frames,), or (frames, length) for a feature with names."""
@@ -55,7 +58,7 @@ class Episode:
 
     @property
     def frames(self) -> int:
-        """Number of frames."""
+        """Number of frames, one for each exported tick."""
         return len(self.task_of_frame)
 
 

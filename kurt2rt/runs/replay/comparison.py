@@ -9,7 +9,7 @@ from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 
 
 class TickDifference(NamedTuple):
-    """Field with different values."""
+    """Field of a tick whose replayed value differs from the recorded one."""
 
     tick: int
     field: str

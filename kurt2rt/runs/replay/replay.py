@@ -30,7 +30,11 @@ class ReplayedTick(NamedTuple):
 
 
 class Replay:
-    """Runtime in the initial state of a run, and the iteration over its ticks."""
+    """The same run again: recorded readings and commands through the same tick, bit for bit.
+
+    for entry, record in Replay(run): compare(entry, record). Nothing moves, and no file is written; `kurt2rt why` and
+    the preview of an undo read it as well.
+    """
 
     def __init__(self, run: Run) -> None:
         """Build the runtime.

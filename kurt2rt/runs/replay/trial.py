@@ -28,7 +28,7 @@ _NEWEST = 20
 
 
 class TrialKnowledge(NamedTuple):
-    """Initial knowledge of a robot."""
+    """Knowledge with which a recorded run is tried again: events and statistics."""
 
     events: tuple[TeachingEvent, ...]
     statistics: Statistics

@@ -10,7 +10,7 @@ from kurt2rt.runs.replay.run import Run
 
 @dataclass(frozen=True, slots=True)
 class ReplayVerdict:
-    """Result of a verification."""
+    """Result of `kurt2rt replay`: number of equal ticks, and the first differences."""
 
     ticks: int
     """Equal ticks from the first on."""

@@ -40,7 +40,7 @@ _SEEN_IN_CHARGE_WITHIN_S = 1.0
 class TeacherClient(LessonCommands, SimulationCommands):
     """Async context manager that connects a teacher's device to one robot.
 
-    Inside it states come in. While this device is in charge, the robot is told that its teacher is there.
+    Inside it states come in. While this device is in charge, it reports its teacher's presence to the robot.
 
     Commands are sent again every 0.1 s, count once, and return the robot's `Answer`; a refusal is an Answer too. They
     raise NoAnswerError after 3.5 s without an answer; it is then unknown whether they counted. `stop` overtakes every
@@ -169,7 +169,7 @@ class TeacherClient(LessonCommands, SimulationCommands):
     async def seek(self, name: str) -> Answer:
         """Go to a named situation; the robot plans the way. Raises NoAnswerError.
 
-        Without a way it stands and says so in its state.
+        Without a way it stands; its state shows that.
         """
         return await self._move(name, Seek, goal=NamedGoal(name))
 
@@ -240,7 +240,7 @@ class TeacherClient(LessonCommands, SimulationCommands):
     async def set_lesson_speed(self, percent: int) -> Answer:
         """Set the speed of lessons (slow lessons): until the robot's program ends, or another speed is set.
 
-        In phases 1 and 2 actions drive at so many per cent of their speed, 20 to 100, and their knowledge drives at
+        In phases 1 and 2 actions drive at `percent` of their speed, 20 to 100, and their knowledge drives at
         full speed afterwards. Raises NoAnswerError.
         """
         return await self._command(SetLessonSpeed, percent=percent)

@@ -21,7 +21,7 @@ class LinkQuality:
 
 
 class LinkMeter:
-    """Counter of round trips and answers."""
+    """Meter of the link to the robot: round-trip times, and the share of messages that were answered."""
 
     def __init__(self) -> None:
         self._round_trips_s: deque[float] = deque(maxlen=_ROUND_TRIPS)

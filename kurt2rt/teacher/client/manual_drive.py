@@ -51,7 +51,9 @@ class _Sent:
 
 
 class ManualDrive:
-    """Sender of the teacher's presence while in charge and watching, and of a press while one is on.
+    """Teleoperation by one device: sends the press that drives, and the teacher's presence between presses.
+
+    Each hold has a press id, so a late stop of an earlier hold does not end this one.
 
     A press drives by speeds, or holds an action, which teaches (hold to correct).
     """
@@ -244,7 +246,7 @@ class HoldHandle(PressHandle):
     """Press of a held action, from `TeacherClient.hold`."""
 
     def set(self, action: str) -> bool:
-        """Hold an action, at first or in place of another one; return whether the press is on. Raises WireError."""
+        """Hold an action, at first or instead of another one; return whether the press is on. Raises WireError."""
         return self._press(lambda: self._drive.hold(action))
 
     @property

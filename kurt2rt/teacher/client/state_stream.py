@@ -57,7 +57,7 @@ class StateStream:
         return max(self._stopped_tick, -1 if self.newest is None else self.newest.tick)
 
     def on_answer(self, boot: bytes, tick: int, *, stopped: bool = False) -> None:
-        """Note the tick of an answer.
+        """Note the tick of an answer, before which no state shows its effect.
 
         Args:
             boot: Start of the robot program that answered.
@@ -90,7 +90,7 @@ class StateStream:
         self._wake()
 
     def tick_before(self, ticks: int) -> int | None:
-        """Return the tick that lies so many `ticks` of driving before the newest of them; None if none was seen."""
+        """Return the tick that lies `ticks` of driving before the newest of them; None if none was seen."""
         if not self._drove:
             return None
         newest = self._drove[-1][1]

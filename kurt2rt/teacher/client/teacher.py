@@ -53,7 +53,7 @@ class Teacher:
     robot's `Answer`; a refusal is an Answer too. Each call raises NoAnswerError if the robot does not answer within
     `patience_s`, and RuntimeError while the Teacher is not open.
 
-    The robot is told that its teacher is there during each call and for `attention_s` after it. Then it stands, and
+    Its teacher counts as present during each call and for `attention_s` after it. Then it stands, and
     drives on only after `resume`: if the script hangs or computes for longer, and between two notebook cells.
 
     Use one Teacher from one thread at a time. Speeds are in metres per second. Lessons take the tick of

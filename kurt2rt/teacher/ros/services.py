@@ -27,7 +27,7 @@ class Request(Protocol):
     """Request of a service, to be answered once, from any thread."""
 
     def respond(self, success: bool, text: str) -> None:
-        """Answer. Raises RosConnectionError."""
+        """Answer the caller of the service. Raises RosConnectionError."""
         ...
 
 

@@ -68,7 +68,7 @@ class TwistDrive:
 
     @property
     def on(self) -> bool:
-        """True while twists drive."""
+        """True while twists drive the robot."""
         return self._on and self._robot.pressing
 
     def on_twist(self, twist: Twist, arrived_s: float) -> None:
@@ -87,7 +87,7 @@ class TwistDrive:
             self._press(speeds, arrived_s)
 
     def refuse(self, why: str, arrived_s: float) -> None:
-        """Refuse what came in place of a twist, which ends a press that is on. `arrived_s`: its time by `now`."""
+        """Refuse what came instead of a twist, which ends a press that is on. `arrived_s`: its time by `now`."""
         self._newest_s = arrived_s
         self.refused += 1
         self._blocked = True

@@ -19,7 +19,7 @@ _NAME = "scripted teacher"
 
 @dataclass(frozen=True, slots=True)
 class FeedbackTiming:
-    """Timing of a teacher's signals, in ticks."""
+    """Timing of a scripted teacher's rewards and appraisals, in ticks."""
 
     reaction: int
     """Delay of a signal after the judged tick."""
@@ -32,7 +32,7 @@ class FeedbackTiming:
 
 
 class RewardSource(Protocol):
-    """Source of a teacher's signals."""
+    """Source of a scripted teacher's rewards and appraisals, such as a judge."""
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
         """Return the value, -1, 0 or +1, and the tick of a signal; None without one. Call this on every tick."""

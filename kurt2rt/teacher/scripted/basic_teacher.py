@@ -49,7 +49,7 @@ class Ahead(Protocol):
 
     @property
     def ticks(self) -> int:
-        """Number of known ticks."""
+        """Number of ticks whose states are known in advance."""
         ...
 
     @property

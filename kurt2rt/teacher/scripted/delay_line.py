@@ -30,5 +30,5 @@ class DelayLine(Generic[_Item]):
         return self._items[0][0] if self._items else None
 
     def clear(self) -> None:
-        """Drop all items."""
+        """Drop all items that are still on their way."""
         self._items.clear()

@@ -33,6 +33,6 @@ class Hand:
             self._target, self._arrives = right, now + self._delay_ticks
 
     def move(self, now: int) -> None:
-        """Arrive at the target if it is time."""
+        """Change to the target action once the hand's delay has passed."""
         if self._arrives is not None and now >= self._arrives:
             self.action, self._arrives = self._target, None

@@ -68,5 +68,5 @@ class PressLimit:
         return self.now - self._presses[len(self._presses) + presses - self._limit - 1] >= self._minute_ticks
 
     def count(self) -> None:
-        """Count a press."""
+        """Count a press of this tick."""
         self._presses.append(self.now)

@@ -29,7 +29,7 @@ class Mistake:
 
 
 class LookBack:
-    """The presses of one look back: stop, and the right action at the moment of the mistake.
+    """Presses of one look back, in their order: stop, the right action at the mistake's tick, and resume.
 
     After it the page lets the robot drive on, as after the answer to a question.
     """
@@ -53,7 +53,7 @@ class LookBack:
         """True once the robot was seen to drive or to ask after the resume."""
 
     def update(self, now: int, picture: TeacherView, next_id: Callable[[], str]) -> Command | None:
-        """Take a picture in tick `now`; return the command that is due, if any. `next_id` gives its id."""
+        """Process the state that the teacher sees in tick `now`; return the press that is due, if any."""
         moves = picture.driving or picture.asking
         if self._step == "resumed" and moves:
             self.over = True

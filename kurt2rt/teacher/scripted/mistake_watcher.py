@@ -47,7 +47,7 @@ class MistakeWatcher:
         return self._looked_wrong >= max(self._different_ticks, 1) or self._wrong >= max(self._similar_ticks, 1)
 
     def reset(self) -> None:
-        """Forget the present disagreement."""
+        """Forget the present mistake, because it was corrected or the robot was moved."""
         self.began = self._looked_wrong_from = None
         self._wrong = self._looked_wrong = 0
 

@@ -27,7 +27,7 @@ _REWIND_PRESSES = 2
 
 @dataclass(frozen=True, slots=True)
 class TaskSense:
-    """Task as its teacher understands it."""
+    """Knowledge of a scripted teacher about its task: right actions, and which actions look alike."""
 
     policy: ReferencePolicy
     """Chooses the right action."""
@@ -60,7 +60,9 @@ class _PlannedUndo:
 
 
 class ScriptedPerson(BasicTeacher):
-    """Teacher with the delays, errors and lapses of a person, who sees old pictures over a link.
+    """Scripted teacher that reacts, errs and looks away like a person, over a link with delay (simulated user).
+
+    It knows the right action from the task's policy, and gives the commands that a page gives.
 
     All chance comes from the seed, in one stream for each kind of event.
     """

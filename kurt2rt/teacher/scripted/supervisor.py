@@ -140,7 +140,7 @@ class ScriptedSupervisor:
         )
 
     async def update(self, state: State, *, stopped: bool) -> None:
-        """Take a state and send the commands that it needs; a robot that a person `stopped` gets none."""
+        """Process a state and send the commands that it needs; none while a person has `stopped` the robot."""
         if len(self._task.behaviours) < 2:
             return
         before = self._cycler.selected

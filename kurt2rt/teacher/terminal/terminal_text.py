@@ -26,7 +26,7 @@ an action                answers the robot's question, or corrects what it does
 go                       the robot drives where it knows the way
 step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
 hold ACTION SECONDS      does the action, and is taught it in the situations on the way; then it drives on
-rewind SECONDS ACTION    corrects what it did so many seconds (up to 10) before it last drove
+rewind SECONDS ACTION    corrects what it did that long before it stopped (up to 10 s)
 +, -                     reward or punish the action that drives
 undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
 replace N ACTION, delete N     change or end RLA N

@@ -1,4 +1,4 @@
-"""Random street grids with varying widths and numbers of blocks, and squares in place of missing blocks."""
+"""Random street grids with varying widths and numbers of blocks, and squares instead of missing blocks."""
 
 from itertools import accumulate, chain, product
 
