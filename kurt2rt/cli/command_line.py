@@ -158,7 +158,8 @@ def typed() -> list[str]:
 
 def misuse(error: Any) -> str:
     """Return what the parser refuses, and which help explains it."""
-    told = " ".join(error.format_message().split())
+    # Without the words of pydantic, which checks some values.
+    told = " ".join(error.format_message().split()).replace(": Input should", ": should").replace(": Value error,", ":")
     context = getattr(error, "ctx", None)
     if type(error).__name__ == "NoArgsIsHelpError":  # rich has printed the help
         sys.exit(ExitCode.REFUSED)

@@ -248,6 +248,7 @@ def _require_consistent(options: _Options) -> None:
 def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from rich.console import Console
 
+    from hal.robot_kind import simulations_of
     from hal.robot_settings import load_robot
     from kurt2rt.cli.scripted_file import require_agreement
     from kurt2rt.cli.terminal_screen import TerminalScreen
@@ -270,6 +271,8 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
+    if options.world is not None and options.bus == SIMULATED:
+        simulations_of(robot).require_worlds(options.world)  # before the line that says what runs
     run_options = _run_options(options, taught, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),

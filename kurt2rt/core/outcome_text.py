@@ -273,6 +273,6 @@ def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
 def _plain(key: str, value: Field) -> str | int:
     if isinstance(value, tuple):
         return (" and " if key == "teachers" else ", ").join(
-            each or "one, without a name" for each in value
+            each or "a single one without a name" for each in value
         ) or "nothing"
     return "" if value is None else value

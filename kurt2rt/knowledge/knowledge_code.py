@@ -4,7 +4,7 @@ from hal.errors import ErrorCode
 
 _SQLITE = " (SQLite: {error})"
 _BACKUP = "keep the file, and go on with a backup copy"
-_KNOWLEDGE_FILE = "give the path of a kurt2rt knowledge file, or of a new one"
+_KNOWLEDGE_FILE = "give the path of a knowledge file; kurt2rt knowledge list finds them"
 _PACKAGE = "give a file of kurt2rt knowledge export"
 _NEW_COPY = "get another copy of it"
 _EXPORT_AGAIN = "export it again"

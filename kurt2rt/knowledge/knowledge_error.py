@@ -13,7 +13,7 @@ class KnowledgeError(UserError):
     def __init__(self, code: KnowledgeCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's text with `fields`; `where` names the file, with the row if it is about one."""
         # Texts of exceptions only: the error crosses processes, and not every exception can.
-        self.fields = {key: str(each) if isinstance(each, BaseException) else each for key, each in fields.items()}
+        self.fields = {key: _plain(each) for key, each in fields.items()}
         super().__init__(code.what.format_map(self.fields), where=where, do=code.do.format_map(self.fields))
         self.code = code
 
@@ -24,6 +24,11 @@ class KnowledgeError(UserError):
 
 class ReconnectRequiredError(KnowledgeError):
     """Error from which SQLite recovers on a new connection only, even when the disk does earlier."""
+
+
+def _plain(field: object) -> object:
+    """Return the text of an exception, of the operating system's without number and path; any other field as it is."""
+    return (getattr(field, "strerror", None) or str(field)) if isinstance(field, BaseException) else field
 
 
 def _rebuild(kind: type[KnowledgeError], code: KnowledgeCode, where: str, fields: dict[str, object]) -> KnowledgeError:

@@ -127,7 +127,7 @@ async def test_loaded_knowledge_replaces_the_file_and_keeps_a_copy(tmp_path: Pat
 @pytest.mark.parametrize(
     ("content", "why"),
     [
-        (b"PK\x03\x04 and no more", "the uploaded file: is torn or changed"),
+        (b"PK\x03\x04 and no more", "the uploaded file: is damaged"),
         (b"a letter to my robot", "the uploaded file: "),
         (b"SQLite format 3\x00" + bytes(4000), "the uploaded file: "),
     ],

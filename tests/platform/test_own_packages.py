@@ -27,7 +27,7 @@ def test_program_with_foreign_packages_says_their_folders(words: list[str], tmp_
     (*_, line) = done.stderr.splitlines()
     assert done.returncode == (2 if "-m" in words else 1)
     assert line.endswith(
-        f"Python finds foreign packages in place of those of kurt2rt, which are in {ROOT}: config in "
+        f"Python finds foreign packages instead of those of kurt2rt, which are in {ROOT}: config in "
         f"{tmp_path}/config, hal in {tmp_path}/hal.py; rename or uninstall them, or take their folder off Python's "
         "path (PYTHONPATH, the folder of the script)"
     )

@@ -188,7 +188,7 @@ def read_device(folder: Path) -> Device:
         name, host, port, token = (read[key] for key in ("name", "host", "port", "token"))
     except OSError as error:
         raise CredentialsError(
-            f"there is no pairing of a device ({error.strerror})",
+            f"no device is paired here ({error.strerror})",
             where=folder,
             do=f"make one on the robot's machine: kurt2rt pair {folder.name}",
         ) from error
