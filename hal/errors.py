@@ -1,6 +1,7 @@
 """Base of the errors that a user sees, in one line each, and the exit codes of the programs."""
 
 from enum import IntEnum, StrEnum
+from string import Formatter
 from typing import ClassVar, Self
 
 
@@ -14,6 +15,25 @@ class ExitCode(IntEnum):
     """An error that the user can mend, or a shutdown that took too long."""
     INTERRUPTED = 130
     """Ctrl-C: 128 and SIGINT, as shells count."""
+
+
+class TextCode(StrEnum):
+    """Base of codes that are told to a person: each member carries its text."""
+
+    text: str
+    """Sentence, with the fields of its case in braces."""
+
+    def __new__(cls, value: str, text: str) -> Self:
+        """Make a member of a code and its text."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.text = text
+        return member
+
+    @property
+    def fields(self) -> frozenset[str]:
+        """Names of the fields in the text."""
+        return frozenset(name for _, name, _, _ in Formatter().parse(self.text) if name)
 
 
 class ErrorCode(StrEnum):

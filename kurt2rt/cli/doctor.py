@@ -13,7 +13,6 @@ from rich.text import Text
 from hal.errors import ExitCode
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus
 from kurt2rt.checks.doctor.checks import run_checks
-from kurt2rt.checks.doctor.finding_text import text_of
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -60,13 +59,12 @@ def as_json(findings: Sequence[CheckResult]) -> str:
 
 
 def _row(finding: CheckResult) -> dict[str, object]:
-    text = text_of(finding)
     return {
         "code": finding.code,
-        "subject": text.subject,
+        "subject": finding.subject,
         "status": finding.status,
-        "found": text.found,
-        "what_to_do": text.what_to_do,
+        "found": finding.found,
+        "what_to_do": finding.what_to_do,
         "needed": finding.needed,
     }
 
@@ -75,15 +73,14 @@ def print_report(findings: Sequence[CheckResult], console: Console) -> None:
     """Print the findings, the instructions and the summary."""
     table = TextTable("subject", "status", "found")
     for finding in findings:
-        text = text_of(finding)
-        table.add_row(Text(text.subject), Text(finding.status, style=_STYLES[finding.status]), Text(text.found))
+        status = Text(finding.status, style=_STYLES[finding.status])
+        table.add_row(Text(finding.subject), status, Text(finding.found))
     print_whole(console, table, "")
     # Beneath the table and unwrapped, since most of it is there to be copied into a shell.
     for finding in findings:
-        text = text_of(finding)
-        if text.what_to_do:
-            label = Text(text.subject, style=_STYLES[finding.status])
-            console.print(Text.assemble(label, f": {text.what_to_do}"), soft_wrap=True)
+        if finding.what_to_do:
+            label = Text(finding.subject, style=_STYLES[finding.status])
+            console.print(Text.assemble(label, f": {finding.what_to_do}"), soft_wrap=True)
     console.print(Text(summary(findings)), soft_wrap=True)
 
 
@@ -91,6 +88,6 @@ def summary(findings: Sequence[CheckResult]) -> str:
     """Return the number of findings by status, and whether `kurt2rt run` can start."""
     counts = Counter(finding.status for finding in findings)
     numbers = ", ".join(f"{counts[status]} {status}" for status in CheckStatus)
-    wanting = ", ".join(text_of(finding).subject for finding in findings if finding.forbids_run)
+    wanting = ", ".join(finding.subject for finding in findings if finding.forbids_run)
     verdict = f"kurt2rt run cannot do without: {wanting}" if wanting else "kurt2rt run can start"
     return f"{len(findings)} checks: {numbers}; {verdict}"

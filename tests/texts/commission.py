@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from kurt2rt.checks.commission.fault import FaultCode, Field, SkipCode, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text, fields_of, skip_text
 
 _VALUES: dict[str, Field] = {
     "bit_rate_bit_s": 1_000_000,
@@ -44,10 +43,10 @@ _VALUES: dict[str, Field] = {
 def faults() -> Iterator[tuple[str, str]]:
     """Yield the instruction of each fault."""
     for code in FaultCode:
-        yield code, fault_text(StepFault(code, {name: _VALUES[name] for name in fields_of(code)}))
+        yield code, StepFault(code, {name: _VALUES[name] for name in code.fields}).text
 
 
 def skips() -> Iterator[tuple[str, str]]:
     """Yield the reason of each kind of skipped step."""
     for code in SkipCode:
-        yield code, skip_text(code)
+        yield code, code.text

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.finding_text import text_of
 from kurt2rt.cli.doctor import summary
 
 _VALUES: dict[str, float | str] = {
@@ -45,7 +44,8 @@ _VALUES: dict[str, float | str] = {
 def findings() -> Iterator[tuple[str, str]]:
     """Yield subject, found and what to do of each finding."""
     for code in FindingCode:
-        yield code, " | ".join(text_of(CheckResult(code, CheckStatus.OK, _VALUES)))
+        finding = CheckResult(code, CheckStatus.OK, _VALUES)
+        yield code, " | ".join((finding.subject, finding.found, finding.what_to_do))
 
 
 def summaries() -> Iterator[tuple[str, str]]:

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 
 from kurt2rt.channel.protocol.health_text import lines_of, progress_in
-from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.channel.protocol.trouble_text import trouble_text
+from kurt2rt.channel.protocol.trouble_code import TroubleCode, trouble_text
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from tests.service.health.reports import ILL, WELL
 

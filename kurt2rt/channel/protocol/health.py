@@ -2,8 +2,7 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.channel.protocol.trouble_text import trouble_text
+from kurt2rt.channel.protocol.trouble_code import TroubleCode, trouble_text
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 
 

@@ -14,8 +14,7 @@ from kurt2rt.channel.protocol.health import (
     TickLateness,
     Trouble,
 )
-from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.channel.protocol.trouble_text import numbers_of
+from kurt2rt.channel.protocol.trouble_code import TroubleCode, numbers_of
 from kurt2rt.core.teaching.message_fields import Flag, Float, ManyOf, OneWord, OrNone, WireError
 from kurt2rt.core.teaching.progress import Progress
 

@@ -1,77 +1,140 @@
-"""Codes of the troubles in a health report."""
+"""Codes of the troubles in a health report, and their texts: fault and remedy."""
 
+from collections.abc import Sequence
 from enum import StrEnum
-from typing import Final
+from string import Formatter
+from typing import Self
+
+_SWITCH_ON = "check that the robot is switched on and its cable is plugged in; the robot stands until they are back"
+_END_OTHER_WORK = "end other work on this machine; kurt2rt doctor shows what it lacks, real_time_priority helps"
+_CHECK_CABLE = "check cable, termination and bit rate"
+_CHECK_SENSOR = "check its plug and its lens; until then the sensors next to it stand in for it"
 
 
 class TroubleCode(StrEnum):
-    """Kind of a trouble; each member names the values that its trouble carries."""
+    """Kind of a trouble with its text; each member names the values that its trouble carries."""
 
-    SENSORS_UNHEARD = "sensors unheard"
+    about: str
+    """Subject on the wire."""
+    fault: str
+    """Sentence with the values in braces; empty if the trouble's line is the text."""
+    remedy: str
+    """Work for a person; empty if only waiting helps."""
+
+    def __new__(cls, value: str, about: str = "", fault: str = "", remedy: str = "") -> Self:
+        """Make a member of a code and its texts."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.about, member.fault, member.remedy = about, fault, remedy
+        return member
+
+    SENSORS_UNHEARD = ("sensors unheard", "sensors", "the {name} have never been heard", _SWITCH_ON)
     """Name: kind of sensor."""
-    SENSORS_SILENT = "sensors silent"
+    SENSORS_SILENT = ("sensors silent", "sensors", "the {name} are silent, the newest is {0:.1f} s old", _SWITCH_ON)
     """Name: kind of sensor. Numbers: age of the newest reading in s."""
-    SENSOR_STUCK = "sensor stuck"
+    SENSOR_STUCK = (
+        "sensor stuck",
+        "sensors",
+        "the range sensor {name} is stuck at {0:.0f} counts while the others flicker",
+        _CHECK_SENSOR,
+    )
     """Name: position and name of one infra-red sensor. Numbers: its reading in counts; as for the next three."""
-    SENSOR_OUT_OF_RANGE = "sensor out of range"
-    SENSOR_SEES_NOTHING = "sensor sees nothing"
-    SENSOR_SEES_A_PHANTOM = "sensor sees a phantom"
-    TICKS_MISSED = "ticks missed"
+    SENSOR_OUT_OF_RANGE = (
+        "sensor out of range",
+        "sensors",
+        "the range sensor {name} reads {0:.0f} counts, as no working sensor does",
+        _CHECK_SENSOR,
+    )
+    SENSOR_SEES_NOTHING = (
+        "sensor sees nothing",
+        "sensors",
+        "the range sensor {name} stays at {0:.0f} counts while both sensors next to it see something near",
+        _CHECK_SENSOR,
+    )
+    SENSOR_SEES_A_PHANTOM = (
+        "sensor sees a phantom",
+        "sensors",
+        "the range sensor {name} stays at {0:.0f} counts while both sensors next to it see nothing so near",
+        _CHECK_SENSOR,
+    )
+    TICKS_MISSED = (
+        "ticks missed",
+        "ticks",
+        "{0:.0f} {ticks} missed in the last minute, {1:.0f} in all",
+        _END_OTHER_WORK,
+    )
     """Numbers: missed in the last minute, missed in all."""
-    TICKS_LATE = "ticks late"
+    TICKS_LATE = ("ticks late", "lateness", "one tick in a hundred begins {0:.1f} ms late or later", _END_OTHER_WORK)
     """Numbers: 99th percentile of lateness in ms."""
-    BUS_ALARM = "bus alarm"
+    BUS_ALARM = ("bus alarm", "bus", "", "")
     """Line: the driver's."""
-    CAN_JUNK = "can junk"
+    CAN_JUNK = ("can junk", "bus", "{0:.0f} CAN frames with junk in them in the last minute", _CHECK_CABLE)
     """Numbers: frames in the last minute, as for the other counters of the bus."""
-    CAN_ERROR_FRAMES = "can error frames"
-    SEND_FAILURES = "send failures"
-    RECEIVE_FAILURES = "receive failures"
-    FOREIGN_CONTROL = "foreign control"
-    LESSONS_UNSAVED = "lessons unsaved"
+    CAN_ERROR_FRAMES = ("can error frames", "bus", "{0:.0f} CAN error frames in the last minute", _CHECK_CABLE)
+    SEND_FAILURES = (
+        "send failures",
+        "bus",
+        "{0:.0f} CONTROL frames that the bus did not take in the last minute",
+        _CHECK_CABLE,
+    )
+    RECEIVE_FAILURES = (
+        "receive failures",
+        "bus",
+        "{0:.0f} times that the bus could not be read in the last minute",
+        _CHECK_CABLE,
+    )
+    FOREIGN_CONTROL = (
+        "foreign control",
+        "bus",
+        "{0:.0f} CONTROL frames of another sender in the last minute",
+        "find that sender and end it",
+    )
+    LESSONS_UNSAVED = ("lessons unsaved", "lessons", "", "")
     """Line: the journal writer's."""
-    SLOW_DISK = "slow disk"
+    SLOW_DISK = (
+        "slow disk",
+        "lessons",
+        "in the last minute the disk took up to {0:.1f} s to save a lesson",
+        "end what else writes to it; kurt2rt doctor measures it",
+    )
     """Numbers: longest write of the last minute in s."""
-    DISK_SILENT = "disk silent"
+    DISK_SILENT = ("disk silent", "disk", "the disk of {name} does not answer", "look at its health and its mount")
     """Name: folder."""
-    LITTLE_ROOM = "little room"
+    LITTLE_ROOM = (
+        "little room",
+        "disk",
+        "only {0:.0f} MB are free for {name}",
+        "make room on that disk, or move old recordings away",
+    )
     """Name: folder. Numbers: free MB."""
-    LOW_BATTERY = "low battery"
+    LOW_BATTERY = ("low battery", "machine", "this machine's battery has {0:.0%} left", "plug it in")
     """Numbers: charge, 0 to 1."""
-    LITTLE_MEMORY = "little memory"
+    LITTLE_MEMORY = ("little memory", "machine", "this machine has {0:.0f} MB of memory left", "end other programs")
     """Numbers: available MB."""
-    DROPS = "drops"
+    DROPS = ("drops", "queues", "{name}: {0:.0f} thrown away in the last minute, because they came too fast", "")
     """Name: queue. Numbers: entries dropped in the last minute."""
-    PROGRAM = "program"
+    PROGRAM = ("program", "program", "", "")
     """Name: part of the program. Line: its own."""
 
-    @property
-    def about(self) -> str:
-        """Subject of the trouble as a word of the wire contract, such as bus."""
-        return _ABOUT[self]
+
+def numbers_of(code: TroubleCode) -> int:
+    """Return how many numbers the text of a code needs."""
+    fields = (field for _, field, _, _ in Formatter().parse(code.fault))
+    return sum(field is not None and field.isdigit() for field in fields)
 
 
-_ABOUT: Final = {
-    TroubleCode.SENSORS_UNHEARD: "sensors",
-    TroubleCode.SENSORS_SILENT: "sensors",
-    TroubleCode.SENSOR_STUCK: "sensors",
-    TroubleCode.SENSOR_OUT_OF_RANGE: "sensors",
-    TroubleCode.SENSOR_SEES_NOTHING: "sensors",
-    TroubleCode.SENSOR_SEES_A_PHANTOM: "sensors",
-    TroubleCode.TICKS_MISSED: "ticks",
-    TroubleCode.TICKS_LATE: "lateness",
-    TroubleCode.BUS_ALARM: "bus",
-    TroubleCode.CAN_JUNK: "bus",
-    TroubleCode.CAN_ERROR_FRAMES: "bus",
-    TroubleCode.SEND_FAILURES: "bus",
-    TroubleCode.RECEIVE_FAILURES: "bus",
-    TroubleCode.FOREIGN_CONTROL: "bus",
-    TroubleCode.LESSONS_UNSAVED: "lessons",
-    TroubleCode.SLOW_DISK: "lessons",
-    TroubleCode.DISK_SILENT: "disk",
-    TroubleCode.LITTLE_ROOM: "disk",
-    TroubleCode.LOW_BATTERY: "machine",
-    TroubleCode.LITTLE_MEMORY: "machine",
-    TroubleCode.DROPS: "queues",
-    TroubleCode.PROGRAM: "program",
-}
+def trouble_text(code: TroubleCode, name: str, numbers: Sequence[float], line: str) -> tuple[str, str]:
+    """Return the fault and the remedy, which is empty if only waiting helps.
+
+    Args:
+        code: kind of the trouble.
+        name: subject of its text.
+        numbers: as many as the code has.
+        line: `what is wrong; what to do`, of codes without a text of their own.
+    """
+    what, to_do = code.fault, code.remedy
+    if not what:
+        what, _, to_do = line.partition("; ")
+        return what, to_do
+    ticks = "tick" if numbers and numbers[0] == 1 else "ticks"
+    return what.format(*numbers, name=name, ticks=ticks), to_do

@@ -9,7 +9,6 @@ from hal.identity import hardware
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.bumpers import BumpersStep
 from kurt2rt.checks.commission.fault import SkipCode, SkippedError
-from kurt2rt.checks.commission.fault_text import fault_text, skip_text
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.identity import IdentityStep
 from kurt2rt.checks.commission.ir_calibration_step import IrCalibrationStep
@@ -110,7 +109,7 @@ class Checklist:
             try:
                 result = await self._result(step)
             except SkippedError as skipped:
-                self._stand.tell(f"skipped: {skip_text(skipped.code)}")
+                self._stand.tell(f"skipped: {skipped.code.text}")
                 await self._skip(step, skipped.code)
                 return
             again = await self._judge(step, result)
@@ -137,7 +136,7 @@ class Checklist:
             at=self._now(),
             who=self._who,
             measured=tuple(result.measured),
-            to_do=tuple(map(fault_text, result.faults)),
+            to_do=tuple(each.text for each in result.faults),
             faults=tuple(result.faults),
         )
         await self._keep(step, record, result)
@@ -183,7 +182,7 @@ class Checklist:
             outcome=StepOutcome.SKIPPED,
             at=self._now(),
             who=self._who,
-            measured=(skip_text(code),),
+            measured=(code.text,),
             to_do=() if before is None else before.to_do,
             faults=() if before is None else before.faults,
             skipped=code,

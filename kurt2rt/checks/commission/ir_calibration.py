@@ -8,7 +8,6 @@ import numpy as np
 
 from hal.errors import UserError
 from kurt2rt.checks.commission.fault import FaultCode, Field, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text
 
 LEAST_DISTANCES = 4
 _OFFSETS_M = np.linspace(0.005, 0.12, 231)
@@ -30,7 +29,7 @@ class IrCalibrationError(UserError, ValueError):
     def __init__(self, code: FaultCode, **fields: Field) -> None:
         """Word the fault."""
         self.fault = StepFault(code, fields)
-        super().__init__(fault_text(self.fault))
+        super().__init__(self.fault.text)
 
 
 class IrReading(NamedTuple):

@@ -3,7 +3,6 @@
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
@@ -57,5 +56,5 @@ def require_rest(stand: TestStand, drive: TestDrive, result: StepResult) -> bool
         return True
     fault = StepFault(FaultCode.BRAKE_FAILS if drive.after.encoder else FaultCode.BRAKE_UNHEARD)
     result.faults.append(fault)
-    stand.tell(fault_text(fault), Tone.BAD)
+    stand.tell(fault.text, Tone.BAD)
     return False

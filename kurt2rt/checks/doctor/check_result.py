@@ -1,8 +1,23 @@
-"""Result of one check of the machine: a code with its numbers; kurt2rt.checks.doctor.finding_text has the texts."""
+"""Result of one check of the machine: a finding with its numbers and texts."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Self
+
+_ANOTHER_FOLDER = "give a folder on a local disk that you may write, with --folder"
+_LIMITS_FILE = "/etc/security/limits.d/kurt2rt.conf"
+_OTHER_KERNEL = (
+    "boot a kernel with CAN (Debian: linux-image-amd64; Ubuntu: linux-modules-extra-$(uname -r)); simulation needs none"
+)
+_SYNC = "median {median_ms:.2f} ms of {times}, worst {worst_ms:.2f} ms"
+_TIMER = (
+    "{ticks} ticks of {period_ms:g} ms: timerfd median {median_ms:.3f} ms late, worst {worst_ms:.3f}; "
+    "asyncio.sleep median {asyncio_median_ms:.3f} ms late, worst {asyncio_worst_ms:.3f}; ratio {ratio:.1f}"
+)
+_CLOCK = "resolution {resolution_ns:.0f} ns, source {source}"
+_LIMIT_MIB = "RLIMIT_MEMLOCK {limit_mib:.0f} MiB"
+_MAPPED = f"{_LIMIT_MIB}, a process like this one maps {{mapped_mib:.0f}} MiB"
 
 
 class CheckStatus(StrEnum):
@@ -14,53 +29,155 @@ class CheckStatus(StrEnum):
 
 
 class FindingCode(StrEnum):
-    """State of the machine in one respect."""
+    """State of the machine in one respect, with its texts; the fields of the finding are in braces."""
 
-    PYTHON = "python"
-    PYTHON_OLD = "python old"
-    PACKAGE = "package"
-    PACKAGE_MISSING = "package missing"
-    TIMER = "timer"
-    TIMER_LATE = "timer late"
-    TIMER_MISSING = "timer missing"
-    CLOCK = "clock"
-    CLOCK_COARSE = "clock coarse"
-    CLOCK_SLOW = "clock slow"
-    PRIORITY = "priority"
-    PRIORITY_REFUSED = "priority refused"
-    MEMORY_LOCK_UNLIMITED = "memory lock unlimited"
-    MEMORY_LOCK_CAPABLE = "memory lock capable"
-    MEMORY_LOCK_LARGE = "memory lock large"
-    MEMORY_LOCK_SMALL = "memory lock small"
-    CORES = "cores"
-    CORES_FEW = "cores few"
-    GOVERNOR_NONE = "governor none"
-    GOVERNOR = "governor"
-    GOVERNOR_SAVING = "governor saving"
-    BLAS = "blas"
-    BLAS_MANY = "blas many"
-    SQLITE = "sqlite"
-    SQLITE_OLD = "sqlite old"
-    SQLITE_LOG = "sqlite log"
-    SQLITE_LOG_FAILS = "sqlite log fails"
-    FOLDER = "folder"
-    FOLDER_TO_MAKE = "folder to make"
-    FOLDER_UNWRITABLE = "folder unwritable"
-    SPACE = "space"
-    SPACE_LOW = "space low"
-    SYNC = "sync"
-    SYNC_SLOW = "sync slow"
-    CAN = "can"
-    CAN_UNLOADED = "can unloaded"
-    CAN_MISSING = "can missing"
-    CAN_INTERFACE = "can interface"
-    CAN_INTERFACE_NONE = "can interface none"
-    CAN_INTERFACE_DOWN = "can interface down"
-    CAN_INTERFACE_OFF_BUS = "can interface off bus"
-    VCAN = "vcan"
-    VCAN_DOWN = "vcan down"
-    VCAN_NONE = "vcan none"
-    VCAN_NO_MODULE = "vcan no module"
+    subject: str
+    found: str
+    what_to_do: str
+    """One line, mostly a command to copy; empty if there is nothing to do."""
+
+    def __new__(cls, value: str, subject: str, found: str, what_to_do: str = "") -> Self:
+        """Make a member of a code and its texts."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.subject, member.found, member.what_to_do = subject, found, what_to_do
+        return member
+
+    PYTHON = ("python", "Python", "{version}")
+    PYTHON_OLD = ("python old", "Python", "{version}", "install Python {least} or newer and make a new .venv with it")
+    PACKAGE = ("package", "{name}", "{version}, for {used_for}")
+    PACKAGE_MISSING = (
+        "package missing",
+        "{name}",
+        "cannot be imported ({fault}), needed for {used_for}",
+        "in the project's folder: {python} -m pip install -e '.[{extra}]'",
+    )
+    TIMER = ("timer", "timer", _TIMER)
+    TIMER_LATE = (
+        "timer late",
+        "timer",
+        f"{_TIMER}: ticks would come late or be missed",
+        "end other programs, see CPU governor and real-time priority here, then run kurt2rt doctor again",
+    )
+    TIMER_MISSING = (
+        "timer missing",
+        "timer",
+        "no timerfd ({error})",
+        "run on Linux, outside of sandboxes that refuse timerfd_create",
+    )
+    CLOCK = ("clock", "clock", _CLOCK)
+    CLOCK_COARSE = (
+        "clock coarse",
+        "clock",
+        f"{_CLOCK}: ticks would follow the kernel's jiffies",
+        "use a kernel with CONFIG_HIGH_RES_TIMERS, booted without highres=off",
+    )
+    CLOCK_SLOW = (
+        "clock slow",
+        "clock",
+        f"{_CLOCK}: slow to read",
+        "boot with clocksource=tsc, if dmesg does not call the TSC unstable",
+    )
+    PRIORITY = (
+        "priority",
+        "real-time priority",
+        "SCHED_FIFO granted; RLIMIT_RTPRIO {limit}, {capability} CAP_SYS_NICE",
+    )
+    PRIORITY_REFUSED = (
+        "priority refused",
+        "real-time priority",
+        "not permitted ({error}), so ticks are missed while other programs are busy; "
+        "RLIMIT_RTPRIO {limit}, {capability} CAP_SYS_NICE",
+        "the unit of kurt2rt service install is permitted it; by hand: "
+        f'echo "$USER - rtprio 50" | sudo tee -a {_LIMITS_FILE}, then log in again',
+    )
+    MEMORY_LOCK_UNLIMITED = ("memory lock unlimited", "memory lock", "RLIMIT_MEMLOCK unlimited")
+    MEMORY_LOCK_CAPABLE = ("memory lock capable", "memory lock", f"{_LIMIT_MIB}, but CAP_IPC_LOCK sets no limit")
+    MEMORY_LOCK_LARGE = ("memory lock large", "memory lock", _MAPPED)
+    MEMORY_LOCK_SMALL = (
+        "memory lock small",
+        "memory lock",
+        _MAPPED,
+        f'echo "$USER - memlock unlimited" | sudo tee -a {_LIMITS_FILE}, then log in again',
+    )
+    CORES = ("cores", "cores", "{usable} usable of {cores}")
+    CORES_FEW = (
+        "cores few",
+        "cores",
+        "{usable} usable of {cores}: ticks share it with all else",
+        "run the teacher's page and the simulator on another machine, or allow more cores (taskset, cpuset)",
+    )
+    GOVERNOR_NONE = ("governor none", "CPU governor", "none to be read: a virtual machine, or a clock that is fixed")
+    GOVERNOR = ("governor", "CPU governor", "{governors}")
+    GOVERNOR_SAVING = (
+        "governor saving",
+        "CPU governor",
+        "{governors}",
+        "echo performance | sudo tee {folder}/cpu*/cpufreq/scaling_governor",
+    )
+    BLAS = ("blas", "BLAS threads", "numpy {numpy}: {libraries}")
+    BLAS_MANY = (
+        "blas many",
+        "BLAS threads",
+        "numpy {numpy}: {libraries}",
+        "export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1",
+    )
+    SQLITE = ("sqlite", "SQLite", "{version}")
+    SQLITE_OLD = ("sqlite old", "SQLite", "{version}", "use a Python that brings SQLite {least} or newer")
+    SQLITE_LOG = ("sqlite log", "SQLite log", "write-ahead log works next to a reader")
+    SQLITE_LOG_FAILS = (
+        "sqlite log fails",
+        "SQLite log",
+        "does not work in this folder: {fault}",
+        "give a folder on a local disk with --folder",
+    )
+    FOLDER = ("folder", "knowledge folder", "{folder} can be written")
+    FOLDER_TO_MAKE = (
+        "folder to make",
+        "knowledge folder",
+        "{folder} is made when it is needed: {parent} can be written",
+    )
+    FOLDER_UNWRITABLE = (
+        "folder unwritable",
+        "knowledge folder",
+        "{folder} cannot be written ({error})",
+        _ANOTHER_FOLDER,
+    )
+    SPACE = ("space", "free space", "{free_gb:.1f} GB free")
+    SPACE_LOW = ("space low", "free space", "{free_gb:.1f} GB free", f"make room, or {_ANOTHER_FOLDER}")
+    SYNC = ("sync", "fsync", _SYNC)
+    SYNC_SLOW = (
+        "sync slow",
+        "fsync",
+        f"{_SYNC}: above {{limit_ms:g}} ms, the teacher waits for each lesson",
+        f"use a faster disk: {_ANOTHER_FOLDER}",
+    )
+    CAN = ("can", "CAN in the kernel", "AF_CAN sockets can be opened")
+    CAN_UNLOADED = ("can unloaded", "CAN in the kernel", "no AF_CAN socket ({error})", "sudo modprobe -a can can_raw")
+    CAN_MISSING = ("can missing", "CAN in the kernel", "no AF_CAN socket ({error})", _OTHER_KERNEL)
+    CAN_INTERFACE = ("can interface", "CAN interface {name}", "up")
+    CAN_INTERFACE_NONE = (
+        "can interface none",
+        "CAN interface",
+        "none with hardware in {folder}",
+        "plug in the adapter, then: {up}",
+    )
+    CAN_INTERFACE_DOWN = ("can interface down", "CAN interface {name}", "down", "{up}")
+    CAN_INTERFACE_OFF_BUS = (
+        "can interface off bus",
+        "CAN interface {name}",
+        "up, but off the bus",
+        "check cable, terminators and bit rate; sudo ip link set {name} down; {up}",
+    )
+    VCAN = ("vcan", "virtual CAN", "{name}, up")
+    VCAN_DOWN = ("vcan down", "virtual CAN", "{name}, down", "sudo ip link set {name} up")
+    VCAN_NONE = (
+        "vcan none",
+        "virtual CAN",
+        "no interface, but the module vcan is there",
+        "sudo modprobe vcan && sudo ip link add dev vcan0 type vcan && sudo ip link set vcan0 up",
+    )
+    VCAN_NO_MODULE = ("vcan no module", "virtual CAN", "no interface, no module vcan in {folder}", _OTHER_KERNEL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +190,21 @@ class CheckResult:
     """Fields of the code's texts."""
     needed: bool = False
     """True for a thing that `kurt2rt run` needs."""
+
+    @property
+    def subject(self) -> str:
+        """Name of what was looked at."""
+        return self.code.subject.format(**self.values)
+
+    @property
+    def found(self) -> str:
+        """State that was found."""
+        return self.code.found.format(**self.values)
+
+    @property
+    def what_to_do(self) -> str:
+        """Remedy, empty if there is nothing to do."""
+        return self.code.what_to_do.format(**self.values)
 
     @property
     def forbids_run(self) -> bool:

@@ -9,7 +9,6 @@ from config import CONFIG_DIR
 from hal.control import Control, RawControl, SpeedControl, decode_control
 from hal.shared_bus import SharedBus
 from kurt2rt.checks.commission.fault import FaultCode, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.progress import load_progress
 from tests.checks.commission.typed import PROGRESS, Type, Typed, commission_the_rest, earlier, live, typing
 from tests.checks.commission.workshop import BASE, Workshop
@@ -75,7 +74,7 @@ def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tm
         said = type_at(Typed("", ""), workshop.spec, "--name", "robbie")
     assert said.exit_code == 1
     fault = StepFault.of(FaultCode.BUS_SILENT, bit_rate_bit_s=BASE.can.bit_rate_bit_s)
-    assert f"identity: {fault_text(fault)}" in said.out
+    assert f"identity: {fault.text}" in said.out
     assert ": identity; " in said.out.splitlines()[-1]
     assert not (tmp_path / "var" / "robots").exists()
 

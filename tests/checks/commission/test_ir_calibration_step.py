@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.commission.fault import FaultCode
-from kurt2rt.checks.commission.fault_text import fields_of
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
@@ -67,7 +66,7 @@ def test_fit_law_implausible_readings_are_refused(
     with pytest.raises(IrCalibrationError) as caught:
         fit_law(taken)
     fault = caught.value.fault
-    assert (fault.code, frozenset(fault.fields)) == (code, fields_of(code))
+    assert (fault.code, frozenset(fault.fields)) == (code, code.fields)
     assert {name: fault.fields[name] for name in fields} == fields
 
 

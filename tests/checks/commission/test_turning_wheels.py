@@ -10,7 +10,6 @@ from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
-from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.moving import DRIVE_S
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
@@ -276,7 +275,7 @@ async def test_modes_step_failed_brake_asks_to_switch_the_motors_off(tmp_path: P
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
     assert session.faults("modes") == (StepFault(FaultCode.BRAKE_FAILS),)
-    assert session.person.lines(Tone.BAD)[0] == fault_text(StepFault(FaultCode.BRAKE_FAILS))
+    assert session.person.lines(Tone.BAD)[0] == StepFault(FaultCode.BRAKE_FAILS).text
     assert session.outcome("modes") is StepOutcome.FAILED
 
 
