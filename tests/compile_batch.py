@@ -11,7 +11,7 @@ import anyio
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.task_settings import load_task, taught_by_named
 from kurt2rt.experiments.lockstep.curriculum import run_exams, run_lesson
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from simbridge.simulation import Kurt2SimulationFactory
 
 _SHORT = {"teaching.supervised_s": "1", "teaching.corrections_s": "1", "exam.duration_s": "1"}
@@ -33,10 +33,10 @@ async def compile_batch() -> None:
                 Path(folder) / "short.knowledge",
                 seed=1,
                 report=lambda *_: None,
-                loop=DriveLoop.BATCH,
+                engine=Engine.COMPILED,
             )
         worlds = task.exam.worlds[:1]
-        await run_exams(factory, robot, task, events, worlds, seed=1, report=lambda *_: None, loop=DriveLoop.BATCH)
+        await run_exams(factory, robot, task, events, worlds, seed=1, report=lambda *_: None, engine=Engine.COMPILED)
 
 
 if __name__ == "__main__":

@@ -68,9 +68,9 @@ LONG: dict[str, Shorten] = {
     ],
     "study certify": lambda words: [*words[:3], "--runs", "3", "--seconds", "1", "--pictures", "1"],
     "exam": lambda words: [*words, "--task", "short.yaml"],
-    "lesson": lambda words: shortened_lesson(words),
-    "paper": lambda words: [*words, "--seeds", "100"],
-    "phases": lambda words: [*words, "--seeds", "0"],
+    "train": lambda words: shortened_lesson(words),
+    "study paper": lambda words: [*words, "--seeds", "100"],
+    "study phases": lambda words: [*words, "--seeds", "0"],
     "run": lambda words: shortened_run(words),
     "teach": lambda words: [*words, "--page-port", "0", "--while-stdin"],
     "sim": lambda words: [*words, "--seconds", "1"],
@@ -100,7 +100,7 @@ def shortened_lesson(words: Sequence[str]) -> list[str]:
 
 SOONER = 5
 """Divisor of the replayed seconds; the deep suite replays all of them."""
-TAUGHT_BY_THE_DEMO = "results/demo/wall_following-0.knowledge"
+TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
 
 
 class Block(NamedTuple):
@@ -316,7 +316,18 @@ def test_printed_tests_of_plug_ins_pass(folder: Path) -> None:
 
 def test_printed_learner_is_short_and_stands_in_the_table(kurt2rt: CommandLine) -> None:
     assert len(Path("my_learner.py").read_text(encoding="utf-8").splitlines()) <= 40
-    words = ("study", "compare", "--learner", "my_learner:Nearest", "--seeds", "3901", "--after", "2", "--jobs", "1")
+    words = (
+        "study",
+        "compare",
+        "--learner",
+        "my_learner:Nearest",
+        "--seeds",
+        "3901",
+        "--checkpoint",
+        "2",
+        "--jobs",
+        "1",
+    )
     said = kurt2rt(*words, "--task", "short.yaml", "--set", "exam.worlds=[a]", "--json")
     assert said.exit_code == 0, said.err
     success, *_ = json.loads(said.out)["tables"]
@@ -330,7 +341,7 @@ def test_added_policy_is_refused_and_taught_as_printed(kurt2rt: CommandLine) -> 
     short = ("teaching.supervised_s=3", "teaching.corrections_s=0", "exam.duration_s=2", "exam.worlds=[a]")
     said = kurt2rt("demo", "--task", "my_task.yaml", *(word for each in short for word in ("--set", each)))
     assert said.exit_code in (0, 1), said.err
-    assert Path("results/demo/wandering-0.knowledge").is_file()
+    assert Path("results/demo/wandering-1.knowledge").is_file()
 
 
 def test_robot_of_the_docs_is_made_and_taught(kurt2rt: CommandLine, plugin_folder: Path) -> None:
@@ -416,7 +427,7 @@ def test_printed_task_on_the_default_seed_succeeds(name: str, tmp_path: Path) ->
 @pytest.mark.deep
 def test_printed_streets_on_the_printed_seed_succeed(tmp_path: Path) -> None:
     (words,) = {line for line in printed_demos() if "streets" in line}
-    task = taught_by_named(load_task("streets"), None)
+    task = taught_by_named(load_task("streets"), "ordinary")
     assert [exam.succeeded for exam in examined(task, seed_of(words), tmp_path)] == [True]
 
 
@@ -433,9 +444,9 @@ def printed_demos() -> set[str]:
 
 
 def seed_of(line: str) -> int:
-    """Return the seed of a printed command; 0 if it names none."""
+    """Return the seed of a printed command; 1 if it names none."""
     words = shlex.split(line)
-    return int(words[words.index("--seed") + 1]) if "--seed" in words else 0
+    return int(words[words.index("--seed") + 1]) if "--seed" in words else 1
 
 
 def examined(task: TaskSettings, seed: int, folder: Path) -> tuple[WorldResult, ...]:

@@ -16,7 +16,7 @@ from kurt2rt.cli.study_run import JobOptions, job_parts, say_if_interpreted, stu
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
@@ -34,7 +34,7 @@ _GENERATED = {"wall_following": ("rooms-SEED",)}
 class _Options(JobOptions):
     """Arguments and options of `kurt2rt study certify`."""
 
-    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
     runs: Annotated[
         int, typer.Option(min=1, max=1_000_000, metavar="N", help="Number of runs; each is another robot.")
     ] = 1000
@@ -68,19 +68,19 @@ class _Options(JobOptions):
             max=1.0,
             help="Fraction of the runs, 0 to 1, in which one range sensor breaks after 2 s: another sensor and "
             "fault (dead, stuck, unplugged and others) in each. They have a row of their own, and "
-            "are driven on the CAN loop alone.",
+            "are driven on the CAN bus alone.",
         ),
     ] = 0.0
     pictures: Annotated[
         int, typer.Option(min=0, max=100, metavar="N", help="Number of worst runs to draw, at most.")
     ] = 6
-    exams: Annotated[
-        DriveLoop,
+    engine: Annotated[
+        Engine,
         typer.Option(
-            help="Loop that drives the runs. batch: compiled, with equal results; 1 % of the runs, at least three, "
-            "are driven on the CAN loop too and must agree. bus: the CAN loop alone, some 100 times slower."
+            help="What drives the runs. compiled: a batch of runs at once, with equal results; 1 % of the runs, at "
+            "least three, are driven on the CAN bus too and must agree. can: the CAN bus alone, some 100 times slower."
         ),
-    ] = DriveLoop.BATCH
+    ] = Engine.COMPILED
     task: TaskOfTheFile = None
     changes: Changes = None
     out: Annotated[Path, results_option(str(_FOLDER))] = _FOLDER
@@ -100,13 +100,13 @@ def certify(options: _Options) -> None:
 
     For example:
 
-        kurt2rt study certify results/demo/wall_following-0.knowledge
+        kurt2rt study certify results/demo/wall_following-1.knowledge
         kurt2rt study certify mine.knowledge --runs 10000 --world rooms-SEED
         kurt2rt exam mine.knowledge --seed 20017 --world rooms-20017
 
     Results are kept in --out with hashes of what made them; a run that was
     interrupted goes on where it was. Tasks that the batch does not know, such
-    as routes, are driven on the CAN loop.
+    as routes, are driven on the CAN bus.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.certify.run import BrokenShare, Run
@@ -120,10 +120,10 @@ def certify(options: _Options) -> None:
     parts = job_parts(robot, options.out)
     one = Run(options.first, places[0])
     parts["factory"].require_worlds(one.world)
-    loop = _loop(options, find_refusal(task, options.knowledge, one, parts))
+    engine = _engine(options, find_refusal(task, options.knowledge, one, parts))
     broken = BrokenShare(options.dead_sensors, robot.infrared.names)
-    extent = Extent(options.first, options.runs, places, loop, broken)
-    plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, loop)
+    extent = Extent(options.first, options.runs, places, engine, broken)
+    plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, engine)
     report = options.out / "report.html"
     with study_run(plan, parts, options) as bar:
         certificate = read_certificate(plan)
@@ -167,21 +167,21 @@ def _task(options: _Options) -> TaskSettings:
     task = load_task(task_of_file(options.knowledge, options.task), changes=changes)
     if task.mid is not None:
         raise typer.BadParameter(
-            f"task {task.name} has a mid level, whose routes and places are no worlds to draw from; use kurt2rt lesson "
+            f"task {task.name} has a mid level, whose routes and places are no worlds to draw from; use kurt2rt train "
             "--seeds",
             param_hint="KNOWLEDGE",
         )
     return task
 
 
-def _loop(options: _Options, refusal: str) -> DriveLoop:
-    """Return the loop that drives the runs, and say why if it is slow; `refusal`: of the batch, empty for none."""
-    if options.exams is DriveLoop.BATCH and refusal:
+def _engine(options: _Options, refusal: str) -> Engine:
+    """Return the engine that drives the runs, and say why if it is slow; `refusal`: of the compiled one, or empty."""
+    if options.engine is Engine.COMPILED and refusal:
         typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
-        return DriveLoop.BUS
-    if options.exams is DriveLoop.BATCH:
+        return Engine.CAN
+    if options.engine is Engine.COMPILED:
         say_if_interpreted()
-    return options.exams
+    return options.engine
 
 
 def _exam_command(options: _Options, run: "RunOutcome") -> str:
@@ -195,8 +195,8 @@ def _exam_command(options: _Options, run: "RunOutcome") -> str:
     return shlex.join(words)
 
 
-def _command(options: _Options, loop: DriveLoop) -> str:
-    """Return the command as far as it decides the jobs, which are other ones without the batch."""
-    bus = loop if loop is DriveLoop.BUS else None
-    stated = {"runs": options.runs, "first": options.first, "exams": bus, "pictures": None}
+def _command(options: _Options, engine: Engine) -> str:
+    """Return the command as far as it decides the jobs, which are other ones on the CAN bus."""
+    stated_engine = engine if engine is Engine.CAN else None
+    stated = {"runs": options.runs, "first": options.first, "engine": stated_engine, "pictures": None}
     return typed_command("study certify", options, stated)

@@ -12,36 +12,31 @@ from typer.core import TyperGroup
 from hal.errors import ExitCode
 
 _PANELS = {
-    "Teach": {
+    "Teach and examine": {
+        "demo": "Teach a simulated robot from nothing, then examine it.",
         "run": "Run the robot in real time, until Ctrl-C or SIGTERM.",
         "teach": "Teach a running robot: by browser, terminal or script.",
         "pair": "Pair a teacher's device, and show the code of its page.",
-        "ros": "Join a running robot to ROS 2, over zenoh, without ROS.",
-        "demo": "Teach a simulated robot from nothing, then examine it.",
-        "lesson": "Teach simulated robots with a scripted teacher.",
-    },
-    "Examine": {
+        "train": "Teach simulated robots with a scripted teacher.",
         "exam": "Examine knowledge: a simulated robot drives by itself.",
+    },
+    "Look back": {
         "why": "Explain what the robot did, and why: in a run, or now.",
         "replay": "Replay a recorded run, and compare it bit for bit.",
-        "recover": "Copy what is whole of a run to files for Foxglove.",
-        "export": "Write recorded runs as data sets for other programs.",
-    },
-    "Knowledge and plug-ins": {
+        "recording": "List recorded runs, repair or export them.",
         "knowledge": "Look after what the robot was taught: show, undo, merge.",
-        "plugin": "List, show and begin plug-ins: parts of other authors.",
     },
-    "Robot and service": {
-        "status": "Tell how a running robot program is.",
+    "Robot and machine": {
         "doctor": "Check what this machine offers the robot, and what to do.",
+        "status": "Tell how a running robot program is.",
         "sim": "Simulate a KURT2 on a CAN bus, in real time.",
         "commission": "Commission a real robot: the checklist of its first day.",
         "service": "Run the robot's program as a unit of systemd.",
+        "ros": "Join a running robot to ROS 2, over zenoh, without ROS.",
     },
-    "Studies": {
-        "paper": "Teach the tasks of the paper, and compare the results.",
-        "phases": "Train robots through phases 1 to 5, next to controls.",
-        "study": "Measure taught robots: new worlds, doubt, certificates.",
+    "Research": {
+        "study": "Measure many robots: the paper, phases, new worlds, doubt.",
+        "plugin": "List, show and begin plug-ins: parts of other authors.",
     },
 }
 """Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its
@@ -49,10 +44,20 @@ module of kurt2rt.cli. The first line of its help stands here as well."""
 
 _OPTION_PANELS = {
     "Robot and world": ("bus", "robot_settings", "settings", "task", "world", "behaviour", "seed", "seeds", "seconds"),
-    "Teaching": ("teacher", "auto", "knowledge", "terminal", "plain", "changes"),
-    "Page and network": ("page", "phone", "no_open", "port", "page_port", "page_address", "public_address", "robot"),
+    "Teaching": ("teacher", "auto", "knowledge", "terminal", "paper_defaults", "changes"),
+    "Page and network": (
+        "page",
+        "phone",
+        "no_open",
+        "device",
+        "port",
+        "page_port",
+        "page_address",
+        "public_address",
+        "robot",
+    ),
     "Recording": ("record", "no_record", "can_log", "live_view"),
-    "Study": ("jobs", "on", "lessons", "exams", "out", "quick"),
+    "Study": ("jobs", "cluster", "engine", "checkpoint", "baselines", "out", "quick"),
 }
 """Options of long helps, by the title of their panel."""
 _LONG_HELP = 10
@@ -62,7 +67,7 @@ _PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
 _HELP = (
     "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
     "Begin with `kurt2rt run --phone`: a simulated robot stands there and asks you what to do. "
-    "`kurt2rt demo` teaches it by itself, in a minute."
+    "`kurt2rt demo` teaches it by itself, in a minute. docs/handbook.md has the rest."
 )
 
 USAGE_ERROR: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "ClickException")
@@ -85,6 +90,8 @@ class _CommandGroup(TyperGroup):
         command = super().get_command(ctx, cmd_name)
         for each in _all_within(command):
             _arranged(each.get_params(ctx))
+            if "\n\n" in (each.help or ""):
+                each.help += "\n\b"  # a last line at the margin, which shows as none: examples stay indented
         return command
 
 

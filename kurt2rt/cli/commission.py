@@ -64,9 +64,9 @@ _Skip = Annotated[
         show_default=False,
     ),
 ]
-_StartOver = Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")]
+_Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what earlier sessions found about NAME.")]
 _Force = Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")]
-_Who = Annotated[
+_Operator = Annotated[
     str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
 ]
 
@@ -81,9 +81,9 @@ class _Options:
     robot_settings: RobotName = None
     only: _Only = None
     skip: _Skip = None
-    start_over: _StartOver = False
+    fresh: _Fresh = False
     force: _Force = False
-    who: _Who = None
+    operator: _Operator = None
 
 
 @takes_options(_Options)
@@ -140,11 +140,11 @@ def commission(options: _Options) -> None:
 def _session(options: _Options) -> "_Session":
     """Return what the options ask for. Raises typer.BadParameter, SettingsError."""
     requested, skipped = _named(options.only, "--only"), _named(options.skip, "--skip")
-    operator = _require_one_line(options.who or _user())
+    operator = _require_one_line(options.operator or _user())
     base = load_kurt2(options.robot_settings or "kurt2")
     path = Path("var", "commission", f"{options.name}.json")
     fresh = Progress(name=options.name, base=options.robot_settings or "kurt2", bus=options.bus)
-    progress = _progress(path, fresh, options.start_over)
+    progress = _progress(path, fresh, options.fresh)
     chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
     return _Session(base, progress, path, chosen, skipped, operator)
 
@@ -250,13 +250,13 @@ def _progress(path: Path, fresh: Progress, start_over: bool) -> Progress:
         raise SettingsError(
             f"was begun with --robot-settings {kept.base}",
             where=path,
-            do="go on with that, give another --name, or --anew",
+            do="go on with that, give another --name, or --fresh",
         )
     if kept.bus != fresh.bus and kept.findings != Findings() and kept.findings.hardware_id is None:
         raise SettingsError(
             f"was begun on bus {kept.bus}, and which robot that was is not known",
             where=path,
-            do="go on there, give another --name, or --anew",
+            do="go on there, give another --name, or --fresh",
         )
     return kept.model_copy(update={"bus": fresh.bus})
 
@@ -284,7 +284,7 @@ def _require_one_line(who: str) -> str:
     """Return the name if it fits in a comment of the settings file. Raises typer.BadParameter."""
     name = " ".join(who.split())
     if not name or not name.isprintable():
-        raise typer.BadParameter("a name on one line", param_hint="--who")
+        raise typer.BadParameter("a name on one line", param_hint="--operator")
     return name
 
 

@@ -9,16 +9,16 @@ import typer
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
-    DEFAULT_OF_THE_TASK,
+    DEFAULT_TEACHER,
     Changes,
     RobotName,
+    Teacher,
     changes_of,
     parse_seeds,
     results_option,
     task_option,
-    teacher_option,
 )
-from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.study_run import EngineOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
@@ -27,7 +27,7 @@ _AFTER = (10, 20, 40)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Options(LoopOptions):
+class _Options(EngineOptions):
     """Options of `kurt2rt study compare`."""
 
     learner: Annotated[
@@ -40,9 +40,9 @@ class _Options(LoopOptions):
         ),
     ] = None
     task: Annotated[list[str] | None, task_option("Repeat for several. Default: wall_following.")] = None
-    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
+    teacher: Teacher = DEFAULT_TEACHER
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 4106-4125.")] = "4106-4125"
-    after: Annotated[
+    checkpoint: Annotated[
         list[int] | None,
         typer.Option(
             min=1,
@@ -93,9 +93,9 @@ def compare(options: _Options) -> None:
         tasks,
         [Pupil.parse(name) for name in options.learner or PUPILS],
         parse_seeds(options.seeds),
-        sorted(set(options.after or _AFTER)),
+        sorted(set(options.checkpoint or _AFTER)),
         parts,
-        loops=options.requested_loops(),
+        engine=options.requested_engine(),
     )
     figure = options.out / "compare.png"
     with study_run(plan, parts, options) as bar:

@@ -10,15 +10,15 @@ from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
-    DEFAULT_OF_THE_TASK,
+    DEFAULT_TEACHER,
     Changes,
     OutFolder,
-    Plain,
+    PaperDefaults,
     RobotName,
     Seed,
+    Teacher,
     changes_of,
     task_option,
-    teacher_option,
 )
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
@@ -37,10 +37,10 @@ class _Options:
     """Options of `kurt2rt demo`."""
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
-    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
-    plain: Plain = False
+    teacher: Teacher = DEFAULT_TEACHER
+    paper_defaults: PaperDefaults = False
     changes: Changes = None
-    seed: Seed = 0
+    seed: Seed = 1
     out: OutFolder = Path("results/demo")
     robot_settings: RobotName = None
     as_json: AsJson = False
@@ -68,7 +68,7 @@ def demo(options: _Options) -> None:
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 
     task, settings = load_task_and_robot(
-        options.task, options.robot_settings, plain=options.plain, changes=changes_of(options.changes)
+        options.task, options.robot_settings, plain=options.paper_defaults, changes=changes_of(options.changes)
     )
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings)

@@ -26,7 +26,7 @@ from kurt2rt.platform.text_table import print_whole
 class _Options:
     """Arguments and options of `kurt2rt study doubt`."""
 
-    taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --seeds leaves them.")]
+    taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt train --seeds leaves them.")]
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-4.")] = "0-4"
     world: Annotated[
@@ -38,7 +38,7 @@ class _Options:
         list[DoubtResponse] | None,
         typer.Option(help="Response of the robots to doubt; may be given again. Default: each of them."),
     ] = None
-    set_down: Annotated[
+    reposition_after: Annotated[
         float,
         typer.Option(
             metavar="SECONDS",
@@ -61,9 +61,9 @@ def doubt(options: _Options) -> None:
 
     For example:
 
-        kurt2rt lesson --task wall_following --seeds 915-919
-        kurt2rt study doubt results/lesson --seeds 915-919 --world floors-SEED
-        kurt2rt study doubt results/lesson --seeds 915-919 --world floors-SEED --response stands --set-down 0
+        kurt2rt train --task wall_following --seeds 915-919
+        kurt2rt study doubt results/train --seeds 915-919 --world floors-SEED
+        kurt2rt study doubt results/train --seeds 915-919 --world floors-SEED --response stands --reposition-after 0
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
@@ -81,7 +81,7 @@ def doubt(options: _Options) -> None:
             settings,
             task,
             options.taught / f"{task.name}-{seed}.knowledge",
-            DoubtSetup(world_of(world, seed), seed, options.seconds, response, options.set_down),
+            DoubtSetup(world_of(world, seed), seed, options.seconds, response, options.reposition_after),
         )
         for response in responses
         for seed in seeds
@@ -94,7 +94,7 @@ def doubt(options: _Options) -> None:
     each = len(work) // len(responses)
     by_response = {response.value: logs[n * each : (n + 1) * each] for n, response in enumerate(responses)}
     assert task.learning.doubt is not None
-    tables = [collision_table(by_response, options.set_down)]
+    tables = [collision_table(by_response, options.reposition_after)]
     told = by_response.get(DoubtResponse.TELLS.value)
     if told is not None:
         tables.insert(0, score_table(told, task.learning.doubt.threshold))

@@ -12,7 +12,7 @@ from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, changes_of, world_option
+from kurt2rt.cli.options import Changes, PaperDefaults, RobotName, Seed, TaskOfTheFile, changes_of, world_option
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import require_robot_of
@@ -31,9 +31,9 @@ from kurt2rt.platform.text_table import print_whole
 class _Options:
     """Arguments and options of `kurt2rt exam`."""
 
-    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
     task: TaskOfTheFile = None
-    plain: Plain = False
+    paper_defaults: PaperDefaults = False
     changes: Changes = None
     seed: Seed = 1
     world: Annotated[
@@ -65,13 +65,13 @@ def exam(options: _Options) -> None:
 
     For example:
 
-        kurt2rt exam results/demo/wall_following-0.knowledge
+        kurt2rt exam results/demo/wall_following-1.knowledge
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
     task_name = options.task or task_of_file(options.knowledge)
     settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)
-    taught = load_task(task_name, plain=options.plain, changes=other)
+    taught = load_task(task_name, plain=options.paper_defaults, changes=other)
     require_robot_of(taught, task_name, settings)
     if options.task is not None:
         task_of_file(options.knowledge, options.task)

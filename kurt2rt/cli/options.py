@@ -26,7 +26,6 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
 
 
 _TASK = "Task: a name in config/tasks or of a plug-in, module:NAME, or the path of a YAML file."
-_TEACHER = "Scripted teacher: a name in config/teachers, or the path of a YAML file."
 _WORLD = (
     "World: a name in config/worlds or of a plug-in, module:NAME, rooms-N, flats-N, streets-N or floors-N for a "
     "generated one, or the path of a YAML file (a world, or a map of ROS map_server)."
@@ -38,20 +37,12 @@ def task_option(default: str = "") -> Any:
     return _named("--task", "tasks", f"{_TASK} {default}".rstrip())
 
 
-def teacher_option(default: str) -> Any:
-    """Return --teacher, the same in every command; `default` is the teacher without it."""
-    return _named("--teacher", "teachers", f"{_TEACHER} Default: {default}.")
-
-
 def search_argument() -> Any:
     """Return the argument of `kurt2rt study search`."""
     return typer.Argument(
         help="Search: a name in config/searches, or the path of a YAML file.",
         autocompletion=_names_in("searches"),
     )
-
-
-DEFAULT_OF_THE_TASK = "the task's (teaching.default_teacher)"
 
 
 def world_option(default: str = "") -> Any:
@@ -63,13 +54,23 @@ def _named(option: str, kind: str, told: str) -> Any:
     return typer.Option(option, metavar=_NAME_OR_PATH, help=told, autocompletion=_names_in(kind), show_default=False)
 
 
+DEFAULT_TEACHER = "ordinary"
+Teacher = Annotated[
+    str,
+    typer.Option(
+        "--teacher",
+        metavar=_NAME_OR_PATH,
+        help="Scripted teacher: a name in config/teachers, or the path of a YAML file.",
+        autocompletion=_names_in("teachers"),
+    ),
+]
 TASK_OF_THE_FILE = "Default: the task that the knowledge file was taught for."
 TaskOfTheFile = Annotated[str | None, task_option(TASK_OF_THE_FILE)]
 """Goes to kurt2rt.knowledge.files.task_of_file."""
-Plain = Annotated[
+PaperDefaults = Annotated[
     bool,
     typer.Option(
-        "--plain",
+        "--paper-defaults",
         help="Learn by the plain reading of the paper: all 72 values weigh 1, corrections only replace, and no action "
         "is held.",
     ),

@@ -64,7 +64,7 @@ def pair(
 
     To run kurt2rt teach on another machine than the robot, move the device's
     folder there (do not copy it: its message numbers count once), and start there
-    kurt2rt teach --as NAME --robot ADDRESS. The robot itself listens beyond its
+    kurt2rt teach --device NAME --robot ADDRESS. The robot itself listens beyond its
     own machine only if a device is paired when it is started.
 
     Teaching at the robot's own machine needs no pairing. For example:

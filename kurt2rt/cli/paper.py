@@ -1,4 +1,4 @@
-"""`kurt2rt paper`."""
+"""`kurt2rt study paper`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,14 +9,14 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
-    DEFAULT_OF_THE_TASK,
+    DEFAULT_TEACHER,
+    Teacher,
     parse_seeds,
     results_option,
     seeds_option,
     task_option,
-    teacher_option,
 )
-from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.study_run import EngineOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
 
@@ -25,8 +25,8 @@ _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Options(LoopOptions):
-    """Options of `kurt2rt paper`."""
+class _Options(EngineOptions):
+    """Options of `kurt2rt study paper`."""
 
     quick: Annotated[
         bool, typer.Option("--quick", help="A small part in under a minute: fewer tasks and seeds, short lessons.")
@@ -36,10 +36,13 @@ class _Options(LoopOptions):
         list[str] | None,
         task_option("Repeat for several. Default: all tasks of config/paper."),
     ] = None
-    teacher: Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)] = None
+    teacher: Teacher = DEFAULT_TEACHER
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
-    plain: Annotated[
-        bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
+    paper_defaults: Annotated[
+        bool,
+        typer.Option(
+            "--paper-defaults/--no-paper-defaults", help="Also do all of it in the plain reading of the paper."
+        ),
     ] = True
 
 
@@ -57,7 +60,7 @@ def paper(options: _Options) -> None:
     other tasks may share a folder.
 
     Compiled loops drive the tasks that they know, if the extra fast is installed
-    and the study is long, with equal results (--lessons, --exams).
+    and the study is long, with equal results (--engine).
 
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
     robots and worlds are others. With one of those, or with fewer than 20
@@ -66,8 +69,8 @@ def paper(options: _Options) -> None:
 
     For example:
 
-        kurt2rt paper --quick
-        kurt2rt paper --task circle --task eight
+        kurt2rt study paper --quick
+        kurt2rt study paper --task circle --task eight
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.paper.figures import draw_figures
@@ -82,12 +85,12 @@ def paper(options: _Options) -> None:
         load_paper(factory=parts["factory"]).model_copy(update={"teacher": options.teacher}),
         QUICK if options.quick else WHOLE,
         parse_seeds(seeds),
-        ("shipped", "plain") if options.plain else ("shipped",),
+        ("shipped", "plain") if options.paper_defaults else ("shipped",),
         parts,
         tasks=options.task or (),
-        loops=options.requested_loops(),
+        engine=options.requested_engine(),
     )
-    command = typed_command("paper", options, {"seeds": seeds})
+    command = typed_command("study paper", options, {"seeds": seeds})
     with study_run(plan, parts, options) as bar:
         bar.say("figures and report")
         study, report = read_study(plan), folder / "report.html"

@@ -1,4 +1,4 @@
-"""`kurt2rt phases`."""
+"""`kurt2rt study phases`."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,31 +9,31 @@ import typer
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
+    DEFAULT_TEACHER,
     Changes,
     RobotName,
+    Teacher,
     changes_of,
     parse_seeds,
     results_option,
     seeds_option,
     task_option,
-    teacher_option,
 )
-from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.study_run import EngineOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import load_task, taught_by_named
-from kurt2rt.core.teacher_settings import SUPERHUMAN
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Options(LoopOptions):
-    """Options of `kurt2rt phases`."""
+class _Options(EngineOptions):
+    """Options of `kurt2rt study phases`."""
 
     task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
-    teacher: Annotated[str, teacher_option(SUPERHUMAN)] = SUPERHUMAN
+    teacher: Teacher = DEFAULT_TEACHER
     changes: Changes = None
     robot_settings: RobotName = None
     quick: Annotated[
@@ -63,8 +63,8 @@ def phases(options: _Options) -> None:
 
     For example:
 
-        kurt2rt phases --quick
-        kurt2rt phases --task wall_following --seeds 100-119
+        kurt2rt study phases --quick
+        kurt2rt study phases --task wall_following --seeds 100-119
     """
     # Late imports: the simulator is an extra that `kurt2rt run` on the robot does not need.
     from kurt2rt.experiments.phases.figures import draw_figures
@@ -76,8 +76,8 @@ def phases(options: _Options) -> None:
     task = taught_by_named(load_task(options.task, changes=changes_of(options.changes)), options.teacher)
     folder = options.out or _FOLDER / (task.name + ("-quick" if options.quick else ""))
     parts = job_parts(robot, folder)
-    plan = make_plan(task, parse_seeds(seeds), parts, quick=options.quick, loops=options.requested_loops())
-    command = typed_command("phases", options, {"task": options.task, "seeds": seeds})
+    plan = make_plan(task, parse_seeds(seeds), parts, quick=options.quick, engine=options.requested_engine())
+    command = typed_command("study phases", options, {"task": options.task, "seeds": seeds})
     with study_run(plan, parts, options) as bar:
         bar.say("figures and report")
         study, report = read_study(plan), folder / "report.html"

@@ -33,17 +33,16 @@ OnTick = Callable[[ReplayedTick], None]
 
 def replay(
     run: RecordedRun = None,
-    knowledge: Annotated[
+    compare: Annotated[
         Path | None,
         typer.Option(
-            "--with",
             metavar="KNOWLEDGE",
             help="Have this knowledge file look on: list where it would have decided otherwise.",
         ),
     ] = None,
     runs: RunsFolder = None,
     limit: Annotated[
-        int, typer.Option(metavar="N", min=1, help="With --with: list so many stretches, the longest.")
+        int, typer.Option(metavar="N", min=1, help="With --compare: list so many stretches, the longest.")
     ] = 30,
     as_json: AsJson = False,
     settings: RuntimeSettingsName = "default",
@@ -54,17 +53,17 @@ def replay(
     again; nothing moves, and no knowledge file is touched. Ends with 1 and tells
     the first difference, if there is one.
 
-    With --with other knowledge decides on the very same situations, without
+    With --compare other knowledge decides on the very same situations, without
     acting: what would an undo, or another afternoon of teaching, have changed?
 
         kurt2rt replay
-        kurt2rt replay 20261122T031005Z-wall_following --with other.knowledge
+        kurt2rt replay 20261122T031005Z-wall_following --compare other.knowledge
     """
     found = read_run(find_run(run, runs or Path(load_service(settings).recordings)))
-    if knowledge is None:
+    if compare is None:
         _verify(found, as_json=as_json)
     else:
-        _compare(found, knowledge, limit, as_json=as_json)
+        _compare(found, compare, limit, as_json=as_json)
 
 
 def _verify(run: Run, *, as_json: bool) -> None:

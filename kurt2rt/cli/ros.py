@@ -47,7 +47,7 @@ class _Options:
     domain: Annotated[int, typer.Option(metavar="N", min=0, max=232, help="ROS_DOMAIN_ID, for rmw_zenoh.")] = 0
     namespace: Annotated[str, typer.Option(help="Namespace of topics and services, such as robot1.")] = ""
     stamped: Annotated[bool, typer.Option("--stamped", help="cmd_vel carries TwistStamped in place of Twist.")] = False
-    name: Annotated[str, typer.Option("--as", help="Paired device that this is to the robot.")] = _DEVICE
+    device: Annotated[str, typer.Option(help="Paired device that this is to the robot.")] = _DEVICE
     robot: Annotated[
         str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
     ] = None
@@ -88,7 +88,7 @@ def ros(options: _Options) -> None:
     import kurt2rt.ros.session  # noqa: F401  # names the extra `ros` before anything else is wrong
 
     service = load_service(options.settings)
-    device = read_device(Path(service.devices) / options.name)
+    device = read_device(Path(service.devices) / options.device)
     names = RosSettings(naming=options.naming, domain=options.domain, namespace=options.namespace)
     anyio.run(_run, options, device, names)
 

@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import PageAddressName, RobotName, task_option, world_option
+from kurt2rt.cli.options import DEFAULT_TEACHER, PageAddressName, RobotName, task_option, world_option
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import SIMULATED
 
@@ -59,7 +59,8 @@ class _Options:
         typer.Option(
             metavar="channel|none|NAME",
             help="channel: teachers come over UDP; none: the robot drives without a teacher where it knows the way. "
-            "With --auto the scripted teacher: a name in config/teachers, or the path of a YAML file.",
+            "With --auto the scripted teacher: a name in config/teachers, or the path of a YAML file, by default "
+            f"{DEFAULT_TEACHER}.",
         ),
     ] = _CHANNEL
     behaviour: Annotated[
@@ -88,7 +89,7 @@ class _Options:
         bool,
         typer.Option(
             "--auto",
-            help="Let the scripted teacher of the task teach, over the channel; simulated robot only. Without "
+            help="Let a scripted teacher teach, over the channel; simulated robot only. Without "
             "--knowledge into a file of its own, TASK.auto.knowledge, never into that of a person.",
         ),
     ] = False
@@ -273,7 +274,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     _require_behaviour(taught, options.behaviour)
     if options.world is not None and options.bus == SIMULATED:
         simulations_of(robot).require_worlds(options.world)  # before the line that says what runs
-    run_options = _run_options(options, taught, live_view, recorded=recorded)
+    run_options = _run_options(options, live_view, recorded=recorded)
     screen = TerminalScreen(
         Console(),
         Path(settings.devices),
@@ -286,9 +287,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     return RobotProgram(run_options, lambda: _changed(options, task), robot, taught, screen)
 
 
-def _run_options(
-    options: _Options, task: "TaskSettings", live_view: tuple[str, int] | None, *, recorded: bool
-) -> "RunOptions":
+def _run_options(options: _Options, live_view: tuple[str, int] | None, *, recorded: bool) -> "RunOptions":
     from kurt2rt.service.run_options import RunOptions
 
     simulated, attended = options.bus == SIMULATED, options.teacher != _NO_TEACHER
@@ -301,7 +300,7 @@ def _run_options(
         behaviour=options.behaviour or "",
         page=options.page or options.phone,
         phones=options.phone,
-        scripted_teacher=_scripted_teacher(options, task),
+        scripted_teacher=_scripted_teacher(options),
         page_port=options.page_port,
         page_address=options.page_address,
         can_log=options.can_log,
@@ -313,13 +312,13 @@ def _run_options(
     )
 
 
-def _scripted_teacher(options: _Options, task: "TaskSettings") -> str | None:
+def _scripted_teacher(options: _Options) -> str | None:
     """Return the name or path of the scripted teacher; None without --auto. Raises SettingsError."""
     from kurt2rt.core.teacher_settings import load_teacher
 
     if not options.auto:
         return None
-    name = task.teaching.default_teacher if options.teacher == _CHANNEL else options.teacher
+    name = DEFAULT_TEACHER if options.teacher == _CHANNEL else options.teacher
     load_teacher(name)
     return name
 

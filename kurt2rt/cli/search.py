@@ -57,7 +57,7 @@ def search(options: _Options) -> None:
         kurt2rt study search circle --trials 20 --jobs 2
     """
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+    from kurt2rt.experiments.lockstep.engine import Engine
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
     from kurt2rt.experiments.search.journal import TrialJournal
     from kurt2rt.experiments.search.plan import make_plan
@@ -74,11 +74,11 @@ def search(options: _Options) -> None:
     plan = make_plan(settings, parts, changes=changes_of(options.changes))
     command = typed_command("study search", options)
     require_unchecked(plan, trials)
-    if settings.exams is DriveLoop.BATCH:
+    if settings.engine is Engine.COMPILED:
         say_if_interpreted()
     trials_s = trials_time_s(plan, trials)
     whole_s = trials_s + check_time_s(plan)
-    executors = open_executor(options.on, options.jobs)
+    executors = open_executor(options.cluster, options.jobs)
     with says_how_to_go_on(results), executors as executor, results.held(), one_bar(whole_s) as bar:
         require_no_difference(results, {plan.made_of.source})
         journal = TrialJournal(plan)

@@ -49,12 +49,12 @@ class _Options:
     json: Annotated[
         bool, typer.Option("--json", help="Print the report as JSON, for programs; with --watch a line each second.")
     ] = False
-    name: Annotated[
+    device: Annotated[
         str | None,
-        typer.Option("--as", help="Ask over the teacher's channel instead, as this paired device; from any machine."),
+        typer.Option(help="Ask over the teacher's channel instead, as this paired device; from any machine."),
     ] = None
     robot: Annotated[
-        str | None, typer.Option(help="With --as, address of the robot. Default: as noted with the pairing.")
+        str | None, typer.Option(help="With --device, address of the robot. Default: as noted with the pairing.")
     ] = None
     port: Annotated[
         int | None,
@@ -62,7 +62,7 @@ class _Options:
             metavar="PORT",
             min=1,
             max=65535,
-            help="With --as, UDP port of the robot. Default: as noted with the pairing.",
+            help="With --device, UDP port of the robot. Default: as noted with the pairing.",
         ),
     ] = None
 
@@ -77,18 +77,20 @@ def status(options: _Options) -> None:
 
         kurt2rt status
         kurt2rt status --watch
-        kurt2rt status --as phone
+        kurt2rt status --device phone
 
     A robot program tells it next to its knowledge file, whether it listens to
     teachers or not, to its own user and to root. Ends with code 1 where
     something urgent is wrong: the robot stands because of it, or lessons are at
     risk; with 2 where no robot program runs.
     """
-    if options.name is None and (options.robot is not None or options.port is not None):
-        raise typer.BadParameter("only the teacher's channel has an address; give --as", param_hint="--robot, --port")
+    if options.device is None and (options.robot is not None or options.port is not None):
+        raise typer.BadParameter(
+            "only the teacher's channel has an address; give --device", param_hint="--robot, --port"
+        )
     service = load_service(options.settings)
-    if options.name is not None:
-        reports = _over_the_channel(read_device(Path(service.devices) / options.name), options.robot, options.port)
+    if options.device is not None:
+        reports = _over_the_channel(read_device(Path(service.devices) / options.device), options.robot, options.port)
     else:
         default = Path(service.knowledge)
         if options.task is not None:

@@ -1,4 +1,4 @@
-"""`kurt2rt study ...`: commands of studies besides those of the paper."""
+"""`kurt2rt study ...`: measurements of many robots."""
 
 import sys
 from dataclasses import dataclass
@@ -12,16 +12,19 @@ from kurt2rt.cli.certify import certify
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.compare import compare
 from kurt2rt.cli.doubt import doubt
+from kurt2rt.cli.paper import paper
+from kurt2rt.cli.phases import phases
 from kurt2rt.cli.search import search
 from kurt2rt.cli.transfer import transfer
 
-_To = Annotated[Path | None, typer.Option("--to", metavar="FILE", help="Work for the cluster of this file.")]
-_New = Annotated[Path | None, typer.Option("--new", metavar="FILE", help="Make the file of a new cluster, and end.")]
-_At = Annotated[
-    str, typer.Option("--at", metavar="ADDRESS", help="With --new, address of its scheduler, such as tls://lab:8786.")
+_Cluster = Annotated[Path | None, typer.Option(metavar="FILE", help="Work for the cluster of this file.")]
+_New = Annotated[Path | None, typer.Option(metavar="FILE", help="Make the file of a new cluster, and end.")]
+_Scheduler = Annotated[
+    str, typer.Option(metavar="ADDRESS", help="With --new, address of its scheduler, such as tls://lab:8786.")
 ]
 study = typer.Typer(
-    help="Measure taught robots: new worlds, doubt, certificates.\n\nAnd compare learners, and search settings.",
+    help="Measure many robots: the paper, phases, new worlds, doubt.\n\n"
+    "Compare learners, certify knowledge, search settings.",
     no_args_is_help=True,
 )
 
@@ -30,9 +33,9 @@ study = typer.Typer(
 class _Options:
     """Options of `kurt2rt study worker`."""
 
-    to: _To = None
+    cluster: _Cluster = None
     new: _New = None
-    at: _At = ""
+    scheduler: _Scheduler = ""
 
 
 @takes_options(_Options)
@@ -46,24 +49,24 @@ def worker(options: _Options) -> None:
 
     For example:
 
-        kurt2rt study worker --new lab.cluster --at tls://lab:8786
-        kurt2rt study worker --to lab.cluster
-        kurt2rt paper --on lab.cluster
+        kurt2rt study worker --new lab.cluster --scheduler tls://lab:8786
+        kurt2rt study worker --cluster lab.cluster
+        kurt2rt study paper --cluster lab.cluster
     """
     # Not at the top: Dask is an extra, and every command is loaded where --help is said.
-    if options.new is not None and options.to is None:
+    if options.new is not None and options.cluster is None:
         from kurt2rt.experiments.study.cluster_file import make_cluster_file, scheduler_command
 
-        make_cluster_file(options.new, options.at)
+        make_cluster_file(options.new, options.scheduler)
         print(f"cluster  {options.new}: copy it to each machine, and keep it to yourself", file=sys.stdout)
-        print(f"scheduler  {scheduler_command(options.new, options.at)}", file=sys.stdout)
-    elif options.to is not None and options.new is None:
+        print(f"scheduler  {scheduler_command(options.new, options.scheduler)}", file=sys.stdout)
+    elif options.cluster is not None and options.new is None:
         from kurt2rt.experiments.study.cluster import serve
 
-        anyio.run(serve, options.to, lambda address: print(f"worker  {address}", flush=True, file=sys.stdout))
+        anyio.run(serve, options.cluster, lambda address: print(f"worker  {address}", flush=True, file=sys.stdout))
     else:
-        raise typer.BadParameter("give the file of a cluster, or make one", param_hint="--to, --new")
+        raise typer.BadParameter("give the file of a cluster, or make one", param_hint="--cluster, --new")
 
 
-for _command in (transfer, compare, doubt, certify, search, worker):
+for _command in (paper, phases, transfer, compare, doubt, certify, search, worker):
     study.command()(_command)

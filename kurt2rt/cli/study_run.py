@@ -18,26 +18,25 @@ from kurt2rt.experiments.study.bus_witness import require_no_difference
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import Executor, missing_time_s, open_processes, run_missing
-from kurt2rt.experiments.study.study_plan import AboutT, LoopChoice, LoopRequest, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import AboutT, EngineChoice, EngineRequest, RequestedEngine, StudyPlan
 
-OnOption = Annotated[
+Cluster = Annotated[
     Path | None,
     typer.Option(
-        "--on",
         metavar="FILE",
         help="Run the jobs on the workers of the cluster of this file (kurt2rt study worker --new makes one).",
         show_default=False,
     ),
 ]
-_MEANING = (
-    "batch: compiled loops with equal results (extra fast); 1 % of the robots, at least three, are driven on the bus "
-    "too and must agree. A task that the batch does not know is driven on the bus. auto: batch if it is installed and "
-    "the study is long enough."
-)
-LessonsOption = Annotated[
-    LoopRequest, typer.Option(help=f"What drives the lessons of phases 1 and 2. {_MEANING}", show_default=True)
+EngineOption = Annotated[
+    EngineRequest,
+    typer.Option(
+        help="What drives lessons (of phases 1 and 2) and exams. compiled: a batch of robots at once, with equal "
+        "results (extra fast); 1 % of the robots, at least three, are driven on the CAN bus too and must agree. A task "
+        "that it does not know is driven on the CAN bus. can: the simulated CAN bus. auto: compiled if it is installed "
+        "and the study is long enough."
+    ),
 ]
-ExamsOption = Annotated[LoopRequest, typer.Option(help="What drives the exams, as --lessons.", show_default=True)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,25 +44,24 @@ class JobOptions:
     """Options of all studies: who runs the jobs, and how the results are told."""
 
     jobs: Jobs = ALL_PROCESSORS
-    on: OnOption = None
+    cluster: Cluster = None
     as_json: AsJson = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LoopOptions(JobOptions):
-    """Options of studies whose lessons and exams may be driven in a batch, which changes no result."""
+class EngineOptions(JobOptions):
+    """Options of studies whose lessons and exams a compiled engine may drive, which changes no result."""
 
-    lessons: LessonsOption = LoopRequest.AUTO
-    exams: ExamsOption = LoopRequest.AUTO
+    engine: EngineOption = EngineRequest.AUTO
 
-    def requested_loops(self) -> RequestedLoops:
-        """Return the requests of both options; say on standard error that an explicit batch is not compiled."""
+    def requested_engine(self) -> RequestedEngine:
+        """Return the request; say on standard error that an explicit compiled engine is not compiled."""
         # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
         from simbridge.batch.compiled import IS_COMPILED
 
-        if LoopRequest.BATCH in (self.lessons, self.exams):
+        if self.engine is EngineRequest.COMPILED:
             say_if_interpreted()
-        return RequestedLoops(self.lessons, self.exams, compiled=IS_COMPILED)
+        return RequestedEngine(self.engine, compiled=IS_COMPILED)
 
 
 def job_parts(robot: RobotSettings, folder: Path) -> JobParts:
@@ -79,18 +77,18 @@ def say_if_interpreted() -> None:
         typer.echo("numba is not installed (extra fast): the batch runs as plain Python, as slow as the bus", err=True)
 
 
-def _say_choice(choice: LoopChoice) -> None:
+def _say_choice(choice: EngineChoice) -> None:
     """Say on standard error how many jobs a batch drives, how many have a witness, and what the batch does not know."""
     for refusal in choice.refusals:
         typer.echo(refusal, err=True)
-    if choice.loops:
-        jobs = f"{len(choice.loops)} job{'' if len(choice.loops) == 1 else 's'}"
+    if choice.engines:
+        jobs = f"{len(choice.engines)} job{'' if len(choice.engines) == 1 else 's'}"
         typer.echo(f"the study has {jobs} in the batch, {len(choice.witnessed)} of them on the CAN bus too", err=True)
 
 
 @contextmanager
 def open_executor(cluster: Path | None, jobs: int) -> Iterator[Executor]:
-    """Yield the executor of --on; without it, one with processes of this machine.
+    """Yield the executor of --cluster; without it, one with processes of this machine.
 
     `jobs`: number of these processes. Raises ClusterError if `cluster` is no file of a cluster, or no scheduler of it
     answers.
@@ -139,12 +137,12 @@ def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> 
     Raises:
         StudyError: another run writes to the folder, or it has results of other settings.
         BatchDiffersError: a witness in the folder, or of this run, differs from the batch.
-        ClusterError: --on is no file of a cluster, or no scheduler of it answers.
+        ClusterError: --cluster is no file of a cluster, or no scheduler of it answers.
     """
     import scipy.special  # noqa: F401 # of the extra `studies`: told before the jobs, not hours after them
 
     results = parts["results"]
-    with says_how_to_go_on(results), open_executor(options.on, options.jobs) as executor, results.held():
+    with says_how_to_go_on(results), open_executor(options.cluster, options.jobs) as executor, results.held():
         require_no_difference(results, {job.made_of.source for job in plan.jobs})
         missing_s = missing_time_s(plan.waves, results)
         if missing_s:

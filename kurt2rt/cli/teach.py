@@ -15,7 +15,7 @@ from rich.console import Console
 from hal.robot_settings import load_robot, robot_that_task_names
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
-from kurt2rt.cli.options import DEFAULT_OF_THE_TASK, PageAddressName, RobotName, task_option, teacher_option
+from kurt2rt.cli.options import DEFAULT_TEACHER, PageAddressName, RobotName, Teacher, task_option
 from kurt2rt.cli.scripted_file import people_agree
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.core.rla.rla import AUTO, PROGRAMS
@@ -30,15 +30,14 @@ _NEWEST_LESSONS = 20
 
 _Terminal = Annotated[bool, typer.Option("--terminal", help="Teach by typing, here; no page is served.")]
 _Auto = Annotated[
-    bool, typer.Option("--auto", help="Let the scripted teacher teach, a simulated robot only; no page is served.")
+    bool, typer.Option("--auto", help="Let a scripted teacher teach, a simulated robot only; no page is served.")
 ]
 _Phone = Annotated[
     bool, typer.Option("--phone", help="Serve every device: this machine and, once one is paired, the network.")
 ]
-_Name = Annotated[
+_Device = Annotated[
     str | None,
     typer.Option(
-        "--as",
         help="Paired device that this teaches as. Default: this machine's own, which is local for the page, terminal "
         "with --terminal and auto with --auto.",
     ),
@@ -62,7 +61,6 @@ _PublicAddress = Annotated[
     str | None, typer.Option(help="Address of a TLS proxy in front of the page, such as https://robot.example.")
 ]
 _Task = Annotated[str | None, task_option("Taught by the scripted teacher. Default: the task of the settings.")]
-_Teacher = Annotated[str | None, teacher_option(DEFAULT_OF_THE_TASK)]
 _Seed = Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the scripted teacher.")]
 _Settings = Annotated[str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")]
 _WhileStdin = Annotated[
@@ -75,14 +73,14 @@ def teach(
     terminal: _Terminal = False,
     auto: _Auto = False,
     phone: _Phone = False,
-    name: _Name = None,
+    device: _Device = None,
     robot: _Robot = None,
     port: _Port = None,
     page_port: _PagePort = None,
     page_address: PageAddressName = None,
     public_address: _PublicAddress = None,
     task: _Task = None,
-    teacher: _Teacher = None,
+    teacher: Teacher = DEFAULT_TEACHER,
     robot_settings: RobotName = None,
     seed: _Seed = 1,
     settings: _Settings = "default",
@@ -103,7 +101,7 @@ def teach(
 
     On another machine than the robot, for the device whose folder is there:
 
-        kurt2rt teach --as phone --robot 192.168.0.7
+        kurt2rt teach --device phone --robot 192.168.0.7
 
     With --terminal, an action answers or corrects, Enter alone stops the robot,
     help shows the rest. Page and terminal wait for a robot that is not there yet.
@@ -122,14 +120,14 @@ class _Arguments:
     terminal: bool
     auto: bool
     phone: bool
-    name: str | None
+    device: str | None
     robot: str | None
     port: int | None
     page_port: int | None
     page_address: str | None
     public_address: str | None
     task: str | None
-    teacher: str | None
+    teacher: str
     robot_settings: str | None
     seed: int
     settings: str
@@ -140,10 +138,10 @@ class _Arguments:
         """Raise typer.BadParameter if options contradict each other."""
         if self.terminal and self.auto:
             raise typer.BadParameter("one teacher at a time: --terminal or --auto", param_hint="--auto")
-        others = (self.terminal, self.auto, self.name, self.robot, self.public_address)
+        others = (self.terminal, self.auto, self.device, self.robot, self.public_address)
         if self.phone and any(each not in (False, None) for each in others):
             raise typer.BadParameter(
-                "it serves the pages of all devices, on the robot's machine; leave out --terminal, --auto, --as, "
+                "it serves the pages of all devices, on the robot's machine; leave out --terminal, --auto, --device, "
                 "--robot and --public-address",
                 param_hint="--phone",
             )
@@ -164,7 +162,9 @@ def _run(arguments: _Arguments) -> None:
     if arguments.phone:
         _serve(arguments, service, None)
         return
-    device = _device(service, arguments.name or (TERMINAL if arguments.terminal else AUTO if arguments.auto else LOCAL))
+    device = _device(
+        service, arguments.device or (TERMINAL if arguments.terminal else AUTO if arguments.auto else LOCAL)
+    )
     route = _Route(device, arguments.robot or device.host, arguments.port or device.port)
     if arguments.terminal:
         _teach(route, partial(_by_typing, route), while_stdin=False)

@@ -8,15 +8,16 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import (
+    DEFAULT_TEACHER,
     Changes,
     RobotName,
+    Teacher,
     changes_of,
     parse_seeds,
     results_option,
     task_option,
-    teacher_option,
 )
-from kurt2rt.cli.study_run import LoopOptions, job_parts, study_run
+from kurt2rt.cli.study_run import EngineOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
@@ -27,11 +28,11 @@ _WORLDS = {"streets": "streets-SEED"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Options(LoopOptions):
+class _Options(EngineOptions):
     """Options of `kurt2rt study transfer`."""
 
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
-    teacher: Annotated[str, teacher_option("ordinary")] = "ordinary"
+    teacher: Teacher = DEFAULT_TEACHER
     there: Annotated[
         str | None,
         typer.Option(
@@ -50,7 +51,7 @@ class _Options(LoopOptions):
             show_default=False,
         ),
     ] = None
-    after: Annotated[
+    checkpoint: Annotated[
         list[int] | None,
         typer.Option(
             min=0,
@@ -68,10 +69,10 @@ class _Options(LoopOptions):
             show_default=False,
         ),
     ] = None
-    controls: Annotated[
+    baselines: Annotated[
         bool,
         typer.Option(
-            "--controls",
+            "--baselines",
             help="Also let the teacher of the new world answer questions only, and teach there robots that know "
             "nothing from home.",
         ),
@@ -92,9 +93,9 @@ def transfer(options: _Options) -> None:
     policy's own drive from the same start. The result is a curve: the share of
     robots that are right, by presses.
 
-    For example, other rooms for each robot, with controls; and other streets:
+    For example, other rooms for each robot, with baselines; and other streets:
 
-        kurt2rt study transfer --controls
+        kurt2rt study transfer --baselines
         kurt2rt study transfer --task streets --teacher superhuman
 
     Results are kept in --out with hashes of what made them; a run that was
@@ -109,11 +110,11 @@ def transfer(options: _Options) -> None:
     places = options.world or [_WORLDS.get(shipped.name, "rooms-SEED")]
     plan = make_plan(
         taught_by_named(shipped, options.teacher),
-        NewWorlds(tuple(places), tuple(sorted(set(options.after or AFTER))), options.seconds),
+        NewWorlds(tuple(places), tuple(sorted(set(options.checkpoint or AFTER))), options.seconds),
         parse_seeds(options.seeds),
-        (taught_on_by(options.there), *(CONTROLS if options.controls else ())),
+        (taught_on_by(options.there), *(CONTROLS if options.baselines else ())),
         parts,
-        loops=options.requested_loops(),
+        engine=options.requested_engine(),
     )
     figure = options.out / "transfer.png"
     with study_run(plan, parts, options) as bar:

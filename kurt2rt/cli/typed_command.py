@@ -12,7 +12,7 @@ from typer.models import ArgumentInfo, OptionInfo
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-_LEFT_OUT = {"jobs", "on", "out", "exams", "lessons", "as_json"}
+_LEFT_OUT = {"jobs", "cluster", "out", "engine", "as_json"}
 """Options that decide no number, unless a command states them."""
 
 

@@ -54,9 +54,9 @@ _Limit = Annotated[
 _Live = Annotated[
     bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
 ]
-_As = Annotated[
+_Device = Annotated[
     str | None,
-    typer.Option("--as", help="With --live, ask as this paired device. Default: as an onlooker of this machine."),
+    typer.Option(help="With --live, ask as this paired device. Default: as an onlooker of this machine."),
 ]
 _Robot = Annotated[
     str | None, typer.Option(help="With --live, address of the robot. Default: as noted with the pairing.")
@@ -78,7 +78,7 @@ def why(
     runs: RunsFolder = None,
     limit: _Limit = _STRETCHES,
     live: _Live = False,
-    name: _As = None,
+    device: _Device = None,
     robot: _Robot = None,
     port: _Port = None,
     settings: RuntimeSettingsName = "default",
@@ -105,10 +105,10 @@ def why(
     if live:
         if run is not None or at is not None or from_s or to_s is not None:
             raise typer.BadParameter("is of now; leave out run, --at, --from and --to", param_hint="--live")
-        _show_live(service, name, robot, port, picture, as_json=as_json)
+        _show_live(service, device, robot, port, picture, as_json=as_json)
         return
-    if name is not None or robot is not None or port is not None:
-        raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
+    if device is not None or robot is not None or port is not None:
+        raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--device, --robot, --port")
     found = find_run(run, runs or Path(service.recordings))
     recorded = read_run(found, partial=at is None)
     console = console_of()

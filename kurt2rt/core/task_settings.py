@@ -17,7 +17,7 @@ from kurt2rt.core.lesson_speed import SLOWEST
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
-from kurt2rt.core.teacher_settings import QUICK_TEACHER, SUPERHUMAN, TeacherProfile, load_teacher
+from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile, load_teacher
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -126,9 +126,6 @@ class TeachingSettings(Settings):
     reposition_every_s: Seconds = 0.0
     """Interval at which the robot is set down elsewhere; 0: never."""
     reposition_to: Place = "starts"
-    default_teacher: Annotated[str, Field(min_length=1, max_length=256)] = SUPERHUMAN
-    """Scripted teacher of `kurt2rt demo`, `paper`, `run --auto` and `teach --auto` if the command line names none: a
-    name in `config/teachers`, or a path."""
     teacher: TeacherSettings
     profile: TeacherProfile = QUICK_TEACHER
     """Teacher by name; its own limits count instead of `teacher` where it has some."""
@@ -319,13 +316,13 @@ def installed_task(named: str) -> str:
     return named
 
 
-def taught_by_named(task: TaskSettings, name_or_path: str | None) -> TaskSettings:
-    """Return a copy of the task that a teacher by name or path teaches; None: its default teacher.
+def taught_by_named(task: TaskSettings, name_or_path: str) -> TaskSettings:
+    """Return a copy of the task that a teacher by name or path teaches.
 
     Raises:
         hal.settings.SettingsError: for a missing or invalid file.
     """
-    return taught_by(task, load_teacher(name_or_path or task.teaching.default_teacher))
+    return taught_by(task, load_teacher(name_or_path))
 
 
 def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:

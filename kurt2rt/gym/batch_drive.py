@@ -18,7 +18,7 @@ from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.moment import Moment
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
-_ON_THE_BUS = 'drive on the CAN bus: loop="bus"'
+_ON_THE_BUS = 'drive on the CAN bus: engine="can"'
 
 
 class BatchDrive:

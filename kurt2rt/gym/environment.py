@@ -19,10 +19,10 @@ from hal.simulation import Pose, Position, SimulationFactory
 from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed, load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
+from kurt2rt.gym.engines import open_drive, read_engine
 from kurt2rt.gym.episode_setup import EpisodeSetup
-from kurt2rt.gym.loops import open_drive, read_loop
 from kurt2rt.gym.moment import AgentDrive, Moment
 from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, build_reward
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
@@ -56,7 +56,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         reward: str | None = None,
         ends_at: Collection[str] = (Ending.COLLISION.value, Ending.STUCK.value),
         duration_s: float | None = None,
-        loop: str = DriveLoop.BUS.value,
+        engine: str = Engine.CAN.value,
         render_mode: str | None = None,
     ) -> None:
         """Load the task.
@@ -69,7 +69,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             reward: source of the rewards, "judge" or "teacher"; None: the judge if the task has one.
             ends_at: endings that terminate an episode, of "collision" and "stuck".
             duration_s: time after which an episode is truncated, in s; None: that of the task's exam.
-            loop: "bus" drives over the simulated CAN bus, "batch" in the compiled batch, with the same numbers.
+            engine: "can" drives over the simulated CAN bus, "compiled" in the compiled batch, with the same numbers.
             render_mode: "rgb_array" for pictures of the world; None for none.
 
         Raises:
@@ -83,7 +83,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         require_course(self._factory, self._task, [self._world])
         self._reward = build_reward(self._task, reward)
         self._ends_at = read_endings(ends_at)
-        self.loop = read_loop(loop)
+        self.engine = read_engine(engine)
         """Loop that drives the robot."""
         self._policy = self._task.policy.build(self._settings.infrared)
         cycle_s = self._settings.cycle_s
@@ -131,7 +131,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             averages=self._averages,
             judged=isinstance(self._reward, JudgeReward),
         )
-        self._drive = open_drive(self.loop, self._factory, setup)
+        self._drive = open_drive(self.engine, self._factory, setup)
         return self._observation(self._drive.moment), self._info(self._drive.moment)
 
     def step(self, action: np.int64 | int) -> tuple[Observation, float, bool, bool, Info]:

@@ -5,8 +5,8 @@ from typing import Any
 
 from gymnasium.vector import SyncVectorEnv
 
+from kurt2rt.gym.engines import quickest_engine
 from kurt2rt.gym.environment import TaskEnvironment
-from kurt2rt.gym.loops import quickest_loop
 
 
 def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
@@ -17,5 +17,5 @@ def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
     Raises:
         hal.settings.SettingsError: for a task, world or option that cannot be used.
     """
-    options.setdefault("loop", quickest_loop().value)
+    options.setdefault("engine", quickest_engine().value)
     return SyncVectorEnv([partial(TaskEnvironment, **options)] * num_envs)

@@ -77,7 +77,7 @@ def examine(
     knowledge: Knowledge,
     *,
     worlds: Sequence[str] | None = None,
-    seeds: Sequence[int] = (0,),
+    seeds: Sequence[int] = (1,),
     seconds: float | None = None,
 ) -> Examination:
     """Let a robot drive by its knowledge, without a teacher, in each world with each seed.

@@ -79,10 +79,10 @@ def teach(
     path: str | PathLike[str],
     *,
     task: str = "wall_following",
-    seed: int = 0,
+    seed: int = 1,
     seconds: float | None = None,
     robot: str | None = None,
-    teacher: str = "superhuman",
+    teacher: str = "ordinary",
 ) -> Knowledge:
     """Let a scripted teacher teach a simulated robot; return the knowledge, kept in a new file.
 
@@ -92,7 +92,7 @@ def teach(
         seed: of the robot and the teacher.
         seconds: robot time in which the teacher answers; corrections last as long. None: as the task says.
         robot: name or path of the robot's settings; None: the robot of the task.
-        teacher: name or path of the scripted teacher; `ordinary` has a person's delays and slips, and takes longer.
+        teacher: name or path of the scripted teacher; `superhuman` has none of a person's delays and slips.
 
     Raises:
         UserError: as kurt2rt.Error, there is a file already, or settings do not fit.

@@ -9,7 +9,7 @@ from kurt2rt.experiments.lockstep.learner_setting import learner_setting as sett
 
 
 def learner_setting(
-    task: str = "wall_following", *, robot: str | None = None, seed: int = 0, gate: float | None = None
+    task: str = "wall_following", *, robot: str | None = None, seed: int = 1, gate: float | None = None
 ) -> LearnerSetting:
     """Return the setting that a learner of a task is made with: actions, weights, R and the rest.
 

@@ -56,7 +56,7 @@ class SimulatedRobot:
         *,
         task: str | None = None,
         world: str | None = None,
-        seed: int = 0,
+        seed: int = 1,
         knowledge: Knowledge | None = None,
         path: str | PathLike[str] | None = None,
         robot: str | None = None,

@@ -44,7 +44,7 @@ class ContactBody:
         for left_cm_s, right_cm_s in missed:
             self._step(left_cm_s, right_cm_s)
         if self._body.pose != (record["last_x_m"], record["last_y_m"], record["last_heading_rad"]):
-            raise BatchRefusedError("the physics engine moves a free robot otherwise here", do="give --exams bus")
+            raise BatchRefusedError("the physics engine moves a free robot otherwise here", do="give --engine can")
         self._step(*present)
         body = self._body
         record["x_m"], record["y_m"], record["heading_rad"] = body.pose

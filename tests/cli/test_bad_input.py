@@ -17,7 +17,7 @@ from tests.cli.helpers import CommandLine, unknown_name
 
 NOT_OURS = "to whom it may concern\n"
 
-EVERY_WRITER = [("lesson", "--knowledge"), ("run", "--seconds", "0.1", "--knowledge")]
+EVERY_WRITER = [("train", "--knowledge"), ("run", "--seconds", "0.1", "--knowledge")]
 EVERY_READER = [("exam",), *(("knowledge", name) for name in ("show", "lessons", "check", "table", "undo"))]
 
 
@@ -77,7 +77,7 @@ def test_writer_below_a_file_is_refused_and_keeps_it(
     assert (tmp_path / "letter.txt").read_text(encoding="utf-8") == NOT_OURS
 
 
-@pytest.mark.parametrize("command", ["demo", "lesson"])
+@pytest.mark.parametrize("command", ["demo", "train"])
 def test_out_that_is_a_file_is_refused_and_keeps_it(kurt2rt: CommandLine, tmp_path: Path, command: str) -> None:
     (tmp_path / "out").write_text(NOT_OURS, encoding="utf-8")
     assert "out" in kurt2rt.refused(command, "--out", tmp_path / "out")
@@ -116,7 +116,7 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
     service = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
 
     assert why in kurt2rt.refused("exam", mine, "--task", task)
-    assert why in kurt2rt.refused("lesson", "--knowledge", mine, "--task", task)
+    assert why in kurt2rt.refused("train", "--knowledge", mine, "--task", task)
     assert why in kurt2rt.refused("run", "--knowledge", mine, "--settings", service, "--seconds", "1")
     assert lessons_in(mine) == taught
 
@@ -125,12 +125,12 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
     ("words", "why"),
     [
         (("demo", "--task", "nope"), unknown_name("tasks", "nope")),
-        (("lesson", "--task", "nope"), unknown_name("tasks", "nope")),
-        (("lesson", "--robot-settings", "nope"), unknown_name("robots", "nope")),
+        (("train", "--task", "nope"), unknown_name("tasks", "nope")),
+        (("train", "--robot-settings", "nope"), unknown_name("robots", "nope")),
         (("demo", "--robot-settings", "nope"), unknown_name("robots", "nope")),
         (("run", "--settings", "nope"), unknown_name("runtime", "nope")),
         (("run", "--world", "nope", "--seconds", "1"), unknown_name("worlds", "nope")),
-        (("lesson", "--task", "wal_folowing"), " wall_following?"),
+        (("train", "--task", "wal_folowing"), " wall_following?"),
         (("sim", "--world", "manhatan"), " manhattan?"),
         (("sim", "--world", "cave.png"), "cave.png: "),
         (("run", "--world", "maps/cave.PGM"), " maps/cave.yaml "),
@@ -153,14 +153,14 @@ def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tup
         (("run", "--seconds", "inf"), "--seconds"),
         (("run", "--seconds", "0"), "--seconds"),
         (("run", "--teacher", "stranger"), "'stranger'"),
-        (("lesson", "--seeds", "a-b"), "'a-b'"),
-        (("lesson", "--seeds", "5-3"), "'5-3'"),
-        (("lesson", "--seeds", "1,5-3"), "'1,5-3'"),
-        (("lesson", "--seeds", "1,1"), "twice"),
-        (("lesson", "--seeds", "1-99999999999"), " 100000 "),
+        (("train", "--seeds", "a-b"), "'a-b'"),
+        (("train", "--seeds", "5-3"), "'5-3'"),
+        (("train", "--seeds", "1,5-3"), "'1,5-3'"),
+        (("train", "--seeds", "1,1"), "twice"),
+        (("train", "--seeds", "1-99999999999"), " 100000 "),
         (("status", ""), "folder"),
-        (("lesson", "--seeds", "1,2", "--knowledge", "mine"), "--out"),
-        (("lesson", "--seed", "-1"), "--seed"),
+        (("train", "--seeds", "1,2", "--knowledge", "mine"), "--out"),
+        (("train", "--seed", "-1"), "--seed"),
         (("knowledge", "show", "mine", "--limit", "0"), "--limit"),
         (("fly",), "'fly'"),
         (("demo", "--fast"), "--fast"),
@@ -172,7 +172,7 @@ def test_option_with_a_senseless_value_is_misuse(kurt2rt: CommandLine, words: tu
     assert why in kurt2rt.misused(*words)
 
 
-@pytest.mark.parametrize("command", ["lesson", "demo", "exam", "run"])
+@pytest.mark.parametrize("command", ["train", "demo", "exam", "run"])
 def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path, command: str
 ) -> None:
@@ -184,7 +184,7 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
     task = changed("tasks", "wall_following", tmp_path, weigh)
     service = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
     words: tuple[str | Path, ...] = {
-        "lesson": ("--task", task),
+        "train": ("--task", task),
         "demo": ("--task", task),
         "exam": (lessons, "--task", task, "--world", "a"),
         "run": ("--settings", service, "--seconds", "1", "--knowledge", tmp_path / "new.knowledge"),
@@ -200,7 +200,7 @@ def test_a_weight_for_a_feature_that_there_is_not_is_refused(
 
 @pytest.mark.parametrize(
     ("where", "command"),
-    [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("lesson",)), ("exam", ("lesson", "--seeds", "1,2"))],
+    [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("train",)), ("exam", ("train", "--seeds", "1,2"))],
 )
 def test_task_with_unknown_world_is_refused_before_the_lesson(
     kurt2rt: CommandLine, tmp_path: Path, where: str, command: tuple[str, ...]
@@ -232,7 +232,7 @@ def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp
     assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0
 
 
-@pytest.mark.parametrize("command", ["demo", "lesson", "run", "study compare", "study transfer"])
+@pytest.mark.parametrize("command", ["demo", "train", "run", "study compare", "study transfer"])
 def test_task_of_another_robot_is_refused_with_that_robot(kurt2rt: CommandLine, command: str) -> None:
     refused = kurt2rt.refused(*command.split(), "--task", "school/fleeing", "--robot-settings", "kurt2")
     assert "task school/fleeing: is for the robot school (got the robot kurt2" in refused

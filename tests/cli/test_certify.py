@@ -48,7 +48,7 @@ def test_task_that_the_batch_does_not_know_is_driven_on_the_bus(kurt2rt: Command
     said = kurt2rt("study", "certify", lessons, *SHORT, *ALONE)
     assert said.exit_code == 0, said.err
     assert "stands at a doubt without a teacher" in said.err
-    assert "All runs were driven on the CAN loop" in said.out
+    assert "All runs were driven on the CAN bus" in said.out
 
 
 def test_exam_repeats_a_run_with_a_broken_sensor(kurt2rt: CommandLine, lessons: Path) -> None:

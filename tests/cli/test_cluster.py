@@ -34,7 +34,7 @@ from tests.experiments.study.test_parcel import Job
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
 ENVIRONMENT.pop("COLUMNS", None)  # many workers of pytest have one
 LESSON = (
-    *("lesson", "--task", "circle", "--seeds", "3-8", "--set", "teaching.supervised_s=5"),
+    *("train", "--task", "circle", "--seeds", "3-8", "--set", "teaching.supervised_s=5"),
     *("--set", "teaching.corrections_s=5", "--set", "exam.duration_s=10"),
 )
 
@@ -65,22 +65,22 @@ def test_study_and_worker_without_a_cluster_file_are_refused(kurt2rt: CommandLin
     Path("other").chmod(0o600)
     with pytest.raises(ClusterError, match="local: is not a cluster file"), open_executor(Path("local"), 1):
         pytest.fail("a study began")
-    assert "other: is not a cluster file" in kurt2rt.refused("study", "worker", "--to", "other")
+    assert "other: is not a cluster file" in kurt2rt.refused("study", "worker", "--cluster", "other")
     cluster.chmod(0o640)
     assert f"others may read it, and run programs by it; chmod 600 {cluster}" in kurt2rt.refused(
-        "study", "worker", "--to", cluster
+        "study", "worker", "--cluster", cluster
     )
 
 
 def test_worker_new_makes_a_private_file_and_overwrites_none(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    made = kurt2rt("study", "worker", "--new", "lab.cluster", "--at", "tls://lab:8786")
+    made = kurt2rt("study", "worker", "--new", "lab.cluster", "--scheduler", "tls://lab:8786")
     assert made.out.splitlines()[1] == (
         "scheduler  dask scheduler --no-dashboard --protocol tls --host lab --port 8786 "
         "--tls-ca-file lab.cluster --tls-cert lab.cluster --tls-key lab.cluster"
     )
     assert (tmp_path / "lab.cluster").stat().st_mode & 0o777 == 0o600
     assert read_cluster_file(tmp_path / "lab.cluster").address == "tls://lab:8786"
-    assert "File exists" in kurt2rt.refused("study", "worker", "--new", "lab.cluster", "--at", "tls://lab:8786")
+    assert "File exists" in kurt2rt.refused("study", "worker", "--new", "lab.cluster", "--scheduler", "tls://lab:8786")
 
 
 async def test_program_without_the_cluster_file_reaches_no_port(cluster: Path) -> None:
@@ -122,7 +122,9 @@ def listening() -> set[int]:
     return {each.laddr.port for each in ports if each.status == psutil.CONN_LISTEN}
 
 
-@pytest.mark.parametrize("words", [("paper", "--on", "x", "--task", "circle"), ("study", "worker", "--to", "x")])
+@pytest.mark.parametrize(
+    "words", [("study", "paper", "--cluster", "x", "--task", "circle"), ("study", "worker", "--cluster", "x")]
+)
 def test_cluster_without_dask_names_its_extra(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, words: tuple[str, ...]
 ) -> None:
@@ -141,7 +143,7 @@ def test_broken_file_of_dask_is_one_line_that_names_it(
         monkeypatch.delitem(sys.modules, name)
     monkeypatch.setenv("DASK_CONFIG", str(tmp_path))
     (tmp_path / "mine.yaml").write_text("a: [")
-    refusal = kurt2rt.refused("study", "worker", "--to", "x")
+    refusal = kurt2rt.refused("study", "worker", "--cluster", "x")
     assert "dask does not start with its own settings (" in refusal
     assert str(tmp_path / "mine.yaml") in refusal
 
@@ -223,11 +225,11 @@ class Cluster:
         self.workers = [self.start_worker(), self.start_worker()]
 
     def start_worker(self) -> "subprocess.Popen[str]":
-        words = (sys.executable, "-m", "kurt2rt.cli.main", "study", "worker", "--to", str(self.file))
+        words = (sys.executable, "-m", "kurt2rt.cli.main", "study", "worker", "--cluster", str(self.file))
         return self._stack.enter_context(started(*words, folder=self._folder, until="worker  tls://"))[0]
 
     def lesson(self, out: str) -> "subprocess.Popen[str]":
-        words = (sys.executable, "-m", "kurt2rt.cli.main", *LESSON, "--on", str(self.file), "--out", out)
+        words = (sys.executable, "-m", "kurt2rt.cli.main", *LESSON, "--cluster", str(self.file), "--out", out)
         return subprocess.Popen(
             words,
             cwd=self._folder,

@@ -7,7 +7,7 @@ from tests.cli.helpers import CommandLine
 
 SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
-    *("--set", "exam.worlds=[a]", "--seeds", "3904", "--after", "1", "--jobs", "1", "--out", "made"),
+    *("--set", "exam.worlds=[a]", "--seeds", "3904", "--checkpoint", "1", "--jobs", "1", "--out", "made"),
 )
 NEVER = """
 class Never:

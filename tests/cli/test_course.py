@@ -12,8 +12,8 @@ NO_POST = "task circle: course rounds: world A has 0 round obstacles; choose one
 @pytest.mark.parametrize(
     "words",
     [
-        ("lesson", "--set", "teaching.world=a"),
-        ("lesson", "--seeds", "1,2", "--set", "exam.worlds=[one_object, a]"),
+        ("train", "--set", "teaching.world=a"),
+        ("train", "--seeds", "1,2", "--set", "exam.worlds=[one_object, a]"),
         ("demo", "--set", "exam.worlds=[one_object, a]"),
     ],
     ids=" ".join,

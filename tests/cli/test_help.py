@@ -1,3 +1,4 @@
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -41,11 +42,17 @@ def test_help_mentions_every_option_and_explains_it(
     said = kurt2rt(*words, "--help")
     assert said.exit_code == 0
     assert said.err == ""
+    assert not re.search(r"For example:\s*\n kurt2rt ", said.out), "an example is not indented"
     for name in names:
         lines = [line.replace("... ", " ") for line in said.out.splitlines() if line.startswith("│")]
         (line, *_) = [line for line in lines if f" {name} " in line]
         explained = line.strip("│ ").split(name, 1)[1]
         assert len(explained.split()) > 2, f"{' '.join(words)} {name} is not explained"
+
+
+def test_help_of_all_commands_fits_a_screen_of_50_lines(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert len(kurt2rt("--help").out.splitlines()) <= 50
 
 
 def test_version_is_that_of_the_installed_package(kurt2rt: CommandLine) -> None:

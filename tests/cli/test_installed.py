@@ -21,12 +21,12 @@ from tests.test_imports import PACKAGES
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 FOR_USERS = PROJECT["optional-dependencies"].keys() - {"test"}
 REFUSED = {
-    "recording": ("replay", "why", "recover copies", "run --record runs", "run --live-view 0"),
+    "recording": ("replay", "why", "recording repair", "run --record runs", "run --live-view 0"),
     "simulation": ("run", "sim --bus shared:base", "demo", "exam base.knowledge", "knowledge graph base.knowledge"),
     "page": ("teach --phone",),
-    "studies": ("study worker --to x",),
-    "export": ("export lerobot",),
-    "ros": ("ros --as base",),
+    "studies": ("study worker --cluster x",),
+    "export": ("recording export",),
+    "ros": ("ros --device base",),
 }
 """Commands that need an extra, by the extra."""
 NEEDED_BY_NO_COMMAND = {"gymnasium", "llvmlite", "numba", "pytest"}
@@ -105,7 +105,7 @@ def test_command_without_its_extra_names_the_extra(extra: str, said: dict[str, S
 def test_study_without_scipy_is_refused_before_its_jobs(kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy", None)
     monkeypatch.delitem(sys.modules, "scipy.special", raising=False)
-    line = kurt2rt.refused("lesson", "--seeds", "0-1", "--out", "lessons")
+    line = kurt2rt.refused("train", "--seeds", "0-1", "--out", "lessons")
     assert line.endswith("pip install '.[studies]' in kurt2rt's folder")
     assert not Path("lessons").exists()
 

@@ -52,7 +52,7 @@ def test_interrupt_in_a_study_says_how_it_goes_on(
         raise KeyboardInterrupt
 
     monkeypatch.setattr("kurt2rt.cli.study_run.run_missing", interrupted)
-    said = kurt2rt(study, "--quick", "--out", "made")
+    said = kurt2rt("study", study, "--quick", "--out", "made")
     assert (said.exit_code, said.out) == (130, "")
     assert "stopped; finished jobs are in made" in said.err
     assert "The same command goes on from there" in said.err

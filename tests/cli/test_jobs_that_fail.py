@@ -31,6 +31,6 @@ def test_a_lesson_of_many_says_whose_file_is_of_no_use(kurt2rt: CommandLine) -> 
     made.mkdir()
     (made / "wall_following-7.knowledge").touch()
     (made / "wall_following-7.knowledge.lock").mkdir()
-    said = kurt2rt("lesson", "--seeds", "7", "--jobs", "1", "--out", "made")
+    said = kurt2rt("train", "--seeds", "7", "--jobs", "1", "--out", "made")
     assert said.exit_code == 2
     assert said.err.splitlines()[-1].startswith("kurt2rt: wall_following, seed 7:")

@@ -12,14 +12,14 @@ WALLS = str(STORED / "walls.mcap")
 SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1", "--set", "exam.duration_s=1")
 REPORTS: dict[tuple[str, ...], set[str]] = {
     ("demo", *SHORT, "--set", "exam.worlds=[a]"): {"lesson", "task", "exams", "picture", "knowledge"},
-    ("lesson", *SHORT): {"lesson", "task", "exams", "knowledge"},
-    ("lesson", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher"},
+    ("train", *SHORT): {"lesson", "task", "exams", "knowledge"},
+    ("train", "--seeds", "7", "--jobs", "1", *SHORT): {"task", "robots", "teacher"},
     ("exam", "mine.knowledge", "--world", "a", *SHORT[-2:]): {"knowledge", "seed", "task", "exams"},
     ("why", WALLS, "--at", "1"): {"run", "at_s", "facts", "tips", "difference", "trouble", "picture"},
     ("why", WALLS, "--to", "5", "--picture", "made.svg"): {
         *("run", "task", "from_s", "to_s", "ticks", "missed", "stretches", "notes", "trouble", "picture")
     },
-    ("export", "lerobot", WALLS, "--out", "set"): {"folder", "fps", "runs"},
+    ("recording", "export", WALLS, "--out", "set"): {"folder", "fps", "runs"},
     ("pair", "--list"): {"paired"},
     ("knowledge", "list", "."): {"files", "unreadable"},
     ("knowledge", "lessons", "mine.knowledge"): {"file", "lessons", "older"},

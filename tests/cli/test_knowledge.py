@@ -30,7 +30,7 @@ def folded(knowledge: Path) -> RlaSystem:
     "words",
     [
         *(("list",), ("show",), ("check",), ("lessons",), ("undo", "--dry-run")),
-        ("undo", "--of", "scripted teacher", "--dry-run"),
+        ("undo", "--teacher", "scripted teacher", "--dry-run"),
     ],
     ids=" ".join,
 )
@@ -48,7 +48,7 @@ def test_undo_all_of_the_critic(kurt2rt: CommandLine, tmp_path: Path, lessons: P
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     before = folded(mine)
     first, second = before.rlas[:2]
-    assert " critic " in kurt2rt.refused("knowledge", "undo", mine, "--of", "critic")
+    assert " critic " in kurt2rt.refused("knowledge", "undo", mine, "--teacher", "critic")
     with Journal.read_only(mine) as look:
         binding = look.binding
     with Journal.open(mine, binding) as journal:
@@ -58,18 +58,21 @@ def test_undo_all_of_the_critic(kurt2rt: CommandLine, tmp_path: Path, lessons: P
         )
         journal.append([JournalEntry(event, utc_now()) for event in events])
 
-    listed = kurt2rt("knowledge", "lessons", mine, "--of", "critic").out
+    listed = kurt2rt("knowledge", "lessons", mine, "--teacher", "critic").out
     assert listed.index("withdrawn") < listed.index("punished")
     assert "scripted" not in listed
     assert "asks again" in kurt2rt("knowledge", "show", mine, "--limit", "2").out
-    said = kurt2rt("knowledge", "undo", mine, "--of", "critic", "--no-preview")
+    said = kurt2rt("knowledge", "undo", mine, "--teacher", "critic", "--no-preview")
     withdrawn, blamed = f"RLA {second.rla_id}, withdraw", f"RLA {first.rla_id}, blame"
     assert named_in(said.out) == [withdrawn, blamed]
     assert folded(mine).rlas == before.rlas
     assert kurt2rt("knowledge", "check", mine).exit_code == 0
-    assert kurt2rt("knowledge", "undo", mine, "--of", "critic", "--lesson", "blame").exit_code == 2
-    assert kurt2rt("knowledge", "redo", mine, "--of", "critic", "--lesson", "blame").exit_code == 2
-    assert named_in(kurt2rt("knowledge", "redo", mine, "--of", "critic", "--no-preview").out) == [blamed, withdrawn]
+    assert kurt2rt("knowledge", "undo", mine, "--teacher", "critic", "--lesson", "blame").exit_code == 2
+    assert kurt2rt("knowledge", "redo", mine, "--teacher", "critic", "--lesson", "blame").exit_code == 2
+    assert named_in(kurt2rt("knowledge", "redo", mine, "--teacher", "critic", "--no-preview").out) == [
+        blamed,
+        withdrawn,
+    ]
 
 
 def named_in(out: str) -> list[str]:
@@ -149,12 +152,12 @@ def test_list_one_file_or_missing_folder(kurt2rt: CommandLine, tmp_path: Path, l
 
 
 def test_export_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
-    assert kurt2rt("knowledge", "export", lessons, "out.zip").out.startswith("export  out.zip: ")
-    taken = kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge")
+    assert kurt2rt("knowledge", "export", lessons, "--out", "out.zip").out.startswith("export  out.zip: ")
+    taken = kurt2rt("knowledge", "import", "out.zip", "--out", "theirs.knowledge")
     assert taken.out.startswith("import  theirs.knowledge: ")
     assert folded(Path("theirs.knowledge")).rlas == folded(lessons).rlas
     Path("torn.zip").write_bytes(Path("out.zip").read_bytes()[:-500])
-    assert "torn.zip: " in kurt2rt.refused("knowledge", "import", "torn.zip", "--into", "k")
+    assert "torn.zip: " in kurt2rt.refused("knowledge", "import", "torn.zip", "--out", "k")
 
 
 def test_contradictions_name_the_odd_lesson(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:

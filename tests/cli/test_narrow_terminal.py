@@ -39,8 +39,8 @@ def test_commands_break_no_word_at_80_columns(
     (tmp_path / "taught.knowledge").write_bytes(lessons.read_bytes())
     folder = tmp_path / "a_folder_with_a_rather_long_name" / "and_another_one_that_is_as_long"
     folder.mkdir(parents=True)
-    kurt2rt("knowledge", "export", "taught.knowledge", "taught.zip")
-    assert kurt2rt("knowledge", "import", "taught.zip", "--into", folder / "from-a-friend.knowledge").exit_code == 0
+    kurt2rt("knowledge", "export", "taught.knowledge", "--out", "taught.zip")
+    assert kurt2rt("knowledge", "import", "taught.zip", "--out", folder / "from-a-friend.knowledge").exit_code == 0
     kurt2rt("pair", "a-device-with-a-long-nam")
     wide = kurt2rt(*words)
     monkeypatch.setenv("COLUMNS", "80")

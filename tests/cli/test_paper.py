@@ -1,4 +1,4 @@
-"""`kurt2rt paper` as a user meets it."""
+"""`kurt2rt study paper` as a user meets it."""
 
 from pathlib import Path
 from typing import Any
@@ -9,7 +9,7 @@ import yaml
 from config import CONFIG_DIR
 from tests.cli.helpers import CommandLine, results_in, unknown_name
 
-COMMAND = "kurt2rt paper --seeds 100 --task short.yaml --no-plain"
+COMMAND = "kurt2rt study paper --seeds 100 --task short.yaml --no-paper-defaults"
 
 
 def short_task(folder: Path, **teaching: Any) -> Path:
@@ -24,7 +24,19 @@ def short_task(folder: Path, **teaching: Any) -> Path:
 
 
 def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = ("paper", "--task", short_task(tmp_path), "--seeds", "100", "--jobs", "1", "--no-plain", "--out", "made")
+    words = (
+        "study",
+        "paper",
+        "--task",
+        short_task(tmp_path),
+        "--seeds",
+        "100",
+        "--jobs",
+        "1",
+        "--no-paper-defaults",
+        "--out",
+        "made",
+    )
     first = kurt2rt(*words)
     assert first.exit_code == 0, first.err
     assert "short circle" in first.out
@@ -51,30 +63,30 @@ def test_a_task_of_ones_own_is_taught_examined_and_reported(kurt2rt: CommandLine
 
 
 def test_an_unknown_task_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("paper", "--task", "sledging", "--out", "made")
+    said = kurt2rt.refused("study", "paper", "--task", "sledging", "--out", "made")
     assert unknown_name("tasks", "sledging") in said
     assert not Path("made").exists()
 
 
 def test_an_unknown_world_is_refused_before_anything_runs(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    said = kurt2rt.refused("paper", "--task", short_task(tmp_path, world="nowhere"), "--out", "made")
+    said = kurt2rt.refused("study", "paper", "--task", short_task(tmp_path, world="nowhere"), "--out", "made")
     assert unknown_name("worlds", "nowhere") in said
     assert not Path("made").exists()
 
 
 def test_a_folder_that_cannot_be_made_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
     Path("made").write_text("a file")
-    said = kurt2rt.refused("paper", "--task", short_task(tmp_path), "--out", "made")
+    said = kurt2rt.refused("study", "paper", "--task", short_task(tmp_path), "--out", "made")
     assert "made" in said
 
 
 def test_seeds_that_are_none_are_refused(kurt2rt: CommandLine) -> None:
-    assert "'many'" in kurt2rt.misused("paper", "--seeds", "many")
+    assert "'many'" in kurt2rt.misused("study", "paper", "--seeds", "many")
 
 
 @pytest.mark.deep
 def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine) -> None:
-    words = ("paper", "--quick", "--jobs", "2")
+    words = ("study", "paper", "--quick", "--jobs", "2")
     first = kurt2rt(*words)
     assert first.exit_code == 0, first.err
     assert "A part only" in first.out
@@ -92,23 +104,33 @@ def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine
     assert changed == [place == 3 for place in range(28)]
 
 
-@pytest.mark.deep  # quick ones: a lesson of many robots in test_lesson_in_batch, and the witness of a job
+@pytest.mark.deep  # quick ones: a lesson of many robots in test_engine, and the witness of a job
 def test_paper_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = ("paper", "--task", short_task(tmp_path), "--seeds", "100-101", "--jobs", "1", "--no-plain")
-    told = {loop: kurt2rt(*words, "--out", loop, "--lessons", loop, "--exams", loop) for loop in ("batch", "bus")}
+    words = (
+        "study",
+        "paper",
+        "--task",
+        short_task(tmp_path),
+        "--seeds",
+        "100-101",
+        "--jobs",
+        "1",
+        "--no-paper-defaults",
+    )
+    told = {engine: kurt2rt(*words, "--out", engine, "--engine", engine) for engine in ("compiled", "can")}
     assert [each.exit_code for each in told.values()] == [0, 0]
-    assert "2 jobs in the batch, 2 of them on the CAN bus too" in told["batch"].err
-    assert results_in("batch") == results_in("bus")
-    assert len(list(Path("batch/results/witnesses/shipped").glob("short_circle-*.json"))) == 2
+    assert "2 jobs in the batch, 2 of them on the CAN bus too" in told["compiled"].err
+    assert results_in("compiled") == results_in("can")
+    assert len(list(Path("compiled/results/witnesses/shipped").glob("short_circle-*.json"))) == 2
 
 
 @pytest.mark.deep
 def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    words = ("paper", "--task", short_task(tmp_path), "--jobs", "1", "--no-plain", "--out", "made")
-    kurt2rt(*words, "--seeds", "100", "--lessons", "bus", "--exams", "bus")
+    words = ("study", "paper", "--task", short_task(tmp_path), "--jobs", "1", "--no-paper-defaults", "--out", "made")
+    kurt2rt(*words, "--seeds", "100", "--engine", "can")
     (path,) = Path("made/results/shipped").glob("*.json")
     stamp_ns = path.stat().st_mtime_ns
-    told = kurt2rt(*words, "--seeds", "100-101", "--lessons", "batch", "--exams", "batch")
+    told = kurt2rt(*words, "--seeds", "100-101", "--engine", "compiled")
     assert told.exit_code == 0, told.err
     assert path.stat().st_mtime_ns == stamp_ns
     # The robot of the bus has a witness all the same, so that the study has its share of them.
@@ -117,8 +139,8 @@ def test_paper_goes_on_in_the_batch_where_it_was_on_the_bus(kurt2rt: CommandLine
 
 @pytest.mark.deep
 def test_paper_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
-    for loop in ("batch", "bus"):
-        told = kurt2rt("paper", "--quick", "--jobs", "2", "--out", loop, "--lessons", loop, "--exams", loop)
+    for engine in ("compiled", "can"):
+        told = kurt2rt("study", "paper", "--quick", "--jobs", "2", "--out", engine, "--engine", engine)
         assert told.exit_code == 0, told.err
-    assert results_in("batch") == results_in("bus")
-    assert len(results_in("bus")) == 28
+    assert results_in("compiled") == results_in("can")
+    assert len(results_in("can")) == 28

@@ -1,4 +1,4 @@
-"""`kurt2rt phases` as a user meets it."""
+"""`kurt2rt study phases` as a user meets it."""
 
 import json
 from pathlib import Path
@@ -7,18 +7,18 @@ import pytest
 
 from tests.cli.helpers import CommandLine, results_in, unknown_name
 
-QUICK = ("phases", "--quick", "--seeds", "0", "--jobs", "1")
+QUICK = ("study", "phases", "--quick", "--seeds", "0", "--jobs", "1")
 
 
 def test_phases_of_a_task_without_phases_are_refused(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("phases", "--task", "circle", "--out", "made")
+    said = kurt2rt.refused("study", "phases", "--task", "circle", "--out", "made")
     assert "task circle: " in said
     assert "`phases:`" in said
     assert not Path("made").exists()
 
 
 def test_phases_with_an_unknown_world_are_refused(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
+    said = kurt2rt.refused("study", "phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
     assert unknown_name("worlds", "nowhere") in said
     assert not Path("made").exists()
 
@@ -49,7 +49,7 @@ def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLin
     assert again.out == first.out
     changed = [path.stat().st_mtime_ns != stamp_ns for path, stamp_ns in zip(results, stamps_ns, strict=True)]
     assert changed == [place == 4 for place in range(14)]
-    assert f"kurt2rt phases --task {task} --quick --seeds 0" in (folder / "report.html").read_text()
+    assert f"kurt2rt study phases --task {task} --quick --seeds 0" in (folder / "report.html").read_text()
 
 
 @pytest.mark.parametrize("task", ["school/fleeing", "turtlebot/wall_following"])
@@ -66,9 +66,9 @@ def test_phases_quick_trains_another_robot(kurt2rt: CommandLine, task: str) -> N
 
 @pytest.mark.deep
 def test_phases_quick_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
-    for loop in ("batch", "bus"):
-        told = kurt2rt(*QUICK, "--out", loop, "--lessons", loop, "--exams", loop)
+    for engine in ("compiled", "can"):
+        told = kurt2rt(*QUICK, "--out", engine, "--engine", engine)
         assert told.exit_code == 0, told.err
-    assert results_in("batch") == results_in("bus")
-    assert len(results_in("bus")) == 14
-    assert len(list(Path("batch/results/witnesses").glob("*/*.json"))) == 3
+    assert results_in("compiled") == results_in("can")
+    assert len(results_in("can")) == 14
+    assert len(list(Path("compiled/results/witnesses").glob("*/*.json"))) == 3

@@ -55,11 +55,11 @@ def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path, short: P
     knowledge = tmp_path / "some.knowledge"
     with open_knowledge(knowledge, run.robot, run.task) as journal:
         journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in some])
-    said = kurt2rt("replay", short, "--with", knowledge, "--limit", "3")
+    said = kurt2rt("replay", short, "--compare", knowledge, "--limit", "3")
     assert said.exit_code == 0, said.err
     assert f" {knowledge}:" in said.out
     assert " 3 of " in said.out
-    as_json = json.loads(kurt2rt("replay", short, "--with", knowledge, "--json").out)
+    as_json = json.loads(kurt2rt("replay", short, "--compare", knowledge, "--json").out)
     assert as_json["same"] is False
     assert sum(each["ticks"] for each in as_json["stretches"]) == (
         as_json["other_action"] + as_json["would_ask"] + as_json["would_drive"]
@@ -68,7 +68,7 @@ def test_other_knowledge_looks_on(kurt2rt: CommandLine, tmp_path: Path, short: P
 
 def test_no_run_and_no_knowledge_are_refused_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert str(tmp_path) in kurt2rt.refused("replay", "--runs", tmp_path)
-    assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--with", tmp_path / "nothing.knowledge")
+    assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--compare", tmp_path / "nothing.knowledge")
 
 
 def _teaches_nothing(*_: object) -> LessonResult:

@@ -23,5 +23,5 @@ def test_run_without_a_tick_is_refused_and_never_the_newest(kurt2rt: CommandLine
     assert NAME in kurt2rt.refused("replay", empty_run(tmp_path))
     knowledge = tmp_path / "some.knowledge"
     open_knowledge(knowledge, load_robot(), load_task("wall_following")).close()
-    assert NAME in kurt2rt.refused("replay", tmp_path / NAME, "--with", knowledge)
+    assert NAME in kurt2rt.refused("replay", tmp_path / NAME, "--compare", knowledge)
     assert NAME not in kurt2rt.refused("replay", "--runs", tmp_path)

@@ -49,7 +49,7 @@ def test_search_checks_once_and_says_where_it_came_from(kurt2rt: CommandLine, tm
     [
         ({"task": "sledging"}, "sledging: no such name in tasks"),
         ({"teacher": "nosuch"}, "nosuch: no such name in teachers"),
-        ({"task": "streets", "exams": "batch"}, "learning.weights.0.weight"),
+        ({"task": "streets", "engine": "compiled"}, "learning.weights.0.weight"),
         ({"search": {"seeds": {"first": 1500, "count": 2}, "worlds": ["a"]}}, "1500 is for reports"),
         ({"search": {"seeds": {"first": 0, "count": 2}, "worlds": ["nowhere"]}}, "nowhere"),
     ],

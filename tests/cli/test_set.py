@@ -13,7 +13,7 @@ KNOWLEDGE = Path("made/wall_following-1.knowledge")
 
 
 def test_set_applies_to_lesson_and_exam(kurt2rt: CommandLine) -> None:
-    taught = kurt2rt("lesson", *SHORT, "--out", "made")
+    taught = kurt2rt("train", *SHORT, "--out", "made")
     assert taught.exit_code == 0, taught.err
     assert re.search(r"^teaching, .* +3 ", taught.out, re.MULTILINE)
     examined = kurt2rt("exam", KNOWLEDGE, *BRIEF)
@@ -27,7 +27,7 @@ def test_set_applies_to_lesson_and_exam(kurt2rt: CommandLine) -> None:
 
 
 @pytest.mark.parametrize(
-    "command", [("lesson",), ("exam", KNOWLEDGE, "--task", "wall_following"), ("demo",)], ids=lambda words: words[0]
+    "command", [("train",), ("exam", KNOWLEDGE, "--task", "wall_following"), ("demo",)], ids=lambda words: words[0]
 )
 def test_set_with_unknown_key_or_without_value_is_refused(
     kurt2rt: CommandLine, command: tuple[str | Path, ...]

@@ -21,15 +21,15 @@ def test_status_by_file_and_over_the_channel_is_of_one_robot(
         robot.wait_for("RLAs |")
         monkeypatch.setenv("COLUMNS", "200")
         assert f"page      {link}" in kurt2rt("status", "mine.knowledge").out
-        for elsewhere in (("mine.knowledge", "--json"), ("--as", "terminal", "--port", str(port))):
+        for elsewhere in (("mine.knowledge", "--json"), ("--device", "terminal", "--port", str(port))):
             assert "token" not in kurt2rt("status", *elsewhere).out  # the address of a page is for this user alone
         by_file = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
         over_the_channel = report_of(
-            json.loads(kurt2rt("status", "--as", "terminal", "--port", str(port), "--json").out)
+            json.loads(kurt2rt("status", "--device", "terminal", "--port", str(port), "--json").out)
         )
         assert by_file.boot == over_the_channel.boot
         assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
 
 
 def test_an_address_is_for_the_channel_only(kurt2rt: CommandLine) -> None:
-    assert "give --as" in kurt2rt.misused("status", "--robot", "127.0.0.1")
+    assert "give --device" in kurt2rt.misused("status", "--robot", "127.0.0.1")

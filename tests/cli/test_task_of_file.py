@@ -30,7 +30,7 @@ def fleeing(tmp_path: Path) -> Path:
 
 def test_lesson_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) -> None:
     short = ("--set", "teaching.supervised_s=1", "--set", "teaching.corrections_s=1")
-    said = kurt2rt("lesson", "--knowledge", fleeing, *short, "--out", "made")
+    said = kurt2rt("train", "--knowledge", fleeing, *short, "--out", "made")
     assert said.exit_code == 0, said.err
     assert said.out.startswith("Lesson: fleeing ")
 
@@ -39,9 +39,9 @@ def test_lesson_takes_the_task_of_the_file(kurt2rt: CommandLine, fleeing: Path) 
     "words",
     [
         ("exam", "mine.knowledge"),
-        ("lesson", "--knowledge", "mine.knowledge"),
+        ("train", "--knowledge", "mine.knowledge"),
         ("run", "--knowledge", "mine.knowledge"),
-        ("knowledge", "export", "mine.knowledge", "out.zip"),
+        ("knowledge", "export", "mine.knowledge", "--out", "out.zip"),
     ],
     ids=" ".join,
 )
@@ -54,9 +54,9 @@ def test_task_that_contradicts_the_file_is_refused(kurt2rt: CommandLine, words: 
 TO_READ_IT = (
     ("exam", "mine.knowledge"),
     ("run", "--knowledge", "mine.knowledge"),
-    ("lesson", "--knowledge", "mine.knowledge"),
+    ("train", "--knowledge", "mine.knowledge"),
     ("study", "certify", "mine.knowledge"),
-    ("knowledge", "export", "mine.knowledge", "out.zip"),
+    ("knowledge", "export", "mine.knowledge", "--out", "out.zip"),
     ("knowledge", "contradictions", "mine.knowledge"),
 )
 """Commands that look up the task that a knowledge file names."""
@@ -71,9 +71,9 @@ def test_own_tasks_file_is_used_with_the_settings_given(kurt2rt: CommandLine, tm
         assert refusal.endswith("; give its settings yourself: --task PATH.yaml (in Python: task=PATH)")
     short = ("--set", "exam.duration_s=1", "--world", "a")
     assert kurt2rt("exam", "mine.knowledge", "--task", task, *short).exit_code == 0
-    assert kurt2rt("knowledge", "export", "mine.knowledge", "out.zip", "--task", task).exit_code == 0
-    assert "--task PATH.yaml" in kurt2rt.refused("knowledge", "import", "out.zip", "--into", "theirs.knowledge")
-    assert kurt2rt("knowledge", "import", "out.zip", "--into", "theirs.knowledge", "--task", task).exit_code == 0
+    assert kurt2rt("knowledge", "export", "mine.knowledge", "--out", "out.zip", "--task", task).exit_code == 0
+    assert "--task PATH.yaml" in kurt2rt.refused("knowledge", "import", "out.zip", "--out", "theirs.knowledge")
+    assert kurt2rt("knowledge", "import", "out.zip", "--out", "theirs.knowledge", "--task", task).exit_code == 0
     assert Knowledge.load("theirs.knowledge", task=str(task)).lessons == 0
     runtime = changed("runtime", "default", tmp_path, lambda content: content.update(task=str(task)))
     said = kurt2rt(
@@ -101,11 +101,11 @@ def test_strangers_file_runs_no_code_by_a_name_in_it(kurt2rt: CommandLine, plugi
     Journal.open(plugin_folder / "mine.knowledge", replace(FLEEING, system=named)).close()
     Journal.open(plugin_folder / "good.knowledge", FLEEING).close()
     said = [kurt2rt.refused(*words) for words in TO_READ_IT]
-    assert kurt2rt("knowledge", "export", "good.knowledge", "good.zip").exit_code == 0
+    assert kurt2rt("knowledge", "export", "good.knowledge", "--out", "good.zip").exit_code == 0
     good = unpack(plugin_folder / "good.zip")
     about = {name: value for name, value in good.manifest.items() if name not in ("format", "files")}
     (plugin_folder / "evil.zip").write_bytes(pack({**about, "task": named}, good.files))
-    said.append(kurt2rt.refused("knowledge", "import", "evil.zip", "--into", "k"))
+    said.append(kurt2rt.refused("knowledge", "import", "evil.zip", "--out", "k"))
     with pytest.raises(KnowledgeError) as refused:
         Knowledge.load("mine.knowledge")
     assert [each for each in (*said, str(refused.value)) if "which is neither shipped nor installed" not in each] == []

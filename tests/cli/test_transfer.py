@@ -7,7 +7,7 @@ import pytest
 
 from tests.cli.helpers import CommandLine, results_in
 
-WORDS = ("study", "transfer", "--after", "1", "--after", "0", "--teacher", "superhuman")
+WORDS = ("study", "transfer", "--checkpoint", "1", "--checkpoint", "0", "--teacher", "superhuman")
 SHORT = (
     *("--set", "teaching.supervised_s=3", "--set", "teaching.corrections_s=2", "--set", "exam.duration_s=2"),
     *("--seconds", "3", "--jobs", "1", "--out", "made"),
@@ -38,8 +38,8 @@ def test_home_is_refused_as_the_new_world(kurt2rt: CommandLine) -> None:
 @pytest.mark.deep
 def test_transfer_in_the_batch_has_the_results_of_the_bus(kurt2rt: CommandLine) -> None:
     words = (*WORDS, "--seeds", "1100", *SHORT[:-1])
-    for loop in ("batch", "bus"):
-        told = kurt2rt(*words, loop, "--lessons", loop, "--exams", loop)
+    for engine in ("compiled", "can"):
+        told = kurt2rt(*words, engine, "--engine", engine)
         assert told.exit_code == 0, told.err
-    assert results_in("batch") == results_in("bus")
-    assert len(list(Path("batch/results/witnesses").rglob("*.json"))) == 2
+    assert results_in("compiled") == results_in("can")
+    assert len(list(Path("compiled/results/witnesses").rglob("*.json"))) == 2

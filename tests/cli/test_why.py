@@ -89,4 +89,4 @@ def test_ask_why_without_a_robot_raises_no_answer(tmp_path: Path) -> None:
 
 def test_now_is_no_moment_of_a_run(kurt2rt: CommandLine) -> None:
     assert "--live" in kurt2rt.misused("why", "--live", "--at", "3")
-    assert "--as" in kurt2rt.misused("why", "--as", "phone")
+    assert "--device" in kurt2rt.misused("why", "--device", "phone")

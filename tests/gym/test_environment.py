@@ -1,4 +1,4 @@
-"""Environments keep Gymnasium's contract, and drive as the CAN loop does."""
+"""Environments keep Gymnasium's contract, and drive as the CAN bus does."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import closing

@@ -163,7 +163,7 @@ class Checklist:
             raise SettingsError(
                 f"is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}",
                 where=self._path,
-                do="give this robot another --name, or start over with --anew",
+                do="give this robot another --name, or start over with --fresh",
             )
 
     async def _skip(self, step: CommissionStep, code: SkipCode, *, on_purpose: bool = False) -> None:

@@ -22,7 +22,7 @@ from kurt2rt.knowledge.show.table_cells import printable
 
 def export(
     file: KnowledgeFile,
-    out: Annotated[Path, typer.Argument(help="File to write; nothing may be there yet.")],
+    out: Annotated[Path, typer.Option(help="File to write; nothing may be there yet.")],
     task_name: TaskOfTheFile = None,
     robot_name: RobotName = None,
 ) -> None:
@@ -30,7 +30,7 @@ def export(
 
     For example:
 
-        kurt2rt knowledge export var/wall_following.knowledge walls.zip
+        kurt2rt knowledge export var/wall_following.knowledge --out walls.zip
     """
     name = task_of_file(file, task_name)
     robot, task = load_robot_of(robot_name, name), load_task(name)
@@ -40,7 +40,7 @@ def export(
 
 def import_(
     file: Annotated[Path, typer.Argument(help="File that kurt2rt knowledge export wrote.")],
-    into: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
+    out: Annotated[Path, typer.Option(help="Knowledge file to make; nothing may be there yet.")],
     task_name: Annotated[str | None, task_option("Default: the task whose settings came with it.")] = None,
     robot_name: RobotName = None,
 ) -> None:
@@ -48,14 +48,14 @@ def import_(
 
     For example:
 
-        kurt2rt knowledge import walls.zip --into var/walls.knowledge
+        kurt2rt knowledge import walls.zip --out var/walls.knowledge
     """
     named = read_package(file).task
     name = task_name or task_of_elsewhere(named, file)
     robot, task = load_robot_of(robot_name, name), load_task(name)
-    imported = import_knowledge(file, into, robot, task, stamp=utc_now())
+    imported = import_knowledge(file, out, robot, task, stamp=utc_now())
     package = imported.package
-    say(f"import  {into}: {len(package.lessons)} rows of {package.binding.system}")
+    say(f"import  {out}: {len(package.lessons)} rows of {package.binding.system}")
     if imported.differing_settings:
         say(f"settings that differ here: {', '.join(imported.differing_settings)}")
 

@@ -15,7 +15,7 @@ WIDE = 140
 TEACHER = "command line"
 """Teacher of the lessons that these commands write."""
 
-KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
 
 
 @contextmanager

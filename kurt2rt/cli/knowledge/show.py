@@ -58,7 +58,9 @@ def show(
 def lessons(
     file: KnowledgeFile,
     limit: Annotated[int, typer.Option(metavar="N", min=1, help="Show only the newest so many lessons.")] = 20,
-    of: Annotated[str | None, typer.Option(help="Only those of this teacher; the critic's are of: critic.")] = None,
+    teacher: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Only those of this teacher; critic: the robot's own critic.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """List the lessons, newest first, with their ids and who undid them.
@@ -66,13 +68,13 @@ def lessons(
     For example:
 
         kurt2rt knowledge lessons var/wall_following.knowledge
-        kurt2rt knowledge lessons var/wall_following.knowledge --of critic
+        kurt2rt knowledge lessons var/wall_following.knowledge --teacher critic
     """
     with Journal.read_only(file) as journal:
         if as_json:
-            print_json(lessons_data(journal, limit, of))
+            print_json(lessons_data(journal, limit, teacher))
         else:
-            print_whole(console_of(), render_lessons(journal, limit, of))
+            print_whole(console_of(), render_lessons(journal, limit, teacher))
 
 
 def check(file: KnowledgeFile, as_json: AsJson = False) -> None:

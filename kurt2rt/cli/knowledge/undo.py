@@ -17,9 +17,12 @@ def undo(
         str | None,
         typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the last that stands."),
     ] = None,
-    of: Annotated[
+    teacher: Annotated[
         str | None,
-        typer.Option(help="All lessons of this teacher that stand, newest first; the critic's are of: critic."),
+        typer.Option(
+            metavar="NAME",
+            help="All lessons of this teacher that stand, newest first; critic: the robot's own critic.",
+        ),
     ] = None,
     runs: Runs = None,
     no_preview: NoPreview = False,
@@ -34,17 +37,17 @@ def undo(
     For example:
 
         kurt2rt knowledge undo var/wall_following.knowledge
-        kurt2rt knowledge undo var/wall_following.knowledge --of anna-phone --dry-run
+        kurt2rt knowledge undo var/wall_following.knowledge --teacher anna-phone --dry-run
     """
-    _require_one_of(lesson, of)
-    planned = plan_undo(file, lesson, of, teacher=TEACHER)
+    _require_one_of(lesson, teacher)
+    planned = plan_undo(file, lesson, teacher, teacher=TEACHER)
     if not confirmed(planned, "undo", "undone", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
     apply_plan(planned, utc_now())
     for record in planned.lessons:
         say(f"{file}: undone: {format_lesson(record)}")
-    if of is not None:
-        say(f"{file}: {len(planned.lessons)} lessons of {of} undone")
+    if teacher is not None:
+        say(f"{file}: {len(planned.lessons)} lessons of {teacher} undone")
 
 
 def redo(
@@ -53,7 +56,7 @@ def redo(
         str | None,
         typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the one undone last."),
     ] = None,
-    of: Annotated[
+    teacher: Annotated[
         str | None, typer.Option(help="All lessons of this teacher that were undone, the one undone last first.")
     ] = None,
     runs: Runs = None,
@@ -68,10 +71,10 @@ def redo(
     For example:
 
         kurt2rt knowledge redo var/wall_following.knowledge
-        kurt2rt knowledge redo var/wall_following.knowledge --of anna-phone
+        kurt2rt knowledge redo var/wall_following.knowledge --teacher anna-phone
     """
-    _require_one_of(lesson, of)
-    planned = plan_redo(file, lesson, of, teacher=TEACHER)
+    _require_one_of(lesson, teacher)
+    planned = plan_redo(file, lesson, teacher, teacher=TEACHER)
     if not confirmed(planned, "redo", "standing again", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
     apply_plan(planned, utc_now())
@@ -79,11 +82,11 @@ def redo(
         say(f"{file}: stands again: {format_lesson(record)}")
     for refusal in planned.stay:
         say(f"stays undone: {text_of(refusal)}")
-    if of is not None:
+    if teacher is not None:
         stay = f", {len(planned.stay)} do not" if planned.stay else ""
-        say(f"{file}: {len(planned.lessons)} lessons of {of} stand again{stay}")
+        say(f"{file}: {len(planned.lessons)} lessons of {teacher} stand again{stay}")
 
 
-def _require_one_of(lesson: str | None, of: str | None) -> None:
-    if of is not None and lesson is not None:
-        raise typer.BadParameter("give --lesson or --of, not both")
+def _require_one_of(lesson: str | None, teacher: str | None) -> None:
+    if teacher is not None and lesson is not None:
+        raise typer.BadParameter("give --lesson or --teacher, not both")

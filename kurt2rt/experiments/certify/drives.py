@@ -1,4 +1,4 @@
-"""Drives of a certificate: many at once in a batch, or one on the CAN loop, with equal outcomes."""
+"""Drives of a certificate: many at once in a batch, or one on the CAN bus, with equal outcomes."""
 
 import math
 import random
@@ -43,7 +43,7 @@ class Subject:
 def drive_in_batch(
     factory: BatchFactory, subject: Subject, runs: Sequence[Run], tell: Progress
 ) -> list[RunOutcome | None]:
-    """Drive all runs at once and return their outcomes in order; None for a run that belongs on the CAN loop.
+    """Drive all runs at once and return their outcomes in order; None for a run that belongs on the CAN bus.
 
     `tell`: gets the simulated seconds of all runs so far.
 
@@ -165,7 +165,7 @@ def _opened(factory: BatchFactory, setups: Sequence[ExamSetup]) -> Iterator[list
 async def drive_on_bus(
     factory: SimulationFactory, subject: Subject, run: Run, tell: Progress
 ) -> tuple[RunOutcome, ExamResult]:
-    """Drive a run on the CAN loop; return its outcome, and the exam's result with the trail.
+    """Drive a run on the CAN bus; return its outcome, and the exam's result with the trail.
 
     `tell`: gets the simulated seconds so far.
 

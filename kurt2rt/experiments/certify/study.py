@@ -1,4 +1,4 @@
-"""Certificate: blocks of runs in a batch, witnesses that the CAN loop drives as well, and the outcomes of all runs."""
+"""Certificate: blocks of runs in a batch, witnesses that the CAN bus drives as well, and the outcomes of all runs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus, opened_batch
 from kurt2rt.experiments.certify.run import ALL_WORK, BrokenShare, Run, RunOutcome, draw_runs
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop, choose_witnesses
+from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
 from kurt2rt.experiments.study.pool import PoolProgress, Progress, run_jobs
@@ -22,7 +22,7 @@ from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 BATCH_GAIN = 100.0
-"""A run in the batch counts as so many times less robot time in the progress than one on the CAN loop."""
+"""A run in the batch counts as so many times less robot time in the progress than one on the CAN bus."""
 _MOST_RUNS = 200
 _MOST_ROBOT_S = 60_000.0
 """Limits of a job in the batch, which keeps the set points of all its runs: 24 MB."""
@@ -33,11 +33,11 @@ class BlockOutcome(Outcome):
 
     runs: tuple[RunOutcome, ...]
     on_bus: tuple[int, ...] = ()
-    """Numbers of the runs that the CAN loop drove alone, such as those with a broken sensor."""
+    """Numbers of the runs that the CAN bus drove alone, such as those with a broken sensor."""
 
 
 class WitnessOutcome(Outcome):
-    """Run that the batch and the CAN loop drove, with equal results."""
+    """Run that the batch and the CAN bus drove, with equal results."""
 
     run: RunOutcome
     compared: bool
@@ -62,7 +62,7 @@ class DriveJob(StudyJob):
         Raises BatchRefusedError, and all that `drives.drive_in_batch` raises.
         """
         if not isinstance(self.factory, BatchFactory):
-            raise BatchRefusedError("this simulation has no batch", do="give --exams bus")
+            raise BatchRefusedError("this simulation has no batch", do="give --engine can")
         return drive_in_batch(self.factory, subject, runs, lambda done_s: tell(done_s / BATCH_GAIN))
 
 
@@ -72,17 +72,17 @@ class BlockJob(DriveJob):
 
     outcome = BlockOutcome
     runs: tuple[Run, ...]
-    loop: DriveLoop
+    engine: Engine
 
     async def measure(self, knowledge: Path, report: Report) -> BlockOutcome:  # noqa: ARG002 - nothing is taught
-        """Drive all runs and return their outcomes; those that leave the batch are driven on the CAN loop."""
+        """Drive all runs and return their outcomes; those that leave the batch are driven on the CAN bus."""
 
         def tell(done_s: float) -> None:
             report(self.name, done_s, self.robot_time_s)
 
         subject = self.subject()
         working = [run for run in self.runs if not run.broken]
-        in_batch = self.drive_in_batch(subject, working, tell) if working and self.loop is DriveLoop.BATCH else []
+        in_batch = self.drive_in_batch(subject, working, tell) if working and self.engine is Engine.COMPILED else []
         finished = {each.number: each for each in in_batch if each}
         left = [run for run in self.runs if run.number not in finished]
         for run in left:
@@ -97,7 +97,7 @@ class BlockJob(DriveJob):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WitnessJob(DriveJob):
-    """Run that is driven in a batch and on the CAN loop, which must agree."""
+    """Run that is driven in a batch and on the CAN bus, which must agree."""
 
     outcome = WitnessOutcome
     witness: Run
@@ -117,12 +117,12 @@ class WitnessJob(DriveJob):
 
 
 def require_equal(batch: RunOutcome, bus: RunOutcome) -> None:
-    """Check that a run in the batch had the outcome of the CAN loop. Raises BatchDiffersError."""
+    """Check that a run in the batch had the outcome of the CAN bus. Raises BatchDiffersError."""
     if differing := batch.differing(bus):
         raise BatchDiffersError(
-            f"the batch and the CAN loop differ in {', '.join(differing)}; all results of the batch are refused",
+            f"the batch and the CAN bus differ in {', '.join(differing)}; all results of the batch are refused",
             where=f"run {bus.number} in world {bus.world}",
-            do="report it, and give --exams bus and a new folder with --out",
+            do="report it, and give --engine can and a new folder with --out",
         )
 
 
@@ -134,7 +134,7 @@ class Extent(NamedTuple):
     runs: int
     places: tuple[str, ...]
     """Worlds; SEED in a name stands for the number of the run."""
-    loop: DriveLoop
+    engine: Engine
     broken: BrokenShare = ALL_WORK
 
 
@@ -172,9 +172,9 @@ class Certificate:
     outcomes: tuple[RunOutcome, ...]
     """One for each run of the plan, in order."""
     on_bus: frozenset[int]
-    """Numbers of the runs that only the CAN loop drove."""
+    """Numbers of the runs that only the CAN bus drove."""
     compared: int
-    """Runs that the batch and the CAN loop drove with equal outcomes."""
+    """Runs that the batch and the CAN bus drove with equal outcomes."""
 
 
 def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobParts) -> StudyPlan[Certified]:
@@ -201,20 +201,20 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
 
     def block(part: tuple[Run, ...]) -> BlockJob:
         first, last, in_batch = part[0].number, part[-1].number, 0
-        if extent.loop is DriveLoop.BATCH:
+        if extent.engine is Engine.COMPILED:
             in_batch = sum(not run.broken for run in part)
         return BlockJob(
             **parts,
             task=task,
             seed=first,
-            made_of=fingerprints.of(task, worlds, taught, repr((part, extent.loop))),
+            made_of=fingerprints.of(task, worlds, taught, repr((part, extent.engine))),
             name=f"runs {first} to {last}",
             stem=f"runs-{first}-{last}",
             robot_time_s=task.exam.duration_s * (len(part) - in_batch + in_batch / BATCH_GAIN),
             wave=1,
             taught=knowledge,
             runs=part,
-            loop=extent.loop,
+            engine=extent.engine,
         )
 
     def witness(run: Run) -> WitnessJob:
@@ -223,7 +223,7 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
             task=task,
             seed=run.number,
             made_of=fingerprints.of(task, worlds, taught, repr(run)),
-            name=f"run {run.number} on the CAN loop",
+            name=f"run {run.number} on the CAN bus",
             stem=f"witness-{run.number}",
             robot_time_s=task.exam.duration_s,
             taught=knowledge,
@@ -231,9 +231,9 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
         )
 
     step, witnesses = 1, list[Run]()
-    if extent.loop is DriveLoop.BATCH:
+    if extent.engine is Engine.COMPILED:
         step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s)))
-        working = [run for run in runs if not run.broken]  # the CAN loop alone drives the others
+        working = [run for run in runs if not run.broken]  # the CAN bus alone drives the others
         witnesses = choose_witnesses(working, f"{len(runs)} runs from {extent.first}")
     blocks = (runs[begin : begin + step] for begin in range(0, len(runs), step))
     jobs = (*map(witness, witnesses), *map(block, blocks))
@@ -262,7 +262,7 @@ def read_certificate(plan: StudyPlan[Certified]) -> Certificate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PictureJob:
-    """Run of a block that the CAN loop drives again for its trail."""
+    """Run of a block that the CAN bus drives again for its trail."""
 
     block: BlockJob
     expected: RunOutcome
@@ -296,7 +296,7 @@ def drive_again(
     processes: int,
     on_progress: Callable[[PoolProgress], None],
 ) -> list[ExamResult]:
-    """Drive runs of the plan on the CAN loop and return their results, with trails, in order.
+    """Drive runs of the plan on the CAN bus and return their results, with trails, in order.
 
     Args:
         plan: of the certificate.

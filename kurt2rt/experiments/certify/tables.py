@@ -197,12 +197,12 @@ def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
 
 
 def _format_witnesses(certificate: Certificate) -> str:
-    """Return how many runs the batch and the CAN loop drove with equal outcomes, and how many the loop alone."""
+    """Return how many runs the batch and the CAN bus drove with equal outcomes, and how many the loop alone."""
     alone = len(certificate.on_bus)
     if alone == len(certificate.outcomes):
-        return "All runs were driven on the CAN loop."
+        return "All runs were driven on the CAN bus."
     left = f"; {alone} with a broken sensor, or that left the batch, were driven there alone" if alone else ""
-    return f"{certificate.compared} runs were driven on the CAN loop too, with equal results{left}."
+    return f"{certificate.compared} runs were driven on the CAN bus too, with equal results{left}."
 
 
 def _format_rate(rate: Rate) -> str:
@@ -249,7 +249,7 @@ def write_certificate(
         "sunlight are not in it."
     )
     again = (
-        "Each was driven again on the CAN loop, with the same outcome. The line below a picture is the command that "
+        "Each was driven again on the CAN bus, with the same outcome. The line below a picture is the command that "
         "shows it again."
     )
     write_report(

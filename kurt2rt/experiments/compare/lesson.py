@@ -15,7 +15,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_lesson import open_batch_lesson
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, TrainingRun
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
@@ -90,14 +90,14 @@ class PressMarks:
 
 
 async def give_lesson(
-    factory: SimulationFactory, new_setup: Callable[[], LessonSetup], loop: DriveLoop, report: Report
+    factory: SimulationFactory, new_setup: Callable[[], LessonSetup], engine: Engine, report: Report
 ) -> PupilLesson:
-    """Give the task's lesson; over the CAN bus if `loop` says so, or if the robot leaves the batch.
+    """Give the task's lesson; over the CAN bus if `engine` says so, or if the robot leaves the batch.
 
     Args:
         factory: opens the simulation.
         new_setup: returns the setup, with learners that know nothing; called again if the robot leaves the batch.
-        loop: that drives the robot.
+        engine: that drives the robot.
         report: gets the simulated seconds.
 
     Raises:
@@ -112,7 +112,7 @@ async def give_lesson(
         report(f"teaching in world {world}", done_s, seconds)
 
     given = None
-    if loop is DriveLoop.BATCH and isinstance(factory, LessonFactory):
+    if engine is Engine.COMPILED and isinstance(factory, LessonFactory):
         given = _teach_in_batch(factory, setup, on_progress)
         if given is None:  # the learners were taught a part of it
             setup = new_setup()

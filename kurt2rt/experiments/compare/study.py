@@ -11,12 +11,12 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.compare.lesson import LessonSetup, Mark, PupilLesson, give_lesson
 from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoops
+from kurt2rt.experiments.lockstep.engine import ON_BUS, Engines
 from kurt2rt.experiments.lockstep.seed_result import counts_of
 from kurt2rt.experiments.study.drive_row import DriveRow, Examiner
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 
 
 class Checkpoint(Settings):
@@ -67,15 +67,15 @@ class PupilJob(StudyJob):
         Raises NoLearnerError, SettingsError, LessonLostError.
         """
         try:
-            return await self._measure(self.loops, report)
+            return await self._measure(self.engines, report)
         except BatchRefusedError:  # it does not know the task, or a learner failed
             return await self._measure(ON_BUS, report)
 
-    async def _measure(self, loops: DriveLoops, report: Report) -> PupilOutcome:
-        lesson = await give_lesson(self.factory, self._new_setup, loops.lesson, report)
+    async def _measure(self, engines: Engines, report: Report) -> PupilOutcome:
+        lesson = await give_lesson(self.factory, self._new_setup, engines.lesson, report)
         team, result = lesson.setup.team, lesson.result
         failures = [team.failure if team is not None else ""]
-        checkpoints = await self._checkpoints(lesson, failures, loops, report)
+        checkpoints = await self._checkpoints(lesson, failures, engines, report)
         return PupilOutcome(
             made_of=self.made_of,
             seed=self.seed,
@@ -89,11 +89,11 @@ class PupilJob(StudyJob):
         return LessonSetup(robot=self.robot, task=self.task, seed=self.seed, team=team, after=self.after)
 
     async def _checkpoints(
-        self, lesson: PupilLesson, failures: list[str], loops: DriveLoops, report: Report
+        self, lesson: PupilLesson, failures: list[str], engines: Engines, report: Report
     ) -> list[Checkpoint]:
         """Examine the knowledge of each mark, and add failures of learners to `failures`."""
         examiners = [
-            Examiner(self.factory, self.robot, self.task, world, self.seed, report, loops.exams)
+            Examiner(self.factory, self.robot, self.task, world, self.seed, report, engines.exams)
             for world in self.task.exam.worlds
         ]
         policies = [await each.drive_policy() for each in examiners]
@@ -140,7 +140,7 @@ def make_plan(
     after: Sequence[int],
     parts: JobParts,
     *,
-    loops: RequestedLoops = ALL_ON_BUS,
+    engine: RequestedEngine = ALL_ON_BUS,
 ) -> StudyPlan[Compared]:
     """Check tasks and worlds, and return the jobs.
 
@@ -150,7 +150,7 @@ def make_plan(
         seeds: one robot each.
         after: numbers of presses after which the robots are examined, ascending.
         parts: factory, robot and results of the jobs.
-        loops: that drive lessons and exams.
+        engine: requested for lessons and exams.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -179,4 +179,4 @@ def make_plan(
                 )
                 for seed in seeds
             ]
-    return StudyPlan(about, tuple(seeds), tuple(jobs)).driven(loops, parts["robot"])
+    return StudyPlan(about, tuple(seeds), tuple(jobs)).driven(engine, parts["robot"])

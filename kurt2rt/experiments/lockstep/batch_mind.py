@@ -48,7 +48,7 @@ _BORDER_COURSES = ("junctions",)
 """Courses that reposition the robot, or want another behaviour, at borders."""
 _COURSES = ("laps", "way", "rounds", "eights", *_BORDER_COURSES)
 """Courses that never reposition the robot nor want another behaviour, or at borders only."""
-_ON_THE_BUS = "use the CAN bus (--exams bus, --lessons bus)"
+_ON_THE_BUS = "use the CAN bus (--engine can)"
 
 
 def require_known_robot(settings: RobotSettings, task: TaskSettings) -> None:

@@ -14,7 +14,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
 from kurt2rt.experiments.lockstep.batch_mind import refused
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
@@ -47,7 +47,7 @@ class WorldResult:
 class CurriculumResult:
     """Result of a training run: a simulated session with a teacher, then an exam in each world.
 
-    `kurt2rt lesson` prints one per robot. The seed decides all of it, bit for bit.
+    `kurt2rt train` prints one per robot. The seed decides all of it, bit for bit.
     """
 
     lesson: TrainingResult
@@ -64,7 +64,7 @@ async def run_lesson(
     report: Report,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
     plan: LessonPlan | None = None,
-    loop: DriveLoop = DriveLoop.BUS,
+    engine: Engine = Engine.CAN,
 ) -> tuple[TrainingResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; return the result and all events the file then holds.
 
@@ -79,7 +79,7 @@ async def run_lesson(
         report: progress callback.
         on_saved: gets each acknowledgement of a durable lesson.
         plan: None: the task's own lesson, phases 1 and 2. A batch knows no other one.
-        loop: drives the robot; a batch begins without knowledge, and leaves some robots to the CAN bus.
+        engine: drives the robot; a batch begins without knowledge, and leaves some robots to the CAN bus.
 
     Raises:
         KnowledgeError: the file cannot be used.
@@ -87,14 +87,14 @@ async def run_lesson(
         LessonLostError: the robot refused a command, or a lesson was not stored.
         BatchRefusedError: a batch, which does not know the lesson, shall drive it.
     """
-    if loop is DriveLoop.BATCH and plan is not None:
+    if engine is Engine.COMPILED and plan is not None:
         raise refused(task, "a plan of its own")
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
         on_progress = keeping.telling(report, f"teaching in world {world}", whole_s)
         given: GivenLesson | None = None
-        if loop is DriveLoop.BATCH:
+        if engine is Engine.COMPILED:
             if keeping.opened.events:
                 raise refused(task, "knowledge to go on from")
             given = _teach_in_batch(factory, settings, task, seed, on_progress)
@@ -146,7 +146,7 @@ async def run_drives(
     task: TaskSettings,
     drives: Sequence[BatchExam],
     report: Report,
-    loop: DriveLoop = DriveLoop.BUS,
+    engine: Engine = Engine.CAN,
 ) -> list[ExamResult]:
     """Drive exams without a teacher, each in its world, and return their results in order.
 
@@ -156,7 +156,7 @@ async def run_drives(
         task: of all exams.
         drives: setups with the lessons of the robot.
         report: progress callback.
-        loop: a batch drives all at once, and leaves some robots to the CAN bus.
+        engine: a batch drives all at once, and leaves some robots to the CAN bus.
 
     Raises:
         SettingsError: task and world do not fit.
@@ -165,7 +165,7 @@ async def run_drives(
         BatchRefusedError: a batch, which does not know the task, shall drive it.
     """
     finished: list[ExamResult | None] = [None] * len(drives)
-    if loop is DriveLoop.BATCH:
+    if engine is Engine.COMPILED:
         finished = _run_in_batch(factory, settings, task, drives)
     results = []
     for each, in_batch in zip(drives, finished, strict=True):
@@ -186,7 +186,7 @@ async def run_exams(
     *,
     seed: int,
     report: Report,
-    loop: DriveLoop = DriveLoop.BUS,
+    engine: Engine = Engine.CAN,
     broken: SensorBreak | None = None,
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start.
@@ -199,7 +199,7 @@ async def run_exams(
         worlds: names of the worlds.
         seed: of robot and start pose.
         report: progress callback.
-        loop: drives the exams.
+        engine: drives the exams.
         broken: sensor of the robot that breaks, but not while the teacher's policy drives; None: none.
 
     Returns:
@@ -213,7 +213,7 @@ async def run_exams(
     setups = [
         each for world in worlds for each in (ExamSetup(world, seed, broken=broken), ExamSetup(world, seed, True))
     ]
-    drives = await run_drives(factory, settings, task, [BatchExam(each, events) for each in setups], report, loop)
+    drives = await run_drives(factory, settings, task, [BatchExam(each, events) for each in setups], report, engine)
     return tuple(
         WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success))
         for learned, teacher in zip(drives[::2], drives[1::2], strict=True)

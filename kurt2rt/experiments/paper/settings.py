@@ -75,9 +75,8 @@ class PaperSettings(Settings):
     """Worlds of Fig. 6."""
     eight: str
     """Task of Fig. 7."""
-    teacher: str | None = None
-    """Scripted teacher of all experiments: a name in `config/teachers`, or the path of a YAML file; None: each task's
-    `teaching.default_teacher`."""
+    teacher: str = "ordinary"
+    """Scripted teacher of all experiments: a name in `config/teachers`, or the path of a YAML file."""
 
     @model_validator(mode="after")
     def _each_task_once(self) -> Self:

@@ -18,7 +18,7 @@ from kurt2rt.experiments.study.drive_row import DriveRow, row_with_teacher
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, TaughtOutcome
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.experiments.study.targets import ROBOTS
 
 Reading = Literal["shipped", "plain"]
@@ -55,9 +55,9 @@ class TaughtJob(StudyJob):
 
     async def measure(self, knowledge: Path, report: Report) -> ExaminedOutcome:
         """Teach the task into the file `knowledge`, examine it in each world and return the outcome."""
-        factory, robot, task, seed, loop = self.factory, self.robot, self.task, self.seed, self.loops.exams
+        factory, robot, task, seed, engine = self.factory, self.robot, self.task, self.seed, self.engines.exams
         lesson, events = await self.teach(knowledge, report)
-        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, loop=loop)
+        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, engine=engine)
         counts, several = Counter(rla.behaviour for rla in lesson.rlas), len(task.behaviours) > 1
         return ExaminedOutcome(
             made_of=self.made_of,
@@ -103,7 +103,7 @@ def make_plan(
     parts: JobParts,
     *,
     tasks: Sequence[str] = (),
-    loops: RequestedLoops = ALL_ON_BUS,
+    engine: RequestedEngine = ALL_ON_BUS,
 ) -> StudyPlan[PaperExtent]:
     """Check every task and world, and return the jobs.
 
@@ -114,7 +114,7 @@ def make_plan(
         readings: readings of the paper to study.
         parts: factory, robot and results of the jobs.
         tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
-        loops: requested for lessons and exams.
+        engine: requested for lessons and exams.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -161,7 +161,7 @@ def make_plan(
                 for seed in seeds[: paper.growth.robots]
             )
     plan = StudyPlan(PaperExtent(paper, extent), tuple(seeds), (*robots, *curves))
-    return plan.driven(loops, parts["robot"])
+    return plan.driven(engine, parts["robot"])
 
 
 def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
@@ -47,7 +47,7 @@ from kurt2rt.experiments.study.drive_row import DriveRow, row_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 from kurt2rt.experiments.study.results import StudyError
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
@@ -205,7 +205,7 @@ class PhasesJob(StudyJob):
         Raises SettingsError if task and world do not fit.
         """
         setups = [ExamSetup(each, self.seed, teacher_policy=True, stuck_ends=False) for each in self.task.exam.worlds]
-        drives = await self._drive([BatchExam(each) for each in setups], report, self.loops.exams)
+        drives = await self._drive([BatchExam(each) for each in setups], report, self.engines.exams)
         return tuple(row_of(each, ExamVerdict.FAILED if each.failed else ExamVerdict.PASSED) for each in drives)
 
     async def examine(
@@ -230,7 +230,7 @@ class PhasesJob(StudyJob):
             UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
         """
         exams = [self._exam(each.world, events, saved, autonomous_values) for each in teachers]
-        drives = await self._drive(exams, report, self.loops.exams)
+        drives = await self._drive(exams, report, self.engines.exams)
         return tuple(
             row_of(drive, drive.verdict(teacher.progress, self.task.exam.success))
             for drive, teacher in zip(drives, teachers, strict=True)
@@ -248,7 +248,7 @@ class PhasesJob(StudyJob):
         exam = self._exam(self.task.teaching.world, events, saved, None)
         setup = replace(exam.setup, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
         # A batch has no record of each tick.
-        await self._drive([replace(exam, setup=setup)], report, DriveLoop.BUS)
+        await self._drive([replace(exam, setup=setup)], report, Engine.CAN)
         return tuple(scoring.judgements)
 
     def _exam(
@@ -262,8 +262,8 @@ class PhasesJob(StudyJob):
         setup = ExamSetup(world, self.seed, saved=saved, autonomous_values=autonomous_values, stuck_ends=not events)
         return BatchExam(setup, events)
 
-    async def _drive(self, exams: Sequence[BatchExam], report: Report, loop: DriveLoop) -> list[ExamResult]:
-        return await run_drives(self.factory, self.robot, self.task, exams, report, loop)
+    async def _drive(self, exams: Sequence[BatchExam], report: Report, engine: Engine) -> list[ExamResult]:
+        return await run_drives(self.factory, self.robot, self.task, exams, report, engine)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -409,7 +409,7 @@ def make_plan(
     parts: JobParts,
     *,
     quick: bool = False,
-    loops: RequestedLoops = ALL_ON_BUS,
+    engine: RequestedEngine = ALL_ON_BUS,
 ) -> StudyPlan[PhasesTask]:
     """Check task and worlds, and return the jobs.
 
@@ -418,7 +418,7 @@ def make_plan(
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         quick: all steps, each so short that it says nothing but that everything works.
-        loops: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
+        engine: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
 
     Raises:
         hal.settings.SettingsError: the task has no such section, or does not fit a world.
@@ -470,7 +470,7 @@ def make_plan(
                 alike=of_robot.get(step.blames_like),
             )
         jobs += of_robot.values()
-    return StudyPlan(PhasesTask(task, quick), tuple(seeds), tuple(jobs)).driven(loops, robot)
+    return StudyPlan(PhasesTask(task, quick), tuple(seeds), tuple(jobs)).driven(engine, robot)
 
 
 def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:

@@ -170,7 +170,7 @@ def make_plan(
         decisions: lengths of the routes; empty: the task's own.
         variants: ways of teaching.
         parts: factory, robot and results of the jobs.
-        basic_folder: knowledge files of the streets, by `kurt2rt lesson`; None: the streets are taught first.
+        basic_folder: knowledge files of the streets, by `kurt2rt train`; None: the streets are taught first.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -222,7 +222,7 @@ def streets_of(
 ) -> TaughtStreets:
     """Return the jobs that teach the streets, and the knowledge file of each robot.
 
-    `folder`: files as `kurt2rt lesson` leaves them, which are used instead of jobs; None: the streets are taught.
+    `folder`: files as `kurt2rt train` leaves them, which are used instead of jobs; None: the streets are taught.
 
     Raises:
         StudyError: a knowledge file is missing.
@@ -272,5 +272,5 @@ def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
     raise StudyError(
         "there is no such file",
         where=file,
-        do=f"teach the streets with kurt2rt lesson --task {basic.name} --seed {seed}, or leave --basic out",
+        do=f"teach the streets with kurt2rt train --task {basic.name} --seed {seed}, or leave --basic out",
     )

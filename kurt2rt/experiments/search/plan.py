@@ -8,7 +8,7 @@ from typing import ClassVar
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, DriveLoops, choose_witnesses
+from kurt2rt.experiments.lockstep.engine import Engine, Engines, choose_witnesses
 from kurt2rt.experiments.search.score import RobotScore, robot_score
 from kurt2rt.experiments.search.settings import CheckSettings, Robots, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace, Values
@@ -84,7 +84,7 @@ class SearchPlan:
         return self._witnesses(job for job in jobs if job.stem in chosen)
 
     def _witnesses(self, jobs: Iterable[SearchJob]) -> tuple[BusWitnessJob, ...]:
-        return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.loops.in_batch)))
+        return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.engines.in_batch)))
 
     def _jobs(self, part: str, label: str, values: Values, robots: Robots) -> tuple[SearchJob, ...]:
         jobs, task = [], self.space.task(values)
@@ -99,7 +99,7 @@ class SearchPlan:
                 name=f"{part} {label}, seed {seed}",
                 stem=f"{part}/{label}/{task.name}-{seed}",
                 robot_time_s=curriculum_time_s(own),
-                loops=DriveLoops(self.search.lessons, self.search.exams),
+                engines=Engines(self.search.engine, self.search.engine),
                 label=label,
             )
             jobs.append(job)
@@ -129,9 +129,8 @@ def make_plan(
     exams = [(world, seed) for each, seed in robots for world in each.worlds_of(seed)]
     worlds = tuple(dict.fromkeys((task.teaching.world, *(world for world, _ in exams))))
     require_places(parts["factory"], task, worlds)
-    if search.lessons is DriveLoop.BATCH:
+    if search.engine is Engine.COMPILED:
         require_known_lesson(parts["robot"], task)
-    if search.exams is DriveLoop.BATCH:
         require_known_exams(parts["robot"], task)
     fingerprints = Fingerprints(parts["factory"], parts["robot"])
     # More trials, and another number of them checked, leave each trial as it is.

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.task_settings import Name
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.study.jobs import SEED, world_of
 
 Objective = Literal["passed_then_presses", "passed_then_presses_and_collisions", "passed_then_rlas"]
@@ -78,8 +78,8 @@ class SearchSettings(Settings):
     """Name of the task, or path of its YAML file."""
     teacher: str
     """Scripted teacher: a name in `config/teachers`, or a path."""
-    lessons: DriveLoop = DriveLoop.BATCH
-    exams: DriveLoop = DriveLoop.BATCH
+    engine: Engine = Engine.COMPILED
+    """Drives lessons and exams."""
     objective: Objective = "passed_then_presses"
     """First the share of exams passed; among equal shares, less effort is better (`score.effort`)."""
     trials: Count

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Self
 from pydantic import ValidationError
 
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, BatchDiffersError
+from kurt2rt.experiments.lockstep.engine import ON_BUS, BatchDiffersError
 from kurt2rt.experiments.study.jobs import Outcome, StudyJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.results import Results, StudyError
@@ -37,7 +37,7 @@ class BusWitnessJob(StudyJob):
     keeps_knowledge: ClassVar[bool] = False
     replaces_others: ClassVar[bool] = True
     of: StudyJob
-    """Job with a loop in the batch."""
+    """Job that a compiled engine drives."""
 
     @classmethod
     def witness_of(cls, job: StudyJob) -> Self:
@@ -62,7 +62,7 @@ class BusWitnessJob(StudyJob):
         Raises the errors of the job.
         """
         batch, bus = (knowledge.with_name(name) for name in ("batch", "bus"))
-        outcomes = [await self.of.measure(batch, report), await replace(self.of, loops=ON_BUS).measure(bus, report)]
+        outcomes = [await self.of.measure(batch, report), await replace(self.of, engines=ON_BUS).measure(bus, report)]
         differing = list(_differing_parts("", *(json.loads(each.model_dump_json()) for each in outcomes)))
         taught = [read_knowledge(file, self.robot, self.task) if file.exists() else None for file in (batch, bus)]
         if taught[0] != taught[1]:
@@ -100,7 +100,7 @@ def _require_equal(outcome: BusWitnessOutcome) -> None:
         raise BatchDiffersError(
             f"the batch and the CAN bus differ in {', '.join(outcome.differing)}; all results of the batch are refused",
             where=outcome.job,
-            do="report it, and give --lessons bus --exams bus, and a new folder with --out",
+            do="report it, and give --engine can, and a new folder with --out",
         )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from distributed import CancelledError, Client, Future, Worker, as_completed
 from distributed.scheduler import KilledWorker
 
-from kurt2rt.experiments.lockstep.drive_loop import choose_witnesses
+from kurt2rt.experiments.lockstep.engine import choose_witnesses
 from kurt2rt.experiments.study.cluster_file import ClusterError, no_scheduler, read_cluster_file
 from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
@@ -99,7 +99,7 @@ class ClusterExecutor:
             raise ClusterError(
                 "the cluster has no worker",
                 where=self._client.scheduler.address,
-                do="start one or more: kurt2rt study worker --to FILE",
+                do="start one or more: kurt2rt study worker --cluster FILE",
             ) from error
 
 

@@ -11,7 +11,7 @@ from distributed import Security
 from hal.errors import UserError
 from kurt2rt.platform.durable_files import fsync_folder
 
-_MAKE = "kurt2rt study worker --new FILE --at tls://HOST:PORT makes one"
+_MAKE = "kurt2rt study worker --new FILE --scheduler tls://HOST:PORT makes one"
 
 
 class ClusterError(UserError):

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_drives
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.study.intervals import Rate, rate_of
@@ -161,7 +161,7 @@ class Examiner:
     world: str
     seed: int
     report: Report
-    loop: DriveLoop = DriveLoop.BUS
+    engine: Engine = Engine.CAN
 
     async def drive_policy(self) -> DriveRow:
         """Return the policy's own drive; it passes if it has no collision, alarm or standstill.
@@ -194,5 +194,5 @@ class Examiner:
 
     async def _drive(self, setup: ExamSetup, events: Sequence[TeachingEvent] = ()) -> ExamResult:
         exams = [BatchExam(setup, events)]
-        (result,) = await run_drives(self.factory, self.robot, self.task, exams, self.report, self.loop)
+        (result,) = await run_drives(self.factory, self.robot, self.task, exams, self.report, self.engine)
         return result

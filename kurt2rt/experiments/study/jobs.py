@@ -15,7 +15,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.seed_result import LessonCounts
@@ -69,7 +69,7 @@ class StudyJob(ABC):
     """Path of result and knowledge, without the top folder and the ending."""
     robot_time_s: float
     """Simulated time in s, at most."""
-    loops: DriveLoops = ON_BUS
+    engines: Engines = ON_BUS
     """Loops that drive, which change no result."""
     wave: int = 0
     """The job needs results of earlier waves only."""
@@ -102,12 +102,19 @@ class StudyJob(ABC):
     ) -> tuple[TrainingResult, list[TeachingEvent]]:
         """Teach the robot into the file `knowledge`; return the result and all events that the file then holds.
 
-        `task`: None: the job's. `plan`: None: the task's own lesson, by the loop of lessons. Raises the errors of
+        `task`: None: the job's. `plan`: None: the task's own lesson, by the engine of lessons. Raises the errors of
         `curriculum.run_lesson`.
         """
-        loop = self.loops.lesson if plan is None else DriveLoop.BUS
+        engine = self.engines.lesson if plan is None else Engine.CAN
         return await run_lesson(
-            self.factory, self.robot, task or self.task, knowledge, seed=self.seed, report=report, plan=plan, loop=loop
+            self.factory,
+            self.robot,
+            task or self.task,
+            knowledge,
+            seed=self.seed,
+            report=report,
+            plan=plan,
+            engine=engine,
         )
 
     def run(self, on_progress: Progress) -> None:

@@ -11,7 +11,7 @@ from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 
@@ -31,9 +31,9 @@ class CurriculumJob(StudyJob):
 
     async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
         """Teach the robot into the file `knowledge`, examine it and return the outcome."""
-        factory, robot, task, seed, loop = self.factory, self.robot, self.task, self.seed, self.loops.exams
+        factory, robot, task, seed, engine = self.factory, self.robot, self.task, self.seed, self.engines.exams
         lesson, events = await self.teach(knowledge, report)
-        exams = await run_exams(factory, robot, task, events, task.exam.worlds, seed=seed, report=report, loop=loop)
+        exams = await run_exams(factory, robot, task, events, task.exam.worlds, seed=seed, report=report, engine=engine)
         result = seed_result(CurriculumResult(lesson, exams))
         return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
 
@@ -61,7 +61,7 @@ class SeedJob(CurriculumJob):
 
 
 def make_plan(
-    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, loops: RequestedLoops = ALL_ON_BUS
+    task: TaskSettings, seeds: Sequence[int], parts: JobParts, *, engine: RequestedEngine = ALL_ON_BUS
 ) -> StudyPlan[None]:
     """Return the jobs.
 
@@ -69,7 +69,7 @@ def make_plan(
         task: that is taught.
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
-        loops: requested for lessons and exams.
+        engine: requested for lessons and exams.
 
     Raises:
         hal.settings.SettingsError: settings of the task or a world cannot be loaded.
@@ -87,7 +87,7 @@ def make_plan(
         )
         for seed in seeds
     ]
-    return StudyPlan(None, tuple(seeds), tuple(jobs)).driven(loops, parts["robot"])
+    return StudyPlan(None, tuple(seeds), tuple(jobs)).driven(engine, parts["robot"])
 
 
 def forget_lost_robots(plan: StudyPlan[None]) -> None:

@@ -1,4 +1,4 @@
-"""Plan of a study: its jobs, the loops that drive them, and the robots with a witness on the CAN bus."""
+"""Plan of a study: its jobs, the engines that drive them, and the robots with a witness on the CAN bus."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from hal.settings import Settings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops, choose_witnesses
+from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import StudyJob
 
@@ -24,50 +24,49 @@ WORTHWHILE_S = 1800.0
 """Robot time that a batch has to save, in s: so long a drive on the CAN bus takes as long as compiling the batch."""
 
 
-class LoopRequest(StrEnum):
-    """Loop that a user asks for."""
+class EngineRequest(StrEnum):
+    """Engine that a user asks for."""
 
     AUTO = "auto"
-    """Batch if it is compiled, knows the task, and saves time."""
-    BATCH = "batch"
-    """Batch if it knows the task."""
-    BUS = "bus"
+    """Compiled engine if it is installed, knows the task, and saves time."""
+    COMPILED = "compiled"
+    """Compiled engine if it knows the task."""
+    CAN = "can"
 
 
 @dataclass(frozen=True, slots=True)
-class RequestedLoops:
-    """Requests for a study's lessons and exams."""
+class RequestedEngine:
+    """Request for a study's lessons and exams."""
 
-    lessons: LoopRequest = LoopRequest.BUS
-    exams: LoopRequest = LoopRequest.BUS
+    engine: EngineRequest = EngineRequest.CAN
     compiled: bool = False
     """True if a compiled batch can drive the study's simulation."""
 
 
-ALL_ON_BUS = RequestedLoops()
+ALL_ON_BUS = RequestedEngine()
 
 
 @dataclass(frozen=True, slots=True)
-class LoopChoice:
-    """Loops of all jobs of a study."""
+class EngineChoice:
+    """Engines of all jobs of a study."""
 
-    loops: Mapping[str, DriveLoops]
-    """Loops by the stem of the job; jobs that are not named are driven on the CAN bus."""
+    engines: Mapping[str, Engines]
+    """Engines by the stem of the job; jobs that are not named are driven on the CAN bus."""
     witnessed: frozenset[str]
     """Stems of the jobs with a witness."""
     refusals: tuple[str, ...]
     """One line for each thing that the batch does not know, with the tasks."""
 
     def apply(self, jobs: Sequence[JobT]) -> tuple[JobT, ...]:
-        """Return the jobs with their loops."""
-        return tuple(replace(job, loops=self.loops.get(job.stem, ON_BUS)) for job in jobs)
+        """Return the jobs with their engines."""
+        return tuple(replace(job, engines=self.engines.get(job.stem, ON_BUS)) for job in jobs)
 
     def witnesses(self, jobs: Sequence[StudyJob]) -> tuple[BusWitnessJob, ...]:
         """Return the witnesses of these jobs."""
         return tuple(map(BusWitnessJob.witness_of, (job for job in jobs if job.stem in self.witnessed)))
 
 
-NO_CHOICE = LoopChoice({}, frozenset(), ())
+NO_CHOICE = EngineChoice({}, frozenset(), ())
 """All jobs are driven on the CAN bus."""
 
 
@@ -80,12 +79,12 @@ class StudyPlan(Generic[AboutT]):
     seeds: tuple[int, ...]
     jobs: tuple[StudyJob, ...]
     """Jobs without witnesses."""
-    choice: LoopChoice = NO_CHOICE
-    """Loops of the jobs."""
+    choice: EngineChoice = NO_CHOICE
+    """Engines of the jobs."""
 
-    def driven(self, asked: "RequestedLoops", robot: RobotSettings) -> Self:
-        """Return the plan with jobs that these loops drive. Raises hal.settings.SettingsError."""
-        choice = choose_loops(self.jobs, asked, robot)
+    def driven(self, asked: "RequestedEngine", robot: RobotSettings) -> Self:
+        """Return the plan with jobs that this engine drives. Raises hal.settings.SettingsError."""
+        choice = choose_engines(self.jobs, asked, robot)
         return replace(self, jobs=choice.apply(self.jobs), choice=choice)
 
     @property
@@ -123,8 +122,8 @@ def read_groups(
     return tuple(Group(of, tuple(outcomes)) for of, outcomes in groups)
 
 
-def choose_loops(jobs: Sequence[StudyJob], asked: RequestedLoops, robot: RobotSettings) -> LoopChoice:
-    """Return the loops of all jobs of a study, and 1 % of those with a batch, at least three, that have a witness.
+def choose_engines(jobs: Sequence[StudyJob], asked: RequestedEngine, robot: RobotSettings) -> EngineChoice:
+    """Return the engines of all jobs of a study, and 1 % of those with a batch, at least three, that have a witness.
 
     A task that the batch does not know is driven on the CAN bus.
 
@@ -137,25 +136,25 @@ def choose_loops(jobs: Sequence[StudyJob], asked: RequestedLoops, robot: RobotSe
         hal.settings.SettingsError: settings of a task do not fit each other.
     """
     choice = _choose(jobs, asked, robot, auto=asked.compiled)
-    saved_s = sum(job.robot_time_s for job in jobs if job.stem in choice.loops.keys() - choice.witnessed)
+    saved_s = sum(job.robot_time_s for job in jobs if job.stem in choice.engines.keys() - choice.witnessed)
     return choice if saved_s >= WORTHWHILE_S else _choose(jobs, asked, robot, auto=False)
 
 
-def _choose(jobs: Sequence[StudyJob], asked: RequestedLoops, robot: RobotSettings, *, auto: bool) -> LoopChoice:
-    """Return the choice; `auto`: whether `LoopRequest.AUTO` means a batch."""
-    batch = {LoopRequest.BATCH, *([LoopRequest.AUTO] if auto else [])}
+def _choose(jobs: Sequence[StudyJob], asked: RequestedEngine, robot: RobotSettings, *, auto: bool) -> EngineChoice:
+    """Return the choice; `auto`: whether `EngineRequest.AUTO` means a batch."""
+    compiled = asked.engine is EngineRequest.COMPILED or (auto and asked.engine is EngineRequest.AUTO)
     known = _KnownTasks(robot)
-    loops = {}
+    engines = {}
     for job in jobs:
-        lesson = asked.lessons in batch and job.gives_lesson and known.knows(job.task, "lessons", require_known_lesson)
-        exams = asked.exams in batch and job.gives_exams and known.knows(job.task, "exams", require_known_exams)
+        lesson = compiled and job.gives_lesson and known.knows(job.task, "lessons", require_known_lesson)
+        exams = compiled and job.gives_exams and known.knows(job.task, "exams", require_known_exams)
         if lesson or exams:
-            loops[job.stem] = DriveLoops(*(DriveLoop.BATCH if each else DriveLoop.BUS for each in (lesson, exams)))
-    taught = [stem for stem, own in loops.items() if own.lesson is DriveLoop.BATCH]
-    examined = [stem for stem, own in loops.items() if own.exams is DriveLoop.BATCH]
+            engines[job.stem] = Engines(*(Engine.COMPILED if each else Engine.CAN for each in (lesson, exams)))
+    taught = [stem for stem, own in engines.items() if own.lesson is Engine.COMPILED]
+    examined = [stem for stem, own in engines.items() if own.exams is Engine.COMPILED]
     # By the same chance, so that one witness does for a robot with both.
     witnessed = {*choose_witnesses(taught, "robots"), *choose_witnesses(examined, "robots")}
-    return LoopChoice(loops, frozenset(witnessed), known.refusals)
+    return EngineChoice(engines, frozenset(witnessed), known.refusals)
 
 
 class _KnownTasks:

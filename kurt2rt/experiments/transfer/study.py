@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.seed_result import counts_of
 from kurt2rt.experiments.study.drive_row import DriveRow, Examiner
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
-from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
 AFTER = (0, 2, 5, 10, 15, 20)
@@ -225,7 +225,7 @@ class TransferJob(StudyJob):
 
 def _examiner(job: StudyJob, task: TaskSettings, report: Report) -> Examiner:
     """Return the examiner of a robot in the world that a task is taught in."""
-    return Examiner(job.factory, job.robot, task, task.teaching.world, job.seed, report, job.loops.exams)
+    return Examiner(job.factory, job.robot, task, task.teaching.world, job.seed, report, job.engines.exams)
 
 
 def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[int], presses: int) -> int:
@@ -269,7 +269,7 @@ def make_plan(
     variants: Sequence[Variant],
     parts: JobParts,
     *,
-    loops: RequestedLoops = ALL_ON_BUS,
+    engine: RequestedEngine = ALL_ON_BUS,
 ) -> StudyPlan[Transfer]:
     """Check task and worlds, and return the jobs.
 
@@ -279,7 +279,7 @@ def make_plan(
         seeds: one robot each.
         variants: ways of teaching in the new worlds.
         parts: factory, robot and results of the jobs.
-        loops: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
+        engine: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
 
     Raises:
         hal.settings.SettingsError: the task and a world do not fit, or a new world is that of home.
@@ -326,4 +326,4 @@ def make_plan(
 
     there = (job(place, variant, seed) for place in dict.fromkeys(new.places) for variant in variants for seed in seeds)
     plan = StudyPlan(Transfer(task, new.after), tuple(seeds), (*home_jobs.values(), *there))
-    return plan.driven(loops, parts["robot"])
+    return plan.driven(engine, parts["robot"])

@@ -33,7 +33,7 @@ class Access:
             address_command: command that shows the page's address. Default: kurt2rt teach for this device.
         """
         self.device = device
-        teach = "kurt2rt teach" if device == LOCAL else f"kurt2rt teach --as {device}"
+        teach = "kurt2rt teach" if device == LOCAL else f"kurt2rt teach --device {device}"
         self.address_command = teach if address_command is None else address_command
         self.public = public
         self._token = token.encode()

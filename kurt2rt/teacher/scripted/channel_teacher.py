@@ -137,7 +137,7 @@ def mid_level_refusal(task: TaskSettings) -> str:
     """Return the reason why the scripted teacher does not teach a task with a mid level over the channel."""
     return (
         f"task {task.name} has a mid level, and over the channel the scripted teacher does not see the streets that "
-        f"say which way is right; kurt2rt lesson --task {task.name} teaches it in simulated time"
+        f"say which way is right; kurt2rt train --task {task.name} teaches it in simulated time"
     )
 
 
@@ -156,7 +156,7 @@ def _task_refusal(hello: Hello, task: TaskSettings) -> str:
 def _reposition_notice(task: TaskSettings) -> str:
     return (
         f"task {task.name} wants the robot put elsewhere every {task.teaching.reposition_every_s:g} s, which is not "
-        f"done over the channel; kurt2rt lesson --task {task.name} does it, in simulated time"
+        f"done over the channel; kurt2rt train --task {task.name} does it, in simulated time"
     )
 
 

@@ -136,7 +136,7 @@ class ScriptedSupervisor:
         return (
             f"{', '.join(self._task.behaviours)}: in turn, each for {EACH_S:.0f} s, because over the channel the "
             f"teacher cannot see the next junction; after {self._task.teaching.rescue_after_s:g} s without progress "
-            f"the robot is put elsewhere; kurt2rt lesson --task {self._task.name} sees the streets, in simulated time"
+            f"the robot is put elsewhere; kurt2rt train --task {self._task.name} sees the streets, in simulated time"
         )
 
     async def update(self, state: State, *, stopped: bool) -> None:

@@ -121,7 +121,7 @@ def test_commission_that_cannot_start_prints_one_line(
         (("can0", "--name", "My Robot"), "a-z, 0-9"),
         (("can0", "--only", "identity,dance"), "identity, lifted, modes, wheels, stop"),
         (("can0", "--skip", "dance"), " dance;"),
-        (("can0", "--who", "an\x1bna"), "--who"),
+        (("can0", "--operator", "an\x1bna"), "--operator"),
         (("can0", "--out", "mine.txt"), ".yaml"),
         (("can0", "--out", "mine.yaml"), "--force"),
         ((), "Missing argument"),

@@ -77,7 +77,7 @@ def commission_the_rest(type_at: Type, spec: str, folder: Path, *steps: str) -> 
     earlier(folder, *steps)
     begin = [""] if "identity" in steps else []
     again = ["r", "", "", ""]  # after a stall of a busy machine, for which the guard stops the wheels
-    said = type_at(Typed(*begin, "wheels up", "", "", "", *again * 5), spec, "--name", "robbie", "--who", "bert")
+    said = type_at(Typed(*begin, "wheels up", "", "", "", *again * 5), spec, "--name", "robbie", "--operator", "bert")
     assert said.err == ""
     assert said.exit_code == 0, said.out
     for line in (

@@ -1,4 +1,4 @@
-"""Certificate of a robot in the real simulator: batch and CAN loop agree, and a difference refuses all."""
+"""Certificate of a robot in the real simulator: batch and CAN bus agree, and a difference refuses all."""
 
 import json
 from dataclasses import replace
@@ -22,7 +22,7 @@ from kurt2rt.experiments.certify.study import (
     read_certificate,
 )
 from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise, worst_runs
-from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError, DriveLoop
+from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine
 from kurt2rt.experiments.study.jobs import StudyJob
 from kurt2rt.experiments.study.parcel import pack, run_parcel
 from kurt2rt.experiments.study.results import Results
@@ -34,7 +34,7 @@ from tests.experiments.study.here import carry_out, parts_in
 from tests.simbridge.batch.equal_lessons import batch_lesson
 
 SECONDS = 12.0 if IS_COMPILED else 2.0
-EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), loop=DriveLoop.BATCH)
+EXTENT = Extent(first=20_000, runs=4, places=("c", "rooms-SEED"), engine=Engine.COMPILED)
 
 
 def ignore(_done_s: float) -> None:
@@ -122,7 +122,7 @@ def test_tables_have_a_row_for_each_place_and_for_all(made: tuple[Path, Certific
     probabilities, rates = list(all_tables(certificate, []))
     assert [row[0] for row in probabilities.rows] == [row[0] for row in rates.rows]
     assert probabilities.rows[-1][:2] == ("all", "4")
-    assert "3 runs were driven on the CAN loop too, with equal results." in probabilities.note
+    assert "3 runs were driven on the CAN bus too, with equal results." in probabilities.note
 
 
 def moved_to(folder: Path, plan: StudyPlan[Certified]) -> tuple[StudyJob, ...]:
@@ -161,11 +161,11 @@ def test_witness_job_stores_no_run_that_differs(
 
 def test_bus_alone_has_the_outcomes_of_the_batch(made: tuple[Path, Certificate], taught: Taught) -> None:
     folder, certificate = made
-    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, loop=DriveLoop.BUS))
+    plan = plan_in(folder / "bus", taught, EXTENT._replace(runs=2, engine=Engine.CAN))
     on_bus = read_certificate(carry_out(plan, folder / "bus"))
     assert on_bus.outcomes == certificate.outcomes[:2]
     assert (on_bus.compared, on_bus.on_bus) == (0, frozenset({20_000, 20_001}))
-    assert "All runs were driven on the CAN loop." in next(all_tables(on_bus, [])).note
+    assert "All runs were driven on the CAN bus." in next(all_tables(on_bus, [])).note
 
 
 def test_runs_with_a_broken_sensor_have_a_row_of_their_own(taught: Taught, tmp_path: Path) -> None:

@@ -23,7 +23,7 @@ from kurt2rt.experiments.compare.pupil import PUPILS, SHIPPED, Pupil
 from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome, make_plan
 from kurt2rt.experiments.compare.tables import Comparison, read_comparison
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
-from kurt2rt.experiments.lockstep.drive_loop import ON_BUS, DriveLoop, DriveLoops
+from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
@@ -32,7 +32,7 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.study.here import carry_out, parts_in
 
 AFTER = (2, 5)
-IN_BATCH = DriveLoops(DriveLoop.BATCH, DriveLoop.BATCH)
+IN_BATCH = Engines(Engine.COMPILED, Engine.COMPILED)
 
 
 class Breaking(RlaLearner):
@@ -159,8 +159,8 @@ def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 39
     """Require one outcome of the batch and the CAN bus, and return it."""
     job: PupilJob = make_plan([task], [pupil], (seed,), AFTER, parts_in(folder)).of(PupilJob)[-1]
     batch, bus = (
-        anyio.run(replace(job, loops=loops).measure, folder / "knowledge", lambda *_: None)
-        for loops in (IN_BATCH, ON_BUS)
+        anyio.run(replace(job, engines=engines).measure, folder / "knowledge", lambda *_: None)
+        for engines in (IN_BATCH, ON_BUS)
     )
     assert batch == bus
     return batch

@@ -11,7 +11,7 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.journal.loading import read_knowledge
@@ -21,15 +21,15 @@ from tests.simbridge.batch.equal_lessons import require_equal_lessons
 TASK = short_task(supervised_s=3.0, corrections_s=1.0, exam_s=1.0)
 
 
-def lesson(file: Path, loop: DriveLoop, task: TaskSettings = TASK) -> GivenLesson:
+def lesson(file: Path, engine: Engine, task: TaskSettings = TASK) -> GivenLesson:
     async def run() -> GivenLesson:
-        return GivenLesson(*await run_lesson(STAGE, ROBOT, task, file, seed=1, report=lambda *_: None, loop=loop))
+        return GivenLesson(*await run_lesson(STAGE, ROBOT, task, file, seed=1, report=lambda *_: None, engine=engine))
 
     return anyio.run(run)
 
 
 def test_file_of_a_lesson_in_a_batch_is_that_of_the_bus(tmp_path: Path) -> None:
-    batch, bus = lesson(tmp_path / "batch", DriveLoop.BATCH), lesson(tmp_path / "bus", DriveLoop.BUS)
+    batch, bus = lesson(tmp_path / "batch", Engine.COMPILED), lesson(tmp_path / "bus", Engine.CAN)
     assert batch.events
     require_equal_lessons(batch, bus)
     assert read_knowledge(tmp_path / "batch", ROBOT, TASK) == read_knowledge(tmp_path / "bus", ROBOT, TASK)
@@ -37,20 +37,20 @@ def test_file_of_a_lesson_in_a_batch_is_that_of_the_bus(tmp_path: Path) -> None:
 
 def test_robot_that_leaves_the_batch_is_taught_on_the_bus(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curriculum, "teach_in_batch", lambda *_given, **_named: None)
-    assert lesson(tmp_path / "k", DriveLoop.BATCH).events == lesson(tmp_path / "bus", DriveLoop.BUS).events
+    assert lesson(tmp_path / "k", Engine.COMPILED).events == lesson(tmp_path / "bus", Engine.CAN).events
 
 
 def test_batch_refuses_to_go_on_from_knowledge(tmp_path: Path) -> None:
-    lesson(tmp_path / "k", DriveLoop.BATCH)
+    lesson(tmp_path / "k", Engine.COMPILED)
     with pytest.raises(BatchRefusedError, match="knowledge to go on from"):
-        lesson(tmp_path / "k", DriveLoop.BATCH)
+        lesson(tmp_path / "k", Engine.COMPILED)
 
 
 def test_batch_refuses_another_plan(tmp_path: Path) -> None:
     async def run() -> None:
         plan = replace(plan_of(TASK), most_presses=3)
         await run_lesson(
-            STAGE, ROBOT, TASK, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan, loop=DriveLoop.BATCH
+            STAGE, ROBOT, TASK, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan, engine=Engine.COMPILED
         )
 
     with pytest.raises(BatchRefusedError, match="a plan of its own"):

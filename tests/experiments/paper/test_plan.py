@@ -105,7 +105,7 @@ def test_the_plain_reading_has_the_settings_of_its_own() -> None:
 
 def test_a_part_shortens_times_and_nothing_of_learning() -> None:
     task, whole = first_of(planned("eight", extent=QUICK)).task, load_task("eight")
-    assert task.learning == taught_by(whole, load_teacher(whole.teaching.default_teacher)).learning
+    assert task.learning == taught_by(whole, load_teacher("ordinary")).learning
     assert task.teaching.duration_s == pytest.approx(60.0, abs=1.0)
     share = whole.teaching.supervised_s / whole.teaching.duration_s
     assert task.teaching.supervised_s == pytest.approx(60.0 * share, abs=1.0)
@@ -148,8 +148,7 @@ def test_teacher_of_the_paper_teaches_every_task() -> None:
     plan = planned("circle", "eight", paper=load_paper().model_copy(update={"teacher": "slow"}))
     assert {each.task.teaching.profile.name for each in plan.jobs} == {"slow"}
     assert first_of(plan).made_of != first_of(planned("circle")).made_of
-    own = {each.task.name: each.task.teaching.profile.name for each in planned("circle", "streets").jobs}
-    assert own == {name: load_task(name).teaching.default_teacher for name in ("circle", "streets")}
+    assert {each.task.teaching.profile.name for each in planned("circle", "streets").jobs} == {"ordinary"}
 
 
 NOT_SEEN = range(100, 120)

@@ -33,7 +33,7 @@ from tests.experiments.study.page import Page
 pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
 
 EXTENT = Extent(most_teaching_s=4.0, most_exam_s=1.0, most_unseen=1, most_radii=1, most_robots=1, most_growth_s=4.0)
-COMMAND = "kurt2rt paper --seeds 100"
+COMMAND = "kurt2rt study paper --seeds 100"
 
 
 @dataclass(frozen=True)
@@ -123,7 +123,7 @@ def test_the_report_says_how_it_was_made_and_that_it_is_a_part(tiny: Tiny) -> No
 
 def test_report_escapes_its_values(tiny: Tiny, tmp_path: Path) -> None:
     evil = [tiny.pictures[1]._replace(caption="<script>alert(1)</script>")]
-    write_paper(tiny.study, evil, "kurt2rt paper --task a<b", tmp_path / "report.html")
+    write_paper(tiny.study, evil, "kurt2rt study paper --task a<b", tmp_path / "report.html")
     text = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "<script" not in text
     assert "a&lt;b" in text
@@ -136,7 +136,7 @@ def test_report_lists_all_settings(tiny: Tiny) -> None:
     )
     assert shipped["weights that are not 1"].startswith("1.5: s15; 2: maximum front; 0: minimum front; 0.5: s5, s6")
     assert plain["weights that are not 1"] == "none"
-    assert {shipped["teacher"], plain["teacher"]} == {load_task("wall_following").teaching.default_teacher}
+    assert {shipped["teacher"], plain["teacher"]} == {"ordinary"}
     eight = next(dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "eight")
     assert (eight["re-positions"], eight["sets it down at"]) == ("every 30 s", "a start pose")
     assert eight["rescues"] == "after 15 s within 1 m"

@@ -34,7 +34,7 @@ from tests.experiments.helpers import ROBOT
 from tests.experiments.study.here import carry_out, parts_in
 from tests.experiments.study.page import Page
 
-COMMAND = "kurt2rt phases --task wall_following --seeds 100"
+COMMAND = "kurt2rt study phases --task wall_following --seeds 100"
 
 
 @dataclass(frozen=True)

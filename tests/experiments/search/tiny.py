@@ -13,7 +13,7 @@ CONTENT: dict[str, Any] = {
     "name": "tiny",
     "task": "wall_following",
     "teacher": "attentive",
-    "exams": "bus",
+    "engine": "can",
     "trials": 3,
     "at_once": 2,
     "search": {"seeds": {"first": 3000, "count": 2}, "worlds": ["a"]},

@@ -8,23 +8,23 @@ import pytest
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
-from kurt2rt.experiments.lockstep.drive_loop import BatchDiffersError
+from kurt2rt.experiments.lockstep.engine import BatchDiffersError
 from kurt2rt.experiments.lockstep.exam import ExamResult
 from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.seeds import make_plan, read_results
-from kurt2rt.experiments.study.study_plan import LoopRequest, RequestedLoops, StudyPlan
+from kurt2rt.experiments.study.study_plan import EngineRequest, RequestedEngine, StudyPlan
 from tests.experiments.helpers import short_task
 from tests.experiments.study.here import carry_out, parts_in
 
 TASK = short_task(2.5, 1.0, 1.0)
-IN_BATCH = LoopRequest.BATCH
+IN_BATCH = EngineRequest.COMPILED
 
 
-def run(folder: Path, asked: LoopRequest = IN_BATCH) -> StudyPlan[None]:
-    plan = make_plan(TASK, [5], parts_in(folder), loops=RequestedLoops(asked, asked))
+def run(folder: Path, asked: EngineRequest = IN_BATCH) -> StudyPlan[None]:
+    plan = make_plan(TASK, [5], parts_in(folder), engine=RequestedEngine(asked))
     return carry_out(plan, folder)
 
 
@@ -34,7 +34,7 @@ def witness_of(plan: StudyPlan[None]) -> BusWitnessJob:
 
 
 def test_batch_and_bus_come_to_the_same_result(tmp_path: Path) -> None:
-    plan, on_bus = run(tmp_path / "batch"), run(tmp_path / "bus", LoopRequest.BUS)
+    plan, on_bus = run(tmp_path / "batch"), run(tmp_path / "bus", EngineRequest.CAN)
     results = Results(tmp_path / "batch")
     assert read_results(plan) == read_results(on_bus)
     assert results.read(witness_of(plan), BusWitnessOutcome).differing == ()

@@ -258,7 +258,9 @@ def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], 
 
 
 def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
-    said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--dry-run", "--runs", recordings).out
+    said = kurt2rt(
+        "knowledge", "undo", knowledge, "--teacher", "scripted teacher", "--dry-run", "--runs", recordings
+    ).out
     assert re.search(r"20260320T094640Z-wall_following: .*\b490\b.*\b490\b.* ask", said)
     assert " s  asks, instead" in said
     said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--dry-run", "--runs", recordings).out
@@ -298,7 +300,7 @@ def test_at_a_terminal_an_undo_asks_first(kurt2rt: CommandLine, knowledge: Path)
         assert "far-2" in refused.err
         assert "[y/N]" in refused.err
         assert folded(knowledge).last_standing_lesson == "far-2"
-    agreed = kurt2rt("knowledge", "undo", knowledge, "--of", "Ann", typed=Typed("y\n"))
+    agreed = kurt2rt("knowledge", "undo", knowledge, "--teacher", "Ann", typed=Typed("y\n"))
     assert " 2 " in agreed.err
     assert "[y/N]" in agreed.err
     assert "2 lessons of Ann" in agreed.out

@@ -63,7 +63,7 @@ def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path)
 def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
     teachers, devices = tmp_path / "var" / "teachers", tmp_path / "var" / "devices"
     pair(teachers, devices, "phone")
-    with running("teach", "--as", "phone", "--page-port", "0", *HERE, folder=tmp_path) as page:
+    with running("teach", "--device", "phone", "--page-port", "0", *HERE, folder=tmp_path) as page:
         address = urlsplit(page.wait_for("http://").strip())
         cookie_of(address._replace(netloc=f"127.0.0.1:{address.port}").geturl())  # it is served, also on loopback
         revoke(teachers, devices, "phone")
@@ -81,7 +81,7 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
     with listen(0, everywhere=False) as before:
         port = before.getsockname()[1]
         settings.write_text(default.replace("page_port: 8642", f"page_port: {port}"), encoding="utf-8")
-        with running("teach", "--as", "phone", "--settings", "own.yaml", *HERE, folder=tmp_path) as page:
+        with running("teach", "--device", "phone", "--settings", "own.yaml", *HERE, folder=tmp_path) as page:
             told = page.wait_for("page for phone, ")
             served = urlsplit(page.wait_for("http://").strip()).port
             assert served is not None
@@ -90,7 +90,7 @@ def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
             assert str(served) in told
             cookie_of(f"http://127.0.0.1:{served}/pair?token={read_device(tmp_path / 'var/devices/phone').token}")
             assert page.end(signal.SIGTERM).err == ""
-        with running("teach", "--as", "phone", "--page-port", str(port), folder=tmp_path) as page:
+        with running("teach", "--device", "phone", "--page-port", str(port), folder=tmp_path) as page:
             page.process.wait(timeout=PATIENCE_S)
             assert page.process.stderr is not None
             assert os.strerror(errno.EADDRINUSE) in page.process.stderr.read()

@@ -174,7 +174,7 @@ def phases(robot: StandInRobot) -> list[Phase]:
 
 
 async def test_teach_by_script_task_with_a_mid_level_is_refused(robot: StandInRobot, client: TeacherClient) -> None:
-    with pytest.raises(RefusedError, match=r"\broute\b.* kurt2rt lesson --task route"):
+    with pytest.raises(RefusedError, match=r"\broute\b.* kurt2rt train --task route"):
         await teach_by_script(client, load_robot(), load_task("route"), print)
     assert robot.state.teacher != AUTO
 

@@ -1,14 +1,14 @@
-"""`kurt2rt lesson route`: robots that know the streets are taught routes through them."""
+"""`kurt2rt train --task route`: robots that know the streets are taught routes through them."""
 
 import anyio
 import typer
 
 from behaviors.metrics.route import RouteSettings
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.lesson_options import ROUTES, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, print_study, tables_of
+from kurt2rt.cli.train_options import ROUTES, TrainOptions, TrainSetup
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteOutcome, make_plan
@@ -25,15 +25,15 @@ def teaches_route(task: TaskSettings) -> bool:
     return isinstance(task.course, RouteSettings)
 
 
-def require_no_route_options(task: TaskSettings, options: LessonOptions) -> None:
+def require_no_route_options(task: TaskSettings, options: TrainOptions) -> None:
     """Raise typer.BadParameter if the options include one that only a task with a route has."""
-    of_a_route = {"--decisions": options.decisions, "--basic": options.basic, "--controls": options.controls}
+    of_a_route = {"--decisions": options.decisions, "--basic": options.basic, "--baselines": options.baselines}
     for name, value in of_a_route.items():
         if value:
             raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
 
 
-def one_route(setup: LessonSetup, options: LessonOptions) -> None:
+def one_route(setup: TrainSetup, options: TrainOptions) -> None:
     """Teach one robot one route, examine it, print the numbers and draw the drive.
 
     Raises:
@@ -47,7 +47,7 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
     from kurt2rt.experiments.route.tables import robot_table
 
     given = tuple(options.decisions or ())
-    if len(given) > 1 or options.controls:
+    if len(given) > 1 or options.baselines:
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
     out = options.out or ROUTES
     plan = make_plan(setup.task, (options.seed,), given, (TAUGHT,), setup.parts(out), basic_folder=options.basic)
@@ -79,7 +79,7 @@ def one_route(setup: LessonSetup, options: LessonOptions) -> None:
         print_whole(console_of(), as_rich(table), f"knowledge  {file}", f"picture  {picture}")
 
 
-def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
+def many_routes(setup: TrainSetup, options: TrainOptions) -> None:
     """Teach and examine many robots; keep results that are in the folder. Print tables and write a report.
 
     Raises:
@@ -91,7 +91,7 @@ def many_routes(setup: LessonSetup, options: LessonOptions) -> None:
     from kurt2rt.experiments.route.tables import all_tables, read_study, write_routes
 
     parts = setup.parts(options.out or ROUTES)
-    variants = (TAUGHT, *(CONTROLS if options.controls else ()))
+    variants = (TAUGHT, *(CONTROLS if options.baselines else ()))
     plan = make_plan(
         setup.task, options.all_seeds, options.decisions or (), variants, parts, basic_folder=options.basic
     )

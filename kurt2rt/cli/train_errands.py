@@ -1,12 +1,12 @@
-"""`kurt2rt lesson errands`: robots that know the streets are led about a town, and sent to places."""
+"""`kurt2rt train --task errands`: robots that know the streets are led about a town, and sent to places."""
 
 import typer
 
 from behaviors.metrics.errands import ErrandsSettings
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.train_options import ERRANDS, TrainOptions, TrainSetup
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.study import ErrandsOutcome, NavigationJob, make_plan
@@ -19,13 +19,13 @@ def runs_errands(task: TaskSettings) -> bool:
     return isinstance(task.course, ErrandsSettings)
 
 
-def errands(setup: LessonSetup, options: LessonOptions) -> None:
+def errands(setup: TrainSetup, options: TrainOptions) -> None:
     """Lead robots through a town and send them to places; print tables and draw each robot.
 
     Results that are in the folder already are kept.
 
     Raises:
-        typer.BadParameter: an option belongs to other lessons.
+        typer.BadParameter: an option belongs to other tasks.
         SettingsError: task, robot or world cannot be loaded.
         StudyError: another run writes to the folder, or it has results of other settings.
         KnowledgeError: a knowledge file of the streets cannot be read.
@@ -37,7 +37,7 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
     task, out = setup.task, options.out or ERRANDS
     parts = setup.parts(out)
-    plan = make_plan(task, options.all_seeds, parts, basic_folder=options.basic, controls=options.controls)
+    plan = make_plan(task, options.all_seeds, parts, basic_folder=options.basic, controls=options.baselines)
     with study_run(plan, parts, options) as bar:
         bar.say("pictures")
         outcomes = [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]

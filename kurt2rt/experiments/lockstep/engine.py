@@ -1,4 +1,4 @@
-"""Loops that drive lessons and exams: over the CAN bus, or in a batch with witnesses on the CAN bus."""
+"""Engines that drive lessons and exams: the simulated CAN bus, or a compiled batch with witnesses on the CAN bus."""
 
 import hashlib
 import math
@@ -15,13 +15,13 @@ WITNESS_SHARE = 0.01
 LEAST_WITNESSES = 3
 
 
-class DriveLoop(StrEnum):
-    """Loop that drives exams or lessons."""
+class Engine(StrEnum):
+    """Engine that drives exams or lessons."""
 
-    BUS = "bus"
-    """Loop over the simulated CAN bus."""
-    BATCH = "batch"
-    """Compiled loop; drives that it does not finish are driven on the CAN bus."""
+    CAN = "can"
+    """Simulated CAN bus, robot by robot."""
+    COMPILED = "compiled"
+    """Compiled batch of robots; drives that it does not finish are driven on the CAN bus."""
 
 
 class BatchDiffersError(UserError):
@@ -29,19 +29,19 @@ class BatchDiffersError(UserError):
 
 
 @dataclass(frozen=True, slots=True)
-class DriveLoops:
-    """Loops of one robot's lesson and exams."""
+class Engines:
+    """Engines of one robot's lesson and exams."""
 
-    lesson: DriveLoop = DriveLoop.BUS
-    exams: DriveLoop = DriveLoop.BUS
+    lesson: Engine = Engine.CAN
+    exams: Engine = Engine.CAN
 
     @property
     def in_batch(self) -> bool:
         """Return whether a batch drives any of them."""
-        return DriveLoop.BATCH in (self.lesson, self.exams)
+        return Engine.COMPILED in (self.lesson, self.exams)
 
 
-ON_BUS = DriveLoops()
+ON_BUS = Engines()
 
 
 def choose_witnesses(drives: Sequence[_DriveT], of: str, *, least: int = LEAST_WITNESSES) -> list[_DriveT]:

@@ -1,4 +1,4 @@
-"""`kurt2rt lesson`."""
+"""`kurt2rt train`."""
 
 from pathlib import Path
 
@@ -8,71 +8,66 @@ import typer
 from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.lesson_errands import errands, runs_errands
-from kurt2rt.cli.lesson_options import DEFAULT_TASK, LESSONS, LessonOptions, LessonSetup
-from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_options, teaches_route
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.study_run import study_run
 from kurt2rt.cli.tables import console_of
+from kurt2rt.cli.train_errands import errands, runs_errands
+from kurt2rt.cli.train_options import DEFAULT_TASK, FOLDER, TrainOptions, TrainSetup
+from kurt2rt.cli.train_route import many_routes, one_route, require_no_route_options, teaches_route
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
-from kurt2rt.core.task_settings import taught_by
-from kurt2rt.core.teacher_settings import load_teacher
+from kurt2rt.core.task_settings import taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import seed_result
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
-from kurt2rt.experiments.study.study_plan import LoopRequest
+from kurt2rt.experiments.study.study_plan import EngineRequest
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
 
-@takes_options(LessonOptions)
-def lesson(options: LessonOptions) -> None:
+@takes_options(TrainOptions)
+def train(options: TrainOptions) -> None:
     """Teach simulated robots with a scripted teacher.
 
     One lesson lasts as long as its task says (config/tasks), in robot time.
     Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59;
     results are reported on others:
 
-        kurt2rt lesson --task streets --seeds 100-119
+        kurt2rt train --task streets --seeds 100-119
 
-    The teacher superhuman has the times of the task, as no person has; others
-    react, err and look away like a person (config/teachers):
+    The teacher ordinary reacts, errs and looks away like a person; superhuman
+    has the times of the task, as no person has (config/teachers):
 
-        kurt2rt lesson --teacher ordinary --seeds 100-119
+        kurt2rt train --teacher superhuman --seeds 100-119
 
     With --seeds results are kept in --out with hashes of what made them; a run
     that was interrupted goes on where it was. A robot of a basic task that was
     made otherwise is taught again, and its knowledge file gets a new name.
-    Several machines share the robots:
-
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
     teacher:
 
-        kurt2rt lesson --task route
-        kurt2rt lesson --task route --seeds 0-9 --decisions 8 --decisions 12
+        kurt2rt train --task route
+        kurt2rt train --task route --seeds 0-9 --decisions 8 --decisions 12
 
     The task errands leads the robot about the town and names places, and then
     sends it to them by ways that it was never led as a whole; results are
     kept in --out as well:
 
-        kurt2rt lesson --task errands --seeds 0-9 --controls
+        kurt2rt train --task errands --seeds 0-9 --baselines
     """
     setup = _setup(_task_name(options), options)
     task = setup.task
-    if options.seeds is None and options.exams is LoopRequest.BATCH:
-        raise typer.BadParameter("without --seeds there are no exams: give --seeds as well", param_hint="--exams")
-    if options.seeds is None and options.lessons is LoopRequest.BATCH:
-        raise typer.BadParameter("a batch is for many robots: give --seeds as well", param_hint="--lessons")
+    if options.seeds is None and options.engine is EngineRequest.COMPILED:
+        raise typer.BadParameter("compiled is for many robots: give --seeds as well", param_hint="--engine")
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
-    if task.mid is not None and LoopRequest.BATCH in (options.lessons, options.exams):
+    if task.mid is not None and options.engine is EngineRequest.COMPILED:
         typer.echo(
             f"{task.name}: lessons and exams on the CAN bus, because a batch does not know a mid level", err=True
         )
@@ -80,35 +75,31 @@ def lesson(options: LessonOptions) -> None:
         errands(setup, options)
     elif not teaches_route(task):
         require_no_route_options(task, options)
-        _lesson(setup, options)
+        _basic_task(setup, options)
     elif options.seeds is None:
         one_route(setup, options)
     else:
         many_routes(setup, options)
 
 
-def _task_name(options: LessonOptions) -> str:
-    """Return the task, which may be given in two ways. Raises typer.BadParameter, KnowledgeError."""
-    task, word = options.task, options.task_word
-    if word is not None and task not in (None, word):
-        raise typer.BadParameter(f"{task!r} or {word!r}? Say it once", param_hint="--task")
-    name = task or word
+def _task_name(options: TrainOptions) -> str:
+    """Return the task: of --task, or of the file in --knowledge. Raises KnowledgeError."""
     if options.knowledge is not None and options.knowledge.exists():
-        name = task_of_file(options.knowledge, name)
-    return name or DEFAULT_TASK
+        return task_of_file(options.knowledge, options.task)
+    return options.task or DEFAULT_TASK
 
 
-def _setup(task_name: str, options: LessonOptions) -> LessonSetup:
+def _setup(task_name: str, options: TrainOptions) -> TrainSetup:
     task, robot = load_task_and_robot(
-        task_name, options.robot_settings, plain=options.plain, changes=changes_of(options.changes)
+        task_name, options.robot_settings, plain=options.paper_defaults, changes=changes_of(options.changes)
     )
-    taught = taught_by(task, load_teacher(options.teacher))
-    command = typed_command("lesson", options, {"task": task_name, "task_word": None})
-    return LessonSetup(simulations_of(robot), robot, taught, command)
+    taught = taught_by_named(task, options.teacher)
+    command = typed_command("train", options, {"task": task_name})
+    return TrainSetup(simulations_of(robot), robot, taught, command)
 
 
-def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
-    task, out = setup.task, options.out or LESSONS
+def _basic_task(setup: TrainSetup, options: TrainOptions) -> None:
+    task, out = setup.task, options.out or FOLDER
     worlds = (task.teaching.world, *(task.exam.worlds if options.seeds is not None else ()))
     setup.factory.require_worlds(*worlds)
     require_course(setup.factory, task, worlds)
@@ -119,7 +110,7 @@ def _lesson(setup: LessonSetup, options: LessonOptions) -> None:
         _many_seeds(setup, options, out)
 
 
-def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
+def _one_seed(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
     task = setup.task
     out.mkdir(parents=True, exist_ok=True)
     file = options.knowledge or out / f"{task.name}-{options.seed}.knowledge"
@@ -139,9 +130,9 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
         print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
 
 
-def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
+def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
     parts = setup.parts(out)
-    plan = make_plan(setup.task, options.all_seeds, parts, loops=options.requested_loops())
+    plan = make_plan(setup.task, options.all_seeds, parts, engine=options.requested_engine())
     forget_lost_robots(plan)
     with study_run(plan, parts, options):
         robots = read_results(plan)

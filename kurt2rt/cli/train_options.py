@@ -1,4 +1,4 @@
-"""Options of `kurt2rt lesson`, and the simulation that all its kinds of lessons share."""
+"""Options of `kurt2rt train`, and the simulation that all its kinds of tasks share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,29 +9,35 @@ import typer
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, parse_seeds, task_option, teacher_option
-from kurt2rt.cli.study_run import LoopOptions
+from kurt2rt.cli.options import (
+    DEFAULT_TEACHER,
+    Changes,
+    PaperDefaults,
+    RobotName,
+    Seed,
+    Teacher,
+    parse_seeds,
+    task_option,
+)
+from kurt2rt.cli.study_run import EngineOptions
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 
 DEFAULT_TASK = "wall_following"
-LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
+FOLDER, ROUTES, ERRANDS = Path("results/train"), Path("results/route"), Path("results/errands")
 """Default folders of --out."""
-_TASK_WORD = typer.Argument(hidden=True, metavar=" ", help="The task, as --task names it.")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LessonOptions(LoopOptions):
-    """Options of `kurt2rt lesson`."""
+class TrainOptions(EngineOptions):
+    """Options of `kurt2rt train`."""
 
-    task_word: Annotated[str | None, _TASK_WORD] = None
     task: Annotated[str | None, task_option(f"Default: the task of the file in --knowledge, else {DEFAULT_TASK}.")] = (
         None
     )
-    teacher: Annotated[str, teacher_option(SUPERHUMAN)] = SUPERHUMAN
-    plain: Plain = False
+    teacher: Teacher = DEFAULT_TEACHER
+    paper_defaults: PaperDefaults = False
     changes: Changes = None
     seed: Seed = 1
     knowledge: Annotated[
@@ -47,7 +53,7 @@ class LessonOptions(LoopOptions):
     out: Annotated[
         Path | None,
         typer.Option(
-            help=f"Folder for what is made; created when absent. Default: {LESSONS}, of routes {ROUTES}, of errands "
+            help=f"Folder for what is made; created when absent. Default: {FOLDER}, of routes {ROUTES}, of errands "
             f"{ERRANDS}.",
             show_default=False,
         ),
@@ -63,13 +69,13 @@ class LessonOptions(LoopOptions):
         Path | None,
         typer.Option(
             help="Of a route, or errands: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
-            "lesson --task streets leaves them. Without it the streets are taught first."
+            "train --task streets leaves them. Without it the streets are taught first."
         ),
     ] = None
-    controls: Annotated[
+    baselines: Annotated[
         bool,
         typer.Option(
-            "--controls",
+            "--baselines",
             help="Of a route with --seeds, or errands: also go about it in other ways, to compare.",
         ),
     ] = False
@@ -81,8 +87,8 @@ class LessonOptions(LoopOptions):
 
 
 @dataclass(frozen=True, slots=True)
-class LessonSetup:
-    """Simulation, robot and task of a lesson."""
+class TrainSetup:
+    """Simulation, robot and task of a training."""
 
     factory: SimulationFactory
     robot: RobotSettings

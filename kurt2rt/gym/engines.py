@@ -1,8 +1,8 @@
-"""Loops that an environment drives by: the CAN bus, or the compiled batch."""
+"""Engines that an environment drives by: the CAN bus, or the compiled batch."""
 
 from hal.batch import BatchFactory
 from hal.settings import SettingsError
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop
+from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.gym.batch_drive import BatchDrive
 from kurt2rt.gym.bus_drive import BusDrive
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
@@ -10,25 +10,25 @@ from kurt2rt.gym.moment import AgentDrive
 from simbridge.batch.compiled import IS_COMPILED
 
 
-def quickest_loop() -> DriveLoop:
+def quickest_engine() -> Engine:
     """Return the batch, or without the compiler (extra `fast`) the CAN bus, which is quicker then."""
-    return DriveLoop.BATCH if IS_COMPILED else DriveLoop.BUS
+    return Engine.COMPILED if IS_COMPILED else Engine.CAN
 
 
-def read_loop(name: str) -> DriveLoop:
-    """Return the loop of a name. Raises hal.settings.SettingsError for an unknown one."""
-    if name not in set(DriveLoop):
-        raise SettingsError(f"loop: unknown (got {name}, allowed {', '.join(DriveLoop)})")
-    return DriveLoop(name)
+def read_engine(name: str) -> Engine:
+    """Return the engine of a name. Raises hal.settings.SettingsError for an unknown one."""
+    if name not in set(Engine):
+        raise SettingsError(f"engine: unknown (got {name}, allowed {', '.join(Engine)})")
+    return Engine(name)
 
 
-def open_drive(loop: DriveLoop, factory: BatchFactory, setup: EpisodeSetup) -> AgentDrive:
+def open_drive(engine: Engine, factory: BatchFactory, setup: EpisodeSetup) -> AgentDrive:
     """Return a new drive of an agent.
 
     Raises:
         BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
         hal.settings.SettingsError: task and world do not fit.
     """
-    if loop is DriveLoop.BATCH:
+    if engine is Engine.COMPILED:
         return BatchDrive(factory, setup)
     return BusDrive(factory.open(setup.world, setup.seed, PURPOSE), setup)

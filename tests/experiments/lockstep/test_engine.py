@@ -7,7 +7,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_drives, run_exams
-from kurt2rt.experiments.lockstep.drive_loop import DriveLoop, choose_witnesses
+from kurt2rt.experiments.lockstep.engine import Engine, choose_witnesses
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
@@ -24,7 +24,7 @@ def test_choose_witnesses_depends_on_the_drives_alone() -> None:
     assert choose_witnesses(range(100), "b") != few
 
 
-def examined(loop: DriveLoop, reported: list[str] | None = None) -> tuple[WorldResult, ...]:
+def examined(engine: Engine, reported: list[str] | None = None) -> tuple[WorldResult, ...]:
     """Examine an untaught robot, which stands, and its teacher's policy."""
 
     async def run() -> tuple[WorldResult, ...]:
@@ -32,25 +32,27 @@ def examined(loop: DriveLoop, reported: list[str] | None = None) -> tuple[WorldR
             if reported is not None and done_s == whole_s:
                 reported.append(what)
 
-        return await run_exams(STAGE, ROBOT, short_task(exam_s=1.0), (), ("a", "b"), seed=1, report=report, loop=loop)
+        return await run_exams(
+            STAGE, ROBOT, short_task(exam_s=1.0), (), ("a", "b"), seed=1, report=report, engine=engine
+        )
 
     return anyio.run(run)
 
 
 def test_robot_that_leaves_the_batch_is_examined_on_the_bus(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(curriculum, "examine_in_batch", lambda *_: [None] * 4)
-    assert examined(DriveLoop.BATCH) == examined(DriveLoop.BUS)
+    assert examined(Engine.COMPILED) == examined(Engine.CAN)
 
 
 def test_stuck_robot_that_is_rescued_is_examined_on_the_bus() -> None:
     task = load_task("wall_following", changes={"exam.duration_s": "3", "exam.stuck_after_s": "1"})
 
-    def drive(loop: DriveLoop) -> ExamResult:
+    def drive(engine: Engine) -> ExamResult:
         async def run() -> list[ExamResult]:
             exam = BatchExam(ExamSetup("a", 1, stuck_ends=False))  # it knows nothing, and stands
-            return await run_drives(STAGE, ROBOT, task, [exam], lambda *_: None, loop)
+            return await run_drives(STAGE, ROBOT, task, [exam], lambda *_: None, engine)
 
         return anyio.run(run)[0]
 
-    assert drive(DriveLoop.BATCH) == drive(DriveLoop.BUS)
-    assert drive(DriveLoop.BUS).rescues == 2
+    assert drive(Engine.COMPILED) == drive(Engine.CAN)
+    assert drive(Engine.CAN).rescues == 2

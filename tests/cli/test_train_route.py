@@ -1,11 +1,11 @@
-"""`kurt2rt lesson route` as a user meets it."""
+"""`kurt2rt train --task route` as a user meets it."""
 
 from pathlib import Path
 
 import pytest
 
 from kurt2rt.core.task_settings import load_task
-from tests.cli.helpers import CommandLine, unknown_name
+from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import teach
 from tests.experiments.route.test_study import short
 
@@ -22,25 +22,25 @@ def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_robot_is_taught_a_route_drives_it_and_is_drawn(kurt2rt: CommandLine, streets: Path) -> None:
-    said = kurt2rt("lesson", "route", "--basic", streets, "--decisions", "12", "--out", "made", *SHORT)
+    said = kurt2rt("train", "--task", "route", "--basic", streets, "--decisions", "12", "--out", "made", *SHORT)
     assert said.exit_code == 0, said.err
     assert "of 12 decisions" in said.out
     assert "mid-level RLAs" in said.out
     assert Path("made/route-12-1.png").is_file()
     # What was taught can be gone on with, and examined again, on the same route.
     knowledge = "made/route-12-1.knowledge"
-    assert kurt2rt("lesson", "route", "--knowledge", knowledge, "--out", "made", *SHORT).exit_code == 0
+    assert kurt2rt("train", "--task", "route", "--knowledge", knowledge, "--out", "made", *SHORT).exit_code == 0
     said = kurt2rt("exam", knowledge, "--task", "route", "--set", "course.decisions=12", *SHORT)
     assert said.exit_code == 0, said.err
 
 
 def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLine, streets: Path) -> None:
-    words = ("lesson", "route", "--seeds", "1,2", "--basic", streets, "--jobs", "1", "--out", "made", *SHORT)
+    words = ("train", "--task", "route", "--seeds", "1,2", "--basic", streets, "--jobs", "1", "--out", "made", *SHORT)
     said = kurt2rt(*words)
     assert said.exit_code == 0, said.err
     assert " 2 robots " in said.out
     report = Path("made/report.html").read_text(encoding="utf-8")
-    assert "kurt2rt lesson --task route --set " in report
+    assert "kurt2rt train --task route --set " in report
     assert " --seeds 1,2 --basic streets" in report
     assert str(streets) not in report
     kept = Path("made/results/taught/route-8-1.json")
@@ -49,26 +49,21 @@ def test_many_robots_leave_a_report_and_are_not_taught_again(kurt2rt: CommandLin
     assert kept.stat().st_mtime_ns == before
 
 
-def test_the_task_may_be_said_either_way_but_not_both_ways(kurt2rt: CommandLine) -> None:
-    assert "'circle' or 'eight'" in kurt2rt.misused("lesson", "eight", "--task", "circle")
-    assert unknown_name("tasks", "nope") in kurt2rt.refused("lesson", "nope")
-
-
 @pytest.mark.parametrize("words", [("--decisions", "8"), ("--basic", "here")])
-def test_lesson_route_options_of_another_task_are_refused(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
-    line = kurt2rt.misused("lesson", "circle", *words)
+def test_route_options_of_another_task_are_refused(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
+    line = kurt2rt.misused("train", "--task", "circle", *words)
     assert words[0] in line
     assert "task circle" in line
 
 
 def test_one_robot_is_taught_one_route(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.misused("lesson", "route", "--decisions", "8", "--decisions", "12")
+    said = kurt2rt.misused("train", "--task", "route", "--decisions", "8", "--decisions", "12")
     assert "--seeds" in said
-    assert "7 decisions" in kurt2rt.refused("lesson", "route", "--decisions", "7")
+    assert "7 decisions" in kurt2rt.refused("train", "--task", "route", "--decisions", "7")
 
 
 def test_streets_that_nobody_taught_are_asked_for(kurt2rt: CommandLine, streets: Path) -> None:
-    said = kurt2rt.refused("lesson", "route", "--seed", "3", "--basic", streets)
+    said = kurt2rt.refused("train", "--task", "route", "--seed", "3", "--basic", streets)
     assert f"{streets / 'streets-3.knowledge'}: " in said
-    assert "kurt2rt lesson --task streets" in said
+    assert "kurt2rt train --task streets" in said
     assert not Path("results").exists()

@@ -61,21 +61,24 @@ def drive_both_ways(bus: TaskEnvironment, batch: TaskEnvironment, chooser: rando
 
 @pytest.mark.parametrize("task", TASKS)
 def test_agent_drives_alike_on_the_bus_and_in_the_batch(task: str) -> None:
-    with environment(task, averages=True) as bus, environment(task, averages=True, loop="batch") as batch:
+    with environment(task, averages=True) as bus, environment(task, averages=True, engine="compiled") as batch:
         drive_both_ways(bus, batch, random.Random(1), seed=1)
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("task", TASKS)
 def test_agents_of_many_seeds_drive_alike(task: str) -> None:
-    with environment(task, ends_at=("stuck",)) as bus, environment(task, ends_at=("stuck",), loop="batch") as batch:
+    with (
+        environment(task, ends_at=("stuck",)) as bus,
+        environment(task, ends_at=("stuck",), engine="compiled") as batch,
+    ):
         for seed in range(20):
             drive_both_ways(bus, batch, random.Random(seed), seed=seed)
 
 
 @pytest.mark.parametrize("action", ["flee", "back", "quarter_turn_left", "along_left_wall"])
 def test_pressed_on_action_ends_alike_in_both_loops(action: str) -> None:
-    with environment("fleeing") as bus, environment("fleeing", loop="batch") as batch:
+    with environment("fleeing") as bus, environment("fleeing", engine="compiled") as batch:
         for env in (bus, batch):
             env.reset(seed=4, options={"world": "b"})
         one, other = (press_on(env, action, STEPS) for env in (bus, batch))
@@ -113,7 +116,7 @@ def test_vector_environment_drives_in_the_batch() -> None:
     assert isinstance(vector, SyncVectorEnv)
     assert vector.spec is not None
     assert vector.spec.kwargs["vectorization_mode"] == "vector_entry_point"
-    assert vector.call("loop") == (("batch" if IS_COMPILED else "bus"),) * 2
+    assert vector.call("engine") == (("compiled" if IS_COMPILED else "can"),) * 2
     observations, infos = vector.reset(seed=1)
     for _ in range(5):
         observations, _, _, truncated, infos = vector.step(infos["teacher"]["index"])
@@ -125,7 +128,7 @@ def test_vector_environment_drives_in_the_batch() -> None:
 
 
 def test_environment_with_an_unknown_loop_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"got wire, allowed bus, batch"), environment(loop="wire"):
+    with pytest.raises(SettingsError, match=r"got wire, allowed can, compiled"), environment(engine="wire"):
         pass
 
 

@@ -1,0 +1,27 @@
+"""`kurt2rt train --engine compiled`."""
+
+from pathlib import Path
+
+from tests.cli.helpers import CommandLine
+
+SHORT = ("--set", "teaching.supervised_s=5", "--set", "teaching.corrections_s=0", "--set", "exam.duration_s=2")
+
+
+def test_train_refuses_a_batch_of_one_robot(kurt2rt: CommandLine) -> None:
+    assert "give --seeds" in kurt2rt.refused("train", *SHORT, "--engine", "compiled")
+
+
+def test_train_of_an_unknown_task_goes_to_the_bus_and_says_so(kurt2rt: CommandLine) -> None:
+    asks = ("--set", "learning.doubt.asks=true", "--engine", "compiled")
+    told = kurt2rt("train", *SHORT, "--seeds", "1", "--jobs", "1", *asks)
+    assert told.exit_code == 0, told.err
+    assert "wall_following: lessons on the CAN bus, because a batch does not know a robot that asks" in told.err
+
+
+def test_train_goes_on_in_no_folder_in_which_a_witness_differs(kurt2rt: CommandLine) -> None:
+    words = ("train", *SHORT, "--seeds", "1", "--jobs", "1", "--engine", "compiled")
+    assert kurt2rt(*words).exit_code == 0
+    (path,) = Path("results/train/results/witnesses").glob("*.json")
+    path.write_text(path.read_text().replace('"differing":[]', '"differing":["lesson.asks"]'))
+    for engine in ("compiled", "can"):
+        assert "differ in lesson.asks; all results" in kurt2rt.refused(*words[:-1], engine)
