@@ -21,35 +21,21 @@ class TextCode(StrEnum):
     """Base of codes that are told to a person: each member carries its text."""
 
     text: str
-    """Sentence, with the fields of its case in braces."""
+    """Fact or fault, with the fields of its case in braces."""
+    do: str
+    """Remedy, with the fields of its case in braces; empty if there is none, or `text` says it."""
 
-    def __new__(cls, value: str, text: str) -> Self:
+    def __new__(cls, value: str, text: str = "", do: str = "") -> Self:
         """Make a member of a code and its text."""
         member = str.__new__(cls, value)
         member._value_ = value
-        member.text = text
+        member.text, member.do = text, do
         return member
 
     @property
     def fields(self) -> frozenset[str]:
-        """Names of the fields in the text."""
-        return frozenset(name for _, name, _, _ in Formatter().parse(self.text) if name)
-
-
-class ErrorCode(StrEnum):
-    """Base of the conditions of an error: each member is a code with the text of its line."""
-
-    what: str
-    """Fault, with the error's fields in braces."""
-    do: str
-    """Remedy, with the error's fields in braces; empty if `what` says it."""
-
-    def __new__(cls, value: str, what: str, do: str) -> Self:
-        """Make a member of a code and its text."""
-        member = str.__new__(cls, value)
-        member._value_ = value
-        member.what, member.do = what, do
-        return member
+        """Names of the fields in the text and the remedy."""
+        return frozenset(name for _, name, _, _ in Formatter().parse(self.text + self.do) if name)
 
 
 class UserError(Exception):

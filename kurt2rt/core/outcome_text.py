@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
 from kurt2rt.core.decision.goal import goal_text
-from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import hindrance_text
+from kurt2rt.core.decision.standing import Standing, StandReason, hindrance_text
 from kurt2rt.core.outcome import Code, Field, Outcome, ResultCode
-from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.rla import BASIC, rla_title
 
 
@@ -46,21 +45,6 @@ _WORDS: dict[Surface, dict[str, str]] = {
 """Names of the controls of each surface."""
 
 _TICKS_PER_S = 100
-_EVENT_TEXTS = {
-    EventFault.NOT_UNDOABLE: "lesson {lesson!r} cannot be undone",
-    EventFault.NOT_REDOABLE: "lesson {lesson!r} cannot be redone",
-    EventFault.LESSON_EXISTS: "command {command_id!r} has taught a lesson already",
-    EventFault.RLA_EXISTS: "RLA {rla_id} cannot be created: ids up to {last} are taken",
-    EventFault.NO_RLA: "RLA {rla_id} does not exist (ids 1 to {last} were used; some are deleted)",
-    EventFault.BAD_CONDITION: "RLA {rla_id}: {error}",
-    EventFault.NOT_FINITE: "the situation named {name!r} holds a value that is not finite",
-    EventFault.BAD_SITUATION: "the situation named {name!r} has {got} values, level {level} matches {expected}",
-    EventFault.BAD_ACTION: "the action {action!r} cannot be taught; withdraw the RLA's action instead",
-    EventFault.BAD_REWARD: "RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)",
-    EventFault.WITHDRAWN_ALREADY: "{title} has no action; withdraw an action once",
-    EventFault.NO_LEVEL: "{title} is of the level {level!r}, but the file does not list its features",
-}
-
 _ONLY_BEHAVIOUR = "the only behaviour"
 _MADE_OF = {"title": ("rla",), "wanted": ("behaviour",), "sought": ("goal", "status")}
 """Name in a text -> fields that it is made of."""
@@ -88,7 +72,7 @@ def neighbours_text(actions: Sequence[str], nearest: int) -> str:
 
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
-    return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
+    return error.fault.text.format(**error.fields) if error.refusal is None else text_of(error.refusal)
 
 
 def _hindrance_text(outcome: Outcome) -> str:

@@ -1,6 +1,6 @@
 """Conditions that keep knowledge from being read or written, as codes, and the text of each."""
 
-from hal.errors import ErrorCode
+from hal.errors import TextCode
 
 _SQLITE = " (SQLite: {error})"
 _BACKUP = "keep the file, and go on with a backup copy"
@@ -15,7 +15,7 @@ _ITS_KURT2RT = "read it with the kurt2rt that wrote it"
 _NEW_FILE = "give the path of a new file"
 
 
-class KnowledgeCode(ErrorCode):
+class KnowledgeCode(TextCode):
     """Condition that keeps knowledge from being read or written."""
 
     # SQLite

@@ -14,7 +14,7 @@ class KnowledgeError(UserError):
         """Fill the code's text with `fields`; `where` names the file, with the row if it is about one."""
         # Texts of exceptions only: the error crosses processes, and not every exception can.
         self.fields = {key: _plain(each) for key, each in fields.items()}
-        super().__init__(code.what.format_map(self.fields), where=where, do=code.do.format_map(self.fields))
+        super().__init__(code.text.format_map(self.fields), where=where, do=code.do.format_map(self.fields))
         self.code = code
 
     def __reduce__(self) -> tuple[object, ...]:

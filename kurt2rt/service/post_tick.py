@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.decision.decision import DecisionCause, withdrawn_rla_in
-from kurt2rt.core.decision.standing_text import question_text
+from kurt2rt.core.decision.standing import question_text
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID

@@ -1,7 +1,7 @@
 """Status line of the robot program, once a second."""
 
 from hal.health import Health
-from kurt2rt.core.decision.standing_text import short_text
+from kurt2rt.core.decision.standing import short_text
 from kurt2rt.core.rla.rla import MID, rla_title
 from kurt2rt.service.post_tick import ProgramStatus
 

@@ -13,8 +13,7 @@ import pytest
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
-from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import short_text
+from kurt2rt.core.decision.standing import Standing, StandReason, short_text
 from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
@@ -100,7 +99,7 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
     person.type("replace 1 back")
     line = robot.wait_for("1 lessons not saved yet")
     assert short_text(Standing(StandReason.UNSAVED)) in line
-    assert f"mine.knowledge: {KnowledgeCode.DISK_FAILS.what}" in line
+    assert f"mine.knowledge: {KnowledgeCode.DISK_FAILS.text}" in line
     person.wait_for("refused: not saved yet; it may still count")
 
 
@@ -111,7 +110,7 @@ def test_disk_that_stays_full_is_the_last_line_and_code_2(tmp_path: Path) -> Non
         said = robot.end(signal.SIGTERM)
     assert said.exit_code == 2
     line = said.err.splitlines()[-1]
-    assert line.startswith(f"kurt2rt: {knowledge}: {KnowledgeCode.DISK_FAILS.what}; ")
+    assert line.startswith(f"kurt2rt: {knowledge}: {KnowledgeCode.DISK_FAILS.text}; ")
     assert " 1 lessons " in line
     assert actions_in(knowledge) == ["stand"]
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from string import Formatter
 
 from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
@@ -14,8 +13,7 @@ from tests.knowledge.lessons import BINDING
 def knowledge_errors() -> Iterator[tuple[str, str]]:
     """Yield the error of each code, with names of its fields for their values."""
     for code in KnowledgeCode:
-        names = {name for text in (code.what, code.do) for _, name, _, _ in Formatter().parse(text) if name}
-        fields = {name: name.upper() for name in names}
+        fields = {name: name.upper() for name in code.fields}
         yield code, str(KnowledgeError(code, where="mine.knowledge", **fields))
 
 

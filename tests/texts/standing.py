@@ -1,10 +1,17 @@
-"""Listing of the texts of `kurt2rt.core.decision.standing_text`."""
+"""Listing of the texts of `kurt2rt.core.decision.standing`."""
 
 from collections.abc import Callable, Iterator
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, short_text, standing_headline, stop_text
+from kurt2rt.core.decision.standing import (
+    GO_IN_TERMINAL,
+    GO_ON_PAGE,
+    Standing,
+    StandReason,
+    short_text,
+    standing_headline,
+    stop_text,
+)
 
 
 def on_page() -> Iterator[tuple[str, str]]:

@@ -1,34 +1,42 @@
 """Active stop: why the robot stands until a teacher resumes, as a code with its fields."""
 
-from enum import StrEnum
 from typing import NamedTuple
 
+from hal.errors import TextCode
 
-class StopReason(StrEnum):
+
+class StopReason(TextCode):
     """Code for why the robot stands until a resume."""
 
-    SAID_STOP = "said stop"
+    SAID_STOP = ("said stop", "{name} said stop")
     """A teacher gave a stop."""
-    LET_GO = "let go"
+    LET_GO = ("let go", "{name} drove by hand and let go")
     """A teacher drove by hand and let go, or the press was lost."""
-    BEHAVIOUR_OVER = "behaviour over"
+    BEHAVIOUR_OVER = ("behaviour over", "{name} is over")
     """A behaviour that the teacher ran has ended."""
-    SESSION_OVER = "session over"
-    NO_TEACHER = "no teacher"
+    SESSION_OVER = ("session over", "the session {name!r} is over")
+    NO_TEACHER = ("no teacher", "no teacher is there")
     """The robot drove and has no teacher now."""
-    TEACHER_NOT_YET = "teacher not yet"
+    TEACHER_NOT_YET = ("teacher not yet", "{name} is not there yet")
     """The robot drove, and its new teacher has sent no sign of presence yet."""
-    LINK_LOST = "link lost"
+    LINK_LOST = ("link lost", "lost the link to {name}")
     """The robot drove, and messages of its teacher ceased."""
-    FALLS_BEHIND = "falls behind"
+    FALLS_BEHIND = (
+        "falls behind",
+        "the computer is too slow for {name} times real time; the simulation is back in real time",
+    )
     """The same, because the computer was too slow for the speed of the simulation."""
-    STARTED = "started"
+    STARTED = ("started", "the robot program was started")
     """The robot program was started."""
-    NEXT_RUN = "next run"
+    NEXT_RUN = ("next run", "a new run was begun")
     """The same program began a new run."""
-    SENSOR_BROKEN = "sensor broken"
+    SENSOR_BROKEN = (
+        "sensor broken",
+        "its range sensor {name} is broken",
+        "The sensors next to it stand in for it. Check its plug and its lens",
+    )
     """An infra-red sensor was noticed to be dead, stuck or unplugged."""
-    GUARD = "guard"
+    GUARD = ("guard", "the guard: {name}")
     """The guard keeps the robot stopped."""
 
 

@@ -3,9 +3,9 @@
 Page, terminal, status line, status and channel all read it. `kurt2rt.core.decision.standing_text` holds its texts.
 """
 
-from enum import StrEnum
 from typing import NamedTuple
 
+from hal.errors import TextCode
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
@@ -13,54 +13,55 @@ from kurt2rt.core.decision.decision import ASKING, BY_KNOWLEDGE, Decision, Decis
 from kurt2rt.core.rla.rla import MID
 
 
-class StandReason(StrEnum):
+class StandReason(TextCode):
     """Code for why the wheels stand; DRIVES if they turn.
 
     It is a word of the wire contract: page, terminal, log and `kurt2rt status` word the same code. The guard's reason
-    comes before a stop, and a stop before the decision's cause.
+    comes before a stop, and a stop before the decision's cause. Its text continues "stands: "; its fields are those of
+    Standing. Its remedy is a sentence, and precedes the resume if the robot stands until then.
     """
 
-    DRIVES = "drives"
+    DRIVES = ("drives", "")
     """The wheels turn."""
-    ASKS = "asks"
+    ASKS = ("asks", "it does not know this situation", "Teach it what to do here")
     """The situation of the basic level is unknown."""
-    DOUBTS = "doubts"
+    DOUBTS = ("doubts", "it doubts that its action is right here", "Teach it what to do here")
     """The situation of the basic level is known, but the robot doubts that the action is right."""
-    ASKS_THE_WAY = "asks the way"
+    ASKS_THE_WAY = ("asks the way", "it does not know the way", "Teach it which behaviour to follow")
     """The situation of the mid level is unknown."""
-    FRONT_BUMPER = "front bumper"
+    FRONT_BUMPER = ("front bumper", "it touches something in front", "Drive it back")
     """The robot touches something in front and would drive on toward it."""
-    REAR_BUMPER = "rear bumper"
-    BOTH_BUMPERS = "both bumpers"
-    STOPPED = "stopped"
+    REAR_BUMPER = ("rear bumper", "it touches something behind", "Drive it forward")
+    BOTH_BUMPERS = ("both bumpers", "it touches something in front and behind", "Set it free")
+    STOPPED = ("stopped", "{stop}")
     """A teacher stopped the robot, it lost its teacher, or it was just started."""
-    UNATTENDED = "unattended"
-    BLIND = "blind"
-    UNSAVED = "unsaved"
-    AT_GOAL = "at goal"
-    NO_WAY = "no way"
-    COMPUTER_TOO_SLOW = "computer too slow"
+    UNATTENDED = ("unattended", "no teacher looks at it", "Take the robot")
+    BLIND = ("blind", "its range sensors are silent", "Check its power and cable")
+    UNSAVED = ("unsaved", "lessons cannot be saved", "Look at the disk")
+    AT_GOAL = ("at goal", "{says}")
+    NO_WAY = ("no way", "{says}")
+    COMPUTER_TOO_SLOW = ("computer too slow", "the computer was too slow{stall}")
     """The watchdog braked because ticks had ceased; until a resume."""
-    BUS_LOST = "bus lost"
-    BUS_BLOCKED = "bus blocked"
-    BUS_OFF = "bus off"
-    FOREIGN_CONTROL = "foreign control"
-    FOREIGN_TELEMETRY = "foreign telemetry"
-    WHEELS_DISOBEY = "wheels disobey"
-    INFRARED_FROZEN = "range sensors frozen"
-    ROBOT_FAULT = "robot fault"
+    BUS_LOST = ("bus lost", "its bus is lost", "Check its power and cable")
+    BUS_BLOCKED = ("bus blocked", "its bus carries nothing", "Check its power, cable and bit rate")
+    BUS_OFF = ("bus off", "its bus failed too often", "Check cable, termination and bit rate")
+    FOREIGN_CONTROL = ("foreign control", "another program drives it, too", "Find and end that one")
+    FOREIGN_TELEMETRY = ("foreign telemetry", "another program sends its readings, too", "Find and end that one")
+    WHEELS_DISOBEY = ("wheels disobey", "its wheels disobey", "Set them free, or switch it off and on")
+    INFRARED_FROZEN = ("range sensors frozen", "its range sensors are frozen", "Switch it off and on")
+    ROBOT_FAULT = ("robot fault", "it reports a fault of its own", "Mend what it names")
     """The robot itself tells a fault; the health report has its text."""
-    HALTED = "halted"
+    HALTED = ("halted", "{says}")
     """The robot program stopped the robot, because it ends or waits for a dependency."""
-    LATE = "late"
+    LATE = ("late", "the computer is too slow", "End other work on it")
     """Decisions are too old when they reach the guard."""
-    CLOCK = "clock"
+    CLOCK = ("clock", "the computer's clock ran backwards", "Wait until it is right again")
     """The computer's clock ran backwards."""
-    ENCODERS_SILENT = "encoders silent"
-    BUMPERS_SILENT = "bumpers silent"
-    NOT_A_NUMBER = "not a number"
+    ENCODERS_SILENT = ("encoders silent", "its encoders are silent", "Check its power and cable")
+    BUMPERS_SILENT = ("bumpers silent", "its bumpers are silent", "Check its power and cable")
+    NOT_A_NUMBER = ("not a number", "the decided speed is not a number", "Teach it another action here")
     """The decided speed is not a number."""
-    LEARNER_FAILED = "learner failed"
+    LEARNER_FAILED = ("learner failed", "its learner failed: {says}", "Mend it and begin again")
     """A learner raised an error or decided an unknown action, and is not asked again."""
 
 
@@ -277,3 +278,65 @@ class StandingWatch:
         self._held_ticks = self._held_ticks + 1 if held is not None and held is self._held else 0
         self._held = held
         return held if self._held_ticks >= HELD_TICKS else None
+
+
+GO_ON_PAGE = "GO lets it drive on"
+GO_IN_TERMINAL = "Type go to let it drive on"
+
+_QUESTIONS = {
+    StandReason.FRONT_BUMPER: "I touch something in front of me; what now?",
+    StandReason.REAR_BUMPER: "I touch something behind me; what now?",
+    StandReason.BOTH_BUMPERS: "I touch something in front of me and behind me; what now?",
+}
+"""Questions of a robot whose RLA pushes on toward what it touches."""
+
+
+def stop_text(stop: ActiveStop | None) -> str:
+    """Return the sentence of a stop; empty without one."""
+    return "" if stop is None else stop.reason.text.format(name=stop.name)
+
+
+def reason_text(standing: Standing) -> str:
+    """Return the reason in a few words that continue "stands: "; empty while the robot drives."""
+    stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
+    return standing.reason.text.format(
+        says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
+    )
+
+
+def question_text(standing: Standing) -> str:
+    """Return the question of a robot at a bumper; empty if it asks nothing or something else."""
+    return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_resume else ""
+
+
+def hindrance_text(standing: Standing) -> str:
+    """Return what holds a robot that was resumed, and what to do about it, as the end of a sentence."""
+    to_do = standing.reason.do
+    return reason_text(standing) + (f"; {to_do[0].lower()}{to_do[1:]}" if to_do else "")
+
+
+def short_text(standing: Standing) -> str:
+    """Return why the robot stands, for a status line; empty while it drives or asks what to do."""
+    if standing.needs_resume:
+        return f"stands until Go: {reason_text(standing)}"
+    if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.DOUBTS, StandReason.ASKS_THE_WAY):
+        return ""
+    return f"stands: {question_text(standing) or reason_text(standing)}"
+
+
+def standing_headline(standing: Standing, go: str) -> str:
+    """Return one or two sentences for the teacher: why the robot stands, and what to do; empty while it drives.
+
+    Args:
+        standing: of the robot.
+        go: how the teacher resumes on this surface, as a sentence without its full stop.
+    """
+    question = question_text(standing)
+    if question or standing.reason is StandReason.DRIVES:
+        return question
+    to_do = standing.reason.do
+    if standing.stop is not None:
+        to_do = standing.stop.reason.do or to_do
+    if standing.needs_resume:
+        to_do = f"{to_do}; then {go[0].lower() + go[1:] if go[:2] != 'GO' else go}" if to_do else go
+    return f"Stands: {reason_text(standing)}" + (f". {to_do}" if to_do else "")

@@ -3,8 +3,16 @@
 import math
 
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
-from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
+from kurt2rt.core.decision.standing import (
+    DRIVES,
+    Standing,
+    StandReason,
+    reason_text,
+    short_text,
+    standing_latched,
+    stop_text,
+    touched_bumper,
+)
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import ContactFacts, DecisionFacts, DoubtFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hal.health import Health
 from hal.sensor_watch import BrokenSensor
-from kurt2rt.core.decision.standing_text import short_text
+from kurt2rt.core.decision.standing import short_text
 from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick_record import TickRecord

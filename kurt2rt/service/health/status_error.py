@@ -1,9 +1,9 @@
 """Error of a status that cannot be read, as a code with its text."""
 
-from hal.errors import ErrorCode, UserError
+from hal.errors import TextCode, UserError
 
 
-class StatusCode(ErrorCode):
+class StatusCode(TextCode):
     """Condition that keeps the status of a robot program from being read."""
 
     NO_PROGRAM = (
@@ -30,5 +30,5 @@ class StatusError(UserError):
 
     def __init__(self, code: StatusCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's texts with `fields`; `where` is the path of the status socket."""
-        super().__init__(code.what.format_map(fields), where=where, do=code.do.format_map(fields))
+        super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
         self.code = code

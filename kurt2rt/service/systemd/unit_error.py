@@ -1,12 +1,12 @@
 """Error of a unit that cannot be made, installed or checked, as a code with its text."""
 
-from hal.errors import ErrorCode, UserError
+from hal.errors import TextCode, UserError
 
 _SUDO = "say it with sudo"
 _OTHER_NAME = "give another --name"
 
 
-class UnitCode(ErrorCode):
+class UnitCode(TextCode):
     """Condition that keeps a unit from being made, installed or checked."""
 
     BAD_NAME = ("bad name", "cannot name a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
@@ -42,5 +42,5 @@ class UnitError(UserError):
 
     def __init__(self, code: UnitCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's text with `fields`; `where` names the file, user or setting."""
-        super().__init__(code.what.format_map(fields), where=where, do=code.do.format_map(fields))
+        super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
         self.code = code

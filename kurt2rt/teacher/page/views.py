@@ -14,7 +14,7 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView
-from kurt2rt.core.decision.standing_text import GO_ON_PAGE, standing_headline
+from kurt2rt.core.decision.standing import GO_ON_PAGE, standing_headline
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.teaching.question import FeatureDifference

@@ -11,15 +11,13 @@ from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.standing import (
     ASKS_AFTER_TICKS,
     DRIVES,
+    GO_IN_TERMINAL,
+    GO_ON_PAGE,
     HELD_TICKS,
     LATCHED,
     Standing,
     StandingWatch,
     StandReason,
-)
-from kurt2rt.core.decision.standing_text import (
-    GO_IN_TERMINAL,
-    GO_ON_PAGE,
     question_text,
     reason_text,
     short_text,

@@ -11,8 +11,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import StandReason
-from kurt2rt.core.decision.standing_text import reason_text
+from kurt2rt.core.decision.standing import StandReason, reason_text
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam

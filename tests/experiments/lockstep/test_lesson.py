@@ -104,7 +104,7 @@ def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: 
     flush = JournalWriter.flush
     monkeypatch.setattr(JournalWriter, "flush", without_patience)
     monkeypatch.setattr(Journal, "append", on_a_dead_disk)
-    with pytest.raises((LessonLostError, KnowledgeError), match=re.escape(KnowledgeCode.DISK_FULL.what)):
+    with pytest.raises((LessonLostError, KnowledgeError), match=re.escape(KnowledgeCode.DISK_FULL.text)):
         teach(tmp_path / "knowledge", short_task(2.0, 0.0))
 
 

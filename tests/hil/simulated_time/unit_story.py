@@ -18,7 +18,7 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.decision.standing_text import stop_text
+from kurt2rt.core.decision.standing import stop_text
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running

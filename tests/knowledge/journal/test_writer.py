@@ -134,7 +134,7 @@ def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
             if writer.saving_error is not None:
                 break
         assert writer.saving_error is not None
-        assert writer.saving_error.startswith(f"{path}: {KnowledgeCode.DISK_FULL.what}; ")
+        assert writer.saving_error.startswith(f"{path}: {KnowledgeCode.DISK_FULL.text}; ")
         waiting = writer.unwritten
         assert len(stored(path)) == number - waiting
         for later in range(number + 1, number + 51):
@@ -175,7 +175,7 @@ def test_submit_failing_disk_lessons_wait_in_order(path: Path) -> None:
         acknowledged = settled(writer)
         assert writer.saving_error is None
 
-    assert error.startswith(f"{path}: {KnowledgeCode.DISK_FAILS.what}; ")
+    assert error.startswith(f"{path}: {KnowledgeCode.DISK_FAILS.text}; ")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))
     assert stored(path) == [created(number) for number in range(1, 20)]
 
@@ -184,7 +184,7 @@ def test_submit_locked_file_lessons_wait(path: Path) -> None:
     with writer_of(path) as writer, closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         writer.submit(created(1))
-        assert wait_for_error(writer).startswith(f"{path}: {KnowledgeCode.DATABASE_LOCKED.what}; ")
+        assert wait_for_error(writer).startswith(f"{path}: {KnowledgeCode.DATABASE_LOCKED.text}; ")
         other.execute("ROLLBACK")
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
 

@@ -2,8 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import question_text
+from kurt2rt.core.decision.standing import Standing, StandReason, question_text
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, SMALL
 

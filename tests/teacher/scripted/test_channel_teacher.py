@@ -12,7 +12,7 @@ from kurt2rt.channel.protocol.requests import HelloRequest, PlaceRequest, StopRe
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.standing_text import stop_text
+from kurt2rt.core.decision.standing import stop_text
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import AUTO, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
