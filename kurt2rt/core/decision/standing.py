@@ -1,6 +1,6 @@
 """Standing: whether the robot drives after a tick, and if not, why and whether it waits for a resume.
 
-Page, terminal, status line, status and channel all read it. `kurt2rt.core.decision.standing_text` holds its texts.
+Page, terminal, status line, status and channel all read it, and its texts at the end.
 """
 
 from typing import NamedTuple
