@@ -48,9 +48,9 @@ class _Options(JobOptions):
         list[str] | None,
         typer.Option(
             metavar="NAME|PATH",
-            help="World to drive in; may be given again: each run draws one of them. SEED in the name stands for the "
-            "run's number: rooms-SEED is another room for each run. Default: those of the task's exam, of "
-            "wall_following rooms-SEED as well.",
+            help="World to drive in; repeat for several: each run draws one of them. SEED in the name stands for the "
+            "run's number: rooms-SEED is another room for each run. Default: those of the task's exam, and rooms-SEED "
+            "for wall_following.",
             show_default=False,
         ),
     ] = None
@@ -66,9 +66,8 @@ class _Options(JobOptions):
             metavar="SHARE",
             min=0.0,
             max=1.0,
-            help="Fraction of the runs, 0 to 1, in which one range sensor breaks after 2 s: another sensor and "
-            "fault (dead, stuck, unplugged and others) in each. They have a row of their own, and "
-            "are driven on the CAN bus alone.",
+            help="Fraction of the runs, 0 to 1, in which one range sensor breaks after 2 s. Sensor and fault (dead, "
+            "stuck, unplugged and others) are drawn. These runs have a row of their own, on the CAN bus alone.",
         ),
     ] = 0.0
     pictures: Annotated[
@@ -77,8 +76,8 @@ class _Options(JobOptions):
     engine: Annotated[
         Engine,
         typer.Option(
-            help="What drives the runs. compiled: a batch of runs at once, with equal results; 1 % of the runs, at "
-            "least three, are driven on the CAN bus too and must agree. can: the CAN bus alone, some 100 times slower."
+            help="What drives the runs. compiled: a batch of runs at once, with equal results. As a check, 1 % of "
+            "them, at least three, run on the CAN bus too. can: the CAN bus alone, about 100 times slower."
         ),
     ] = Engine.COMPILED
     task: TaskOfTheFile = None
@@ -89,14 +88,14 @@ class _Options(JobOptions):
 
 @takes_options(_Options)
 def certify(options: _Options) -> None:
-    """Certify knowledge: how probable are a collision, getting stuck and a question, over many runs.
+    """Certify knowledge: estimate the probability of a collision, of getting stuck and of a question.
 
-    Each run is a drive of another simulated robot without a teacher: gains and
-    turns of its sensors, their noise, the slip of its wheels, its start and its
-    world follow from the run's number. Prints probabilities and rates with
-    their 95 % intervals and leaves report.html with pictures of the worst runs.
+    Each run is a drive of another simulated robot without a teacher. The run's
+    number is its seed: sensors, noise, wheel slip, start and world follow from
+    it. Prints probabilities and rates with their 95 % intervals, and writes
+    report.html with pictures of the worst runs.
 
-    Any run can be seen again on the simulated CAN bus: its number is its seed.
+    Any run can be repeated on the simulated CAN bus, by its seed.
 
     For example:
 
@@ -104,9 +103,8 @@ def certify(options: _Options) -> None:
         kurt2rt study certify mine.knowledge --runs 10000 --world rooms-SEED
         kurt2rt exam mine.knowledge --seed 20017 --world rooms-20017
 
-    Results are kept in --out with hashes of what made them; a run that was
-    interrupted goes on where it was. Tasks that the batch does not know, such
-    as routes, are driven on the CAN bus.
+    Results are kept in --out, so an interrupted run goes on where it was. Tasks
+    that the batch does not know, such as routes, are driven on the CAN bus.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.certify.run import BrokenShare, Run

@@ -55,19 +55,19 @@ _Out = Annotated[
     Path | None, typer.Option(help="The robot's settings file. Default: var/robots/NAME.yaml.", show_default=False)
 ]
 _Only = Annotated[
-    str | None, typer.Option(help=f"Take these steps alone, passed or not: some of {_NAMES}.", show_default=False)
+    str | None, typer.Option(help=f"Run only these steps, even if they passed: some of {_NAMES}.", show_default=False)
 ]
 _Skip = Annotated[
     str | None,
     typer.Option(
-        help="Note these steps as skipped, failed or not, so that the file can be written without them.",
+        help="Skip these steps, even if they failed, so that the file can be written without them.",
         show_default=False,
     ),
 ]
-_Fresh = Annotated[bool, typer.Option("--fresh", help="Forget what earlier sessions found about NAME.")]
+_Fresh = Annotated[bool, typer.Option("--fresh", help="Delete the results of earlier sessions for NAME.")]
 _Force = Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")]
 _Operator = Annotated[
-    str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
+    str | None, typer.Option(help="Your name, for the report. Default: the user's name.", show_default=False)
 ]
 
 
@@ -90,36 +90,37 @@ class _Options:
 def commission(options: _Options) -> None:
     """Commission a real robot: the checklist of its first day.
 
-    It listens for the controller's identity and every frame, tries which speed
-    mode answers, each wheel's side and direction, the emergency stop and the
-    controller's own watchdog, finds each sensor's channel by your hand in front
-    of it and each bumper's bit, and fits the infra-red law by a ruler. At the
-    end it writes the robot's settings file.
+    It listens for the controller's identity and every frame. It tries the speed
+    modes, each wheel's side and direction, the emergency stop and the
+    controller's own watchdog. You hold a hand in front of each sensor and press
+    each bumper, so it finds their channels. With a ruler it fits the infra-red
+    law. At the end it writes the robot's settings file.
 
-    You need a block that lifts all wheels, a ruler, a flat board, an hour, and a
-    hand near the switch that cuts the motors. No wheel turns before you typed
-    that the wheels are up, and then only after Enter, slowly, through the same
-    guard as ever. Ctrl-C brakes at any time, and so does Ctrl-Z.
+    You need an hour, a block that lifts all wheels, a ruler and a flat board.
+    Keep a hand near the switch that cuts the motors. No wheel turns until you
+    type that the wheels are up. Then each turn waits for Enter, is slow, and
+    passes the guard. Ctrl-C and Ctrl-Z brake at any time.
 
     Set the interface up first:
 
         sudo ip link set can0 up type can bitrate 1000000
         kurt2rt commission can0 --name my-kurt2
 
-    What was found is kept after each step: the same command goes on where you
-    left off, with the steps that have not passed. What failed tells what to
-    mend. The file is written when every step was taken or skipped; not while
-    identity, modes, wheels or stop fail. Then name it as robot: in the runtime
-    settings (a copy of config/runtime/default.yaml):
+    Results are kept after each step, so the same command goes on with the steps
+    that have not passed. A step that fails prints what to mend. The file is
+    written when every step has passed or was skipped, but not while identity,
+    modes, wheels or stop fail. Then name it as robot: in the runtime settings
+    (a copy of config/runtime/default.yaml):
 
         kurt2rt run --bus can0 --settings my-runtime.yaml
 
-    Rehearse it without a robot; `lift`, typed at the first, puts it on a block:
+    Rehearse it without a robot; type `lift` in the first program to put it on a
+    block:
 
         kurt2rt sim --bus shared:desk
         kurt2rt commission shared:desk --name practice --skip sensors,bumpers,infrared
 
-    Ends with code 1 when a step that was this session's to take has failed.
+    Ends with code 1 if a step of this session failed.
     """
     console = Console()
     target = _target(options.name, options.out, force=options.force)

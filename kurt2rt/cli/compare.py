@@ -34,8 +34,8 @@ class _Options(EngineOptions):
         list[str] | None,
         typer.Option(
             metavar="NAME[=GATE]",
-            help="Learner: a name, or module:Name of your own, which Python finds in this folder too. GATE is the "
-            "number by which it asks. May be given again. Default: 1-nn, k-nn, weighted-vote, svm, tree.",
+            help="Learner: a name, or module:Name of your own, also from this folder. GATE is the threshold from which "
+            "it asks. Repeat for several. Default: 1-nn, k-nn, weighted-vote, svm, tree.",
             show_default=False,
         ),
     ] = None
@@ -46,8 +46,8 @@ class _Options(EngineOptions):
         list[int] | None,
         typer.Option(
             min=1,
-            help="Number of presses after which the robot is examined, besides the end of its lesson; may be given "
-            f"again. Default: {', '.join(map(str, _AFTER))}.",
+            help="Examine the robot after this number of presses, and at the end of its lesson; repeat for several. "
+            f"Default: {', '.join(map(str, _AFTER))}.",
             show_default=False,
         ),
     ] = None
@@ -60,11 +60,11 @@ class _Options(EngineOptions):
 def compare(options: _Options) -> None:
     """Compare learners of other kinds with the RLA system, taught by the same teacher.
 
-    Each learner is taught as each robot, through the same lessons, guard and
-    sensors, and examined without its teacher after 10, 20 and 40 presses and
-    at the end. The tables show the robots that pass, the teacher's effort, and
-    collisions while it was taught; each row is compared with the RLA system
-    robot by robot.
+    The same robots are taught with each learner, through the same teacher, guard
+    and sensors. They are examined without the teacher after 10, 20 and 40
+    presses and at the end. The tables show the robots that pass, the teacher's
+    effort, and collisions during the lesson. Each row is compared with the RLA
+    system, robot by robot.
 
     For example, all learners of the project; one with another gate in two
     tasks; your own:
@@ -73,9 +73,8 @@ def compare(options: _Options) -> None:
         kurt2rt study compare --learner k-nn=0.8 --task fleeing --task eight
         kurt2rt study compare --learner mine:Mine
 
-    Results are kept in --out with hashes of what made them; a run that was
-    interrupted goes on where it was. docs/extend.md says how to write
-    a learner.
+    Results are kept in --out, so an interrupted run goes on where it was.
+    docs/extend.md says how to write a learner.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.compare.pupil import PUPILS, Pupil

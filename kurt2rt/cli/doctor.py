@@ -31,13 +31,13 @@ def doctor(
     """Check what this machine offers the robot, and what to do.
 
     Measures how late the timer is compared with asyncio.sleep, and how long the
-    disk takes to keep a lesson; looks at clock, real-time priority, memory lock,
+    disk takes to save a lesson. Checks clock, real-time priority, memory lock,
     cores, CAN, SQLite and the simulator's packages. Changes nothing, and needs
     neither a robot nor a display.
 
-    Ends with code 1 only if something is missing that kurt2rt run cannot do
-    without: Python, the timer, or a disk to keep knowledge on. CAN is not among
-    them, for the simulated robot needs none.
+    Ends with code 1 only if kurt2rt run cannot work here: without Python, the
+    timer, or a disk for knowledge. CAN is not needed: the simulated robot does
+    without.
 
     For example:
 

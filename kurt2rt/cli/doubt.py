@@ -31,19 +31,19 @@ class _Options:
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-4.")] = "0-4"
     world: Annotated[
         list[str] | None,
-        typer.Option(help="World to drive in; may be given again. Default: those of the exam."),
+        typer.Option(help="World to drive in; repeat for several. Default: those of the exam."),
     ] = None
     seconds: Annotated[float, typer.Option(metavar="SECONDS", min=1.0, help="Seconds of each drive.")] = 200.0
     response: Annotated[
         list[DoubtResponse] | None,
-        typer.Option(help="Response of the robots to doubt; may be given again. Default: each of them."),
+        typer.Option(help="Response of the robots to doubt; repeat for several. Default: all."),
     ] = None
     reposition_after: Annotated[
         float,
         typer.Option(
             metavar="SECONDS",
             min=0.0,
-            help="Seconds after which a robot that stands is set down at another start; 0: it stands on.",
+            help="Move a robot that stands for this time to another start; 0: never.",
         ),
     ] = 10.0
     jobs: Jobs = ALL_PROCESSORS
@@ -53,11 +53,11 @@ class _Options:
 
 @takes_options(_Options)
 def doubt(options: _Options) -> None:
-    """Measure how well doubt foretells wrong actions and collisions, with distance alone as the control.
+    """Measure how well doubt predicts wrong actions and collisions; the control is distance alone.
 
-    Each robot drives without a teacher in each world twice: doubt is only
-    told, and doubt stops it. In a world with SEED in its name each robot drives in
-    another one.
+    Each robot drives without a teacher in each world twice: it only reports
+    doubt, and doubt stops it. SEED in the name of a world stands for the robot's
+    seed.
 
     For example:
 

@@ -45,8 +45,8 @@ class _Options:
         typer.Option(
             "--broken-sensor",
             metavar="SENSOR=FAULT",
-            help="Let a range sensor of the robot break after 2 s, such as s15=low; the faults are low, high, frozen, "
-            "unplugged, dark and phantom.",
+            help="Break a range sensor of the robot after 2 s, such as s15=low. Faults: low, high, frozen, unplugged, "
+            "dark and phantom.",
         ),
     ] = None
     robot_settings: RobotName = None
@@ -57,11 +57,11 @@ class _Options:
 def exam(options: _Options) -> None:
     """Examine knowledge: a simulated robot drives by itself.
 
-    Its teacher drives for comparison, from the same start. Where the robot does
-    not know a situation it stands, as it would in earnest; a robot that makes no
-    way for long is stuck, and the exam of that world ends.
+    The teacher's own policy drives for comparison, from the same start. In a
+    situation that it does not know, the robot stands. If it gets nowhere for
+    long, it is stuck, and the exam in this world ends.
 
-    The task is that of the knowledge file.
+    The task comes from the knowledge file.
 
     For example:
 

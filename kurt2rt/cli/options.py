@@ -27,13 +27,13 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
 
 _TASK = "Task: a name in config/tasks or of a plug-in, module:NAME, or the path of a YAML file."
 _WORLD = (
-    "World: a name in config/worlds or of a plug-in, module:NAME, rooms-N, flats-N, streets-N or floors-N for a "
-    "generated one, or the path of a YAML file (a world, or a map of ROS map_server)."
+    "World: a name in config/worlds or of a plug-in, module:NAME, or the path of a YAML file (also of ROS map_server). "
+    "rooms-N, flats-N, streets-N and floors-N are generated from the number N."
 )
 
 
 def task_option(default: str = "") -> Any:
-    """Return --task, the same in every command; `default` tells which task is taken without it."""
+    """Return --task, the same in every command; `default` describes the task without it."""
     return _named("--task", "tasks", f"{_TASK} {default}".rstrip())
 
 
@@ -46,7 +46,7 @@ def search_argument() -> Any:
 
 
 def world_option(default: str = "") -> Any:
-    """Return --world, the same in every command; `default` tells which world is taken without it."""
+    """Return --world, the same in every command; `default` describes the world without it."""
     return _named("--world", "worlds", f"{_WORLD} {default}".rstrip())
 
 
@@ -71,8 +71,8 @@ PaperDefaults = Annotated[
     bool,
     typer.Option(
         "--paper-defaults",
-        help="Learn by the plain reading of the paper: all 72 values weigh 1, corrections only replace, and no action "
-        "is held.",
+        help="Learn by the paper's own settings: all 72 values weigh 1, corrections only replace, and no action is "
+        "held.",
     ),
 ]
 RobotName = Annotated[
@@ -100,8 +100,8 @@ Changes = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Change one key of the task's file, with dots between its levels, such as learning.past_weight=1; repeat "
-        "for several keys. Teach and examine with the same values.",
+        help="Change one key of the task's file, with dots between its levels, such as learning.past_weight=1. Repeat "
+        "it for several keys. Teach and examine with the same values.",
     ),
 ]
 
@@ -122,9 +122,8 @@ PageAddressName = Annotated[
         "--page-address",
         metavar="ADDRESS",
         callback=_require_page_address,
-        help="Address or name of the machine that serves the page, as a phone is told it and a browser may write it, "
-        "such as 192.168.0.7 or robot.example; auto: this machine's addresses in its networks. Default: as the "
-        "settings say.",
+        help="Address or name of the machine that serves the page, such as 192.168.0.7 or robot.example; a phone opens "
+        "it. auto: all addresses of this machine. Default: as the settings say.",
     ),
 ]
 
@@ -149,7 +148,7 @@ def changes_of(words: list[str] | None) -> dict[str, str]:
     for word in words or ():
         key, equals, value = word.partition("=")
         if not (key and equals and value):
-            raise typer.BadParameter(f"{word!r} is no KEY=VALUE; give e.g. learning.past_weight=1", param_hint="--set")
+            raise typer.BadParameter(f"give KEY=VALUE, such as learning.radius=600 (got {word!r})", param_hint="--set")
         changes[key] = value
     return changes
 
@@ -164,11 +163,15 @@ def parse_seeds(text: str) -> list[int]:
         for part in text.split(","):
             seeds.extend(_seeds_of(part))
     except ValueError as error:
-        raise typer.BadParameter(f"{text!r} is no list of seeds; give e.g. 100-119 or 1,5,7-9") from error
+        raise typer.BadParameter(
+            f"expected seeds such as 100-119 or 1,5,7-9 (got {text!r})", param_hint="--seeds"
+        ) from error
     if len(seeds) > _MOST_SEEDS:
-        raise typer.BadParameter(f"{text!r} names too many seeds, allowed are {_MOST_SEEDS} at most")
+        raise typer.BadParameter(
+            f"too many seeds (got {text!r}, allowed are {_MOST_SEEDS} at most)", param_hint="--seeds"
+        )
     if len(set(seeds)) != len(seeds):
-        raise typer.BadParameter(f"{text!r} names a seed twice; give e.g. 100-119 or 1,5,7-9")
+        raise typer.BadParameter(f"no seed may appear twice (got {text!r})", param_hint="--seeds")
     return seeds
 
 

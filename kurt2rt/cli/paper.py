@@ -40,9 +40,7 @@ class _Options(EngineOptions):
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     paper_defaults: Annotated[
         bool,
-        typer.Option(
-            "--paper-defaults/--no-paper-defaults", help="Also do all of it in the plain reading of the paper."
-        ),
+        typer.Option("--paper-defaults/--no-paper-defaults", help="Also do all of it with the paper's own settings."),
     ] = True
 
 
@@ -50,22 +48,20 @@ class _Options(EngineOptions):
 def paper(options: _Options) -> None:
     """Teach the tasks of the paper, and compare the results.
 
-    Leaves report.html, which holds everything, the figures as PNG, and each
+    Writes report.html, the figures as PNG, and each
     robot's result and knowledge file in the output folder.
 
-    A run that was interrupted goes on where it was. Results are kept with hashes
-    of what made them: settings of task, robot and worlds, the program's source,
-    and the versions of what computes. When one of these has changed, what is in
-    the folder is refused and not mixed in: give a new folder. Other seeds and
-    other tasks may share a folder.
+    An interrupted run goes on where it was. Results are kept with hashes of what
+    made them: settings, the program's source, and versions of packages. If one
+    of these has changed, the command refuses the folder: give a new one. Other
+    seeds and tasks can share a folder.
 
-    Compiled loops drive the tasks that they know, if the extra fast is installed
-    and the study is long, with equal results (--engine).
+    With the extra fast, long studies are driven by compiled loops with equal
+    results (--engine).
 
-    Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59; these
-    robots and worlds are others. With one of those, or with fewer than 20
-    robots, nothing is judged. Which generated worlds a robot drives in follows
-    from its seed; 20 seeds that follow each other share all of them.
+    Settings were searched on seeds 0 to 79 and worlds rooms-0 to rooms-59. With
+    one of those, or with fewer than 20 robots, nothing is judged. A robot's seed
+    decides its generated worlds; 20 consecutive seeds share all of them.
 
     For example:
 

@@ -47,19 +47,18 @@ class _Options(EngineOptions):
 def phases(options: _Options) -> None:
     """Train robots through phases 1 to 5, next to controls.
 
-    The path: untaught, answers (1), corrections (2), rewards (3), a critic is
-    taught (4), the robot goes on alone (5); an exam after each, and a long run
-    at the end. Branches from the set of phase 2 with wrong actions: untouched,
-    answers only, unknown is -1, blame by chance, rewards, the critic alone, a
-    shuffled critic; and the intact set with the critic.
+    In phase 1 the teacher answers, in 2 corrects, in 3 rewards, and in 4 teaches
+    a critic. In phase 5 the robot goes on alone. An exam follows each phase, and
+    a long run the last. The controls begin with the knowledge of phase 2, some
+    of its actions made wrong. They show how much each phase repairs.
 
-    Leaves report.html, which holds everything, the figures as PNG, and each
+    Writes report.html, the figures as PNG, and each
     robot's results and knowledge files after each step in the output folder.
 
-    A run that was interrupted goes on where it was. Results are kept with hashes
-    of what made them; when that has changed, they are refused and not mixed in.
-    Settings were searched on seeds 0 to 79; with one of those, or with fewer
-    than 20 robots, nothing is judged.
+    An interrupted run goes on where it was. If settings or the program changed
+    since, the command refuses the folder: give a new one. Settings were searched
+    on seeds 0 to 79. With one of those, or with fewer than 20 robots, nothing is
+    judged.
 
     For example:
 

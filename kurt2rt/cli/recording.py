@@ -70,10 +70,10 @@ def repair(
 ) -> None:
     """Copy what is whole of a run to files for Foxglove.
 
-    A file that a power cut tore lacks its index, and so does the one that a
-    robot is recording to: replay and why read them, a viewer refuses them. The
-    run itself stays as it is. Import the layout that this names into Foxglove
-    once.
+    A file lacks its index after a power cut, and while the robot still records.
+    kurt2rt replay and why read it anyway; a viewer such as Foxglove refuses it.
+    The run itself stays as it is. Import the layout that this prints into
+    Foxglove once.
 
         kurt2rt recording repair
         kurt2rt recording repair 20261122T031005Z-wall_following --out copies
@@ -118,8 +118,8 @@ def export(
     """Write recorded runs as a data set for LeRobot (LeRobotDataset v3.0), an episode for each run or 1 000 s of it.
 
     A frame holds wheel speeds (observation.state), sensor readings
-    (observation.environment_state), the speeds that were decided (action), the
-    teacher's rewards (next.reward), and whether a teacher drove by hand.
+    (observation.environment_state) and the decided speeds (action). It also
+    holds the teacher's rewards (next.reward), and whether a teacher drove.
     docs/python.md explains each column.
 
         kurt2rt recording export

@@ -37,12 +37,12 @@ def replay(
         Path | None,
         typer.Option(
             metavar="KNOWLEDGE",
-            help="Have this knowledge file look on: list where it would have decided otherwise.",
+            help="Compare with this knowledge file: list where it would have decided otherwise.",
         ),
     ] = None,
     runs: RunsFolder = None,
     limit: Annotated[
-        int, typer.Option(metavar="N", min=1, help="With --compare: list so many stretches, the longest.")
+        int, typer.Option(metavar="N", min=1, help="With --compare: number of differences to list, longest first.")
     ] = 30,
     as_json: AsJson = False,
     settings: RuntimeSettingsName = "default",

@@ -46,7 +46,7 @@ class _Options:
     ] = Naming.BRIDGE
     domain: Annotated[int, typer.Option(metavar="N", min=0, max=232, help="ROS_DOMAIN_ID, for rmw_zenoh.")] = 0
     namespace: Annotated[str, typer.Option(help="Namespace of topics and services, such as robot1.")] = ""
-    stamped: Annotated[bool, typer.Option("--stamped", help="cmd_vel carries TwistStamped in place of Twist.")] = False
+    stamped: Annotated[bool, typer.Option("--stamped", help="cmd_vel carries TwistStamped instead of Twist.")] = False
     device: Annotated[str, typer.Option(help="Paired device that this is to the robot.")] = _DEVICE
     robot: Annotated[
         str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
@@ -84,7 +84,7 @@ def ros(options: _Options) -> None:
     docs/other-robots.md has the rest.
     """
     if options.namespace and not is_ros_name(options.namespace):
-        raise typer.BadParameter("is no name of ROS; use letters, digits and _, joined by /", param_hint="--namespace")
+        raise typer.BadParameter("not a name of ROS; use letters, digits and _, joined by /", param_hint="--namespace")
     import kurt2rt.ros.session  # noqa: F401  # names the extra `ros` before anything else is wrong
 
     service = load_service(options.settings)

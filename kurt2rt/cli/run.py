@@ -32,9 +32,9 @@ class _Options:
     bus: Annotated[
         str,
         typer.Option(
-            help="Bus that the robot is on: a SocketCAN interface such as can0, or shared:NAME, where kurt2rt sim is "
-            "one; of another kind of robot the address that its plug-in takes, such as /dev/ttyACM0; sim: a simulated "
-            "robot in this program."
+            help="Bus of the robot: a SocketCAN interface such as can0, or shared:NAME for a robot of kurt2rt sim. For "
+            "another kind of robot: the address that its plug-in takes, such as /dev/ttyACM0. sim: a simulated robot "
+            "in this program."
         ),
     ] = SIMULATED
     robot_settings: RobotName = None
@@ -44,8 +44,8 @@ class _Options:
     task: Annotated[
         str | None,
         task_option(
-            "It brings a knowledge file of its own, next to that of the settings, and its own world, unless these "
-            "are given. Default: the task of the file in --knowledge, else the task of the settings."
+            "It has its own world and knowledge file, unless they are given. Default: the task of the knowledge file, "
+            "else that of the settings."
         ),
     ] = None
     knowledge: Annotated[
@@ -58,8 +58,8 @@ class _Options:
         str,
         typer.Option(
             metavar="channel|none|NAME",
-            help="channel: teachers come over UDP; none: the robot drives without a teacher where it knows the way. "
-            "With --auto the scripted teacher: a name in config/teachers, or the path of a YAML file, by default "
+            help="channel: teachers connect over UDP. none: the robot drives without a teacher wherever it knows what "
+            "to do. With --auto the scripted teacher: a name in config/teachers, or the path of a YAML file. Default: "
             f"{DEFAULT_TEACHER}.",
         ),
     ] = _CHANNEL
@@ -67,8 +67,8 @@ class _Options:
         str | None,
         typer.Option(
             metavar="NAME",
-            help="Taught behaviour that is wanted at the start, where the task has several; a teacher may say another "
-            "one later, and with --auto the others follow in turn. Default: the task's first.",
+            help="Taught behaviour to start with, if the task has several. A teacher can choose another one later; "
+            "with --auto the others follow in turn. Default: the task's first.",
         ),
     ] = None
     page: Annotated[bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")] = (
@@ -78,19 +78,19 @@ class _Options:
         bool,
         typer.Option(
             "--phone",
-            help="Like --page, and for paired devices as well: the page is open to the network while one is paired "
-            "(kurt2rt pair phone), and the code to scan stays on screen.",
+            help="Start the page for paired devices as well (kurt2rt pair phone). While a device is paired, the page "
+            "is open to the network and the code to scan stays on screen.",
         ),
     ] = False
-    no_open: Annotated[
-        bool, typer.Option("--no-open", help="Leave the browser alone; on a desktop the page is opened in it else.")
-    ] = False
+    no_open: Annotated[bool, typer.Option("--no-open", help="Do not open the page in the browser of this desktop.")] = (
+        False
+    )
     auto: Annotated[
         bool,
         typer.Option(
             "--auto",
-            help="Let a scripted teacher teach, over the channel; simulated robot only. Without "
-            "--knowledge into a file of its own, TASK.auto.knowledge, never into that of a person.",
+            help="Let a scripted teacher teach, over the channel; simulated robot only. Without --knowledge its "
+            "lessons go to TASK.auto.knowledge, never to a person's file.",
         ),
     ] = False
     port: Annotated[
@@ -109,15 +109,15 @@ class _Options:
     can_log: Annotated[
         Path | None,
         typer.Option(
-            help="Keep every frame that is heard and sent, with its time, in a new file: .log (candump's), .asc, .blf, "
-            ".csv, .trc or .mf4. 140 MB an hour as .log.",
+            help="Write each CAN frame that is received or sent, with its time, to a new file: .log (candump's), "
+            ".asc, .blf, .csv, .trc or .mf4. 140 MB an hour as .log.",
         ),
     ] = None
     record: Annotated[
         Path | None,
         typer.Option(
-            help="Folder that gets a folder for this run: all that it sees, decides and is taught, for kurt2rt replay "
-            "and for Foxglove; some 70 MB an hour. Default: as the settings say."
+            help="Folder for the recording of this run: what the robot senses, decides and learns. kurt2rt replay and "
+            "Foxglove read it; about 70 MB an hour. Default: as the settings say."
         ),
     ] = None
     no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing of this run.")] = False
@@ -125,22 +125,22 @@ class _Options:
         str | None,
         typer.Option(
             metavar="[HOST:]PORT",
-            help="Show the same live to Foxglove, over a WebSocket on this port, 0: any; to this machine alone unless "
-            "a host is given: there is no password.",
+            help="Show the same live to Foxglove, over a WebSocket on this port; 0: any. Without HOST only this "
+            "machine can connect; there is no password.",
         ),
     ] = None
     service: Annotated[
         bool,
         typer.Option(
             "--service",
-            help="As a unit runs it (kurt2rt service): wait for bus, disk and network as long as it takes, stand until "
-            "Go, and read the settings again at SIGHUP.",
+            help="Run as a systemd unit does (kurt2rt service): wait for bus, disk and network, stand until Go, and "
+            "read the settings again at SIGHUP.",
         ),
     ] = False
     seconds: Annotated[
-        float | None, typer.Option(metavar="SECONDS", min=0.1, help="End after so long; default: run until Ctrl-C.")
+        float | None, typer.Option(metavar="SECONDS", min=0.1, help="End after this time. Default: run until Ctrl-C.")
     ] = None
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the simulated robot's start and noise.")] = 1
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the simulated robot's start and noise.")] = 1
 
 
 @takes_options(_Options)
@@ -148,31 +148,31 @@ def run(options: _Options) -> None:
     """Run the robot in real time, until Ctrl-C or SIGTERM.
 
     100 times a second the robot decides by the nearest rule that it was taught.
-    If that one is farther than R from the situation, the robot stands and asks.
+    If this rule is farther than R from the situation, the robot stands and asks.
     Each lesson is in the knowledge file before it is acknowledged. A status line
-    tells once a second what drives the wheels, which rule says so, and how
-    punctual the loop is.
+    shows once a second what drives the wheels, by which rule, and how punctual
+    the loop is.
 
     Teach it from a browser or from another terminal:
 
         kurt2rt run --page
         kurt2rt teach --terminal
 
-    From a phone as well, once it is paired, which may be while this runs:
+    To teach from a phone as well, pair it, before or while this runs:
 
         kurt2rt run --phone
         kurt2rt pair phone
 
-    Without a paired device (kurt2rt pair) only this machine is listened to. In
+    Without a paired device (kurt2rt pair) only this machine can teach. In
     phases 1 to 4 the robot drives only while its teacher is there.
 
-    With --bus can0 set the interface up first; the robot then stands until
-    its teacher says resume, whatever it knows:
+    With --bus can0 set the interface up first. The robot then stands until its
+    teacher says resume, whatever it knows:
 
         sudo ip link set can0 up type can bitrate 1000000
 
-    A robot of which the rest does not know that it is simulated runs in a program
-    of its own; it stands until resume as well:
+    To test against a simulated robot in a separate program, as if it were real
+    (it stands until resume, too):
 
         kurt2rt sim --bus shared:desk
         kurt2rt run --bus shared:desk --page
@@ -180,9 +180,9 @@ def run(options: _Options) -> None:
     The run is recorded: kurt2rt replay decides it again, kurt2rt why explains
     it, and Foxglove shows it.
 
-    With --teacher none no teacher can say resume: any robot drives at once where
-    it knows the situation, and once stopped by the guard it stands until the
-    program is started again. Of several taught behaviours it follows one:
+    With --teacher none no teacher can say resume. So the robot drives at once
+    if it knows the situation. If the guard stops it, it stands until you start
+    the program again. If the task has several behaviours, choose one:
 
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """

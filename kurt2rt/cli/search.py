@@ -36,20 +36,19 @@ class _Options(JobOptions):
 def search(options: _Options) -> None:
     """Search settings of a task on search seeds, and check the best once on other seeds and worlds.
 
-    A file of config/searches names the keys of the task's file and their ranges,
-    the robots and worlds of the search and of the check, and the teacher. Each
-    trial teaches its robots one after the other and examines them. It ends early
-    when it cannot beat the median of the trials before it. A better trial passes
-    more exams, or as many with fewer presses.
+    A file of config/searches names the keys and their ranges. It also names the
+    teacher, and robots and worlds of search and check. Each trial teaches robots
+    one after the other and examines them. It ends early if it cannot beat the
+    median of the earlier trials. A better trial passes more exams, or as many
+    with fewer presses.
 
-    The best trials are then compared once, robot by robot, with the shipped
-    settings. Search seeds are 0 to 999 and 3000 to 3999, those of a check are
-    others. Leaves found.yaml (changed keys, and where they came from) and
-    report.html in the output folder. --set holds for all trials and for the
-    shipped settings.
+    The best trials are then compared once with the shipped settings, robot by
+    robot. Search seeds are 0 to 999 and 3000 to 3999; those of a check are
+    others. Writes found.yaml (changed keys and their origin) and report.html to
+    the output folder. --set changes all trials and the shipped settings.
 
-    A search that was interrupted goes on where it was. The same file, trials and
-    versions give the same trials, with any number of processes.
+    An interrupted search goes on where it was. The same file, number of trials
+    and versions give the same trials, with any number of processes.
 
     For example:
 

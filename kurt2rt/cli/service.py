@@ -28,7 +28,7 @@ from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
 
 service = typer.Typer(
-    help="Run the robot's program as a unit of systemd.\n\nIt starts with the machine, and again whenever it fell.",
+    help="Run the robot's program as a unit of systemd.\n\nIt starts with the machine, and restarts after a crash.",
     no_args_is_help=True,
 )
 
@@ -71,10 +71,10 @@ def show(options: _UnitOptions) -> None:
 def check(options: _CheckOptions) -> None:
     """Check the unit by systemd's own tools: whether it loads, and what it may do.
 
-    Changes nothing. Ends with code 1 if it does not load, its user could not
-    read this installation or the settings, or write where they say, or its
-    exposure (systemd-analyze security, 0 to 10, less is safer) is above 2;
-    with 2 if its name is another program's.
+    Changes nothing. Ends with code 1 if the unit does not load. Also if its user
+    cannot read this installation or the settings, or cannot write its folders.
+    Also if its exposure (systemd-analyze security, 0 to 10, less is safer) is
+    above 2. Ends with code 2 if the name belongs to another program.
 
     For example:
 

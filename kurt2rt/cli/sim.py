@@ -36,8 +36,8 @@ class _Options:
     bus: Annotated[
         str,
         typer.Option(
-            help="Where the robot is: shared:NAME, a bus between programs of this machine that needs no CAN; or a "
-            "SocketCAN interface such as vcan0. Of another kind of robot: the address that its plug-in takes, such as "
+            help="Bus of the robot: shared:NAME, which connects programs of this machine without CAN; or a SocketCAN "
+            "interface such as vcan0. For another kind of robot: the address that its plug-in takes, such as "
             "/tmp/school or tcp/127.0.0.1:7447."
         ),
     ] = "shared:kurt2"
@@ -46,12 +46,10 @@ class _Options:
         int | None,
         typer.Option(metavar="N", min=1, help="Start pose of the world, 1, 2, ...; default: the seed decides."),
     ] = None
-    seed: Annotated[
-        int, typer.Option(metavar="N", min=0, help="Decides the robot's sensors, its noise and where it starts.")
-    ] = 1
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Seed of the robot's sensors, noise and start.")] = 1
     robot: RobotName = None
     seconds: Annotated[
-        float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after so long; default: on Ctrl-C.")
+        float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after this time. Default: at Ctrl-C.")
     ] = None
     while_stdin: Annotated[
         bool, typer.Option("--while-stdin", help="Switch off when the standard input ends, for use in scripts.")
@@ -62,9 +60,9 @@ class _Options:
 def sim(options: _Options) -> None:
     """Simulate a KURT2 on a CAN bus, in real time.
 
-    For all that talks to it this is the robot: it obeys CONTROL, sends telemetry
-    100 times a second, and brakes by itself when CONTROL ceases for 0.2 s. What
-    can be tried with it needs no robot, and no CAN in the kernel:
+    It behaves on the bus as the robot does: it obeys CONTROL, sends telemetry
+    100 times a second, and brakes when CONTROL ceases for 0.2 s. This needs no
+    robot, and no CAN in the kernel:
 
         kurt2rt sim --bus shared:desk
         kurt2rt run --bus shared:desk --page
@@ -76,11 +74,11 @@ def sim(options: _Options) -> None:
         sudo ip link set vcan0 up
         kurt2rt sim --bus vcan0
 
-    A line once a second tells where it is, how its wheels turn, what they were
-    told, and how often. Type `help` for what a hand could do: put the robot
-    elsewhere, lift it, move a wall. Its identity frames (INFO_1, INFO_2) say that
-    it is simulated. A bus that goes down does not switch it off: it stands, and
-    goes on when the bus is back. Ctrl-C, or SIGTERM, switches it off.
+    A line once a second shows the robot's pose, its wheel speeds, and the set
+    points that it got, with their rate. Type `help` for commands that move the
+    robot, lift it, or move a wall. Its identity frames (INFO_1, INFO_2) say that
+    it is simulated. If the bus goes down, the robot stands, and goes on when the
+    bus is back. Ctrl-C, or SIGTERM, switches it off.
     """
     if options.seconds is not None and not math.isfinite(options.seconds):
         raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")

@@ -39,9 +39,9 @@ class _Options:
 
     knowledge: Annotated[
         Path | None,
-        typer.Argument(help="Knowledge file that the robot program teaches on in. Default: as the settings say."),
+        typer.Argument(help="Knowledge file of the robot program. Default: as the settings say."),
     ] = None
-    task: Annotated[str | None, task_option("As the robot program was started with, if no file is given.")] = None
+    task: Annotated[str | None, task_option("That of the robot program, if no file is given.")] = None
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default"
@@ -71,18 +71,18 @@ class _Options:
 def status(options: _Options) -> None:
     """Tell how a running robot program is.
 
-    From another terminal, or another machine: how late its ticks begin, what it
-    missed, how old what it senses is, its bus, its disk, what its queues threw
-    away, and what is wrong, since when, and what to do about it.
+    Ask from another terminal, or another machine. It shows how late ticks begin,
+    how old the sensor readings are, and the state of bus and disk. For each
+    trouble it shows since when it lasts and what to do.
 
         kurt2rt status
         kurt2rt status --watch
         kurt2rt status --device phone
 
-    A robot program tells it next to its knowledge file, whether it listens to
-    teachers or not, to its own user and to root. Ends with code 1 where
-    something urgent is wrong: the robot stands because of it, or lessons are at
-    risk; with 2 where no robot program runs.
+    The robot program keeps its status next to its knowledge file, for its own
+    user and root. Ends with code 1 if something urgent is wrong: the robot
+    stands because of it, or lessons are at risk. Ends with code 2 if no robot
+    program runs.
     """
     if options.device is None and (options.robot is not None or options.port is not None):
         raise typer.BadParameter(

@@ -32,16 +32,16 @@ EngineOption = Annotated[
     EngineRequest,
     typer.Option(
         help="What drives lessons (of phases 1 and 2) and exams. compiled: a batch of robots at once, with equal "
-        "results (extra fast); 1 % of the robots, at least three, are driven on the CAN bus too and must agree. A task "
-        "that it does not know is driven on the CAN bus. can: the simulated CAN bus. auto: compiled if it is installed "
-        "and the study is long enough."
+        "results (extra fast). As a check, 1 % of the robots, at least three, run on the CAN bus too and must agree. "
+        "can: the simulated CAN bus, also for tasks that compiled does not know. auto: compiled if it is installed and "
+        "the study is long."
     ),
 ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JobOptions:
-    """Options of all studies: who runs the jobs, and how the results are told."""
+    """Options of all studies: the machines that run the jobs, and the form of the results."""
 
     jobs: Jobs = ALL_PROCESSORS
     cluster: Cluster = None

@@ -38,8 +38,8 @@ _Phone = Annotated[
 _Device = Annotated[
     str | None,
     typer.Option(
-        help="Paired device that this teaches as. Default: this machine's own, which is local for the page, terminal "
-        "with --terminal and auto with --auto.",
+        help="Teach as this paired device. Default: one of this machine's own: local for the page, terminal with "
+        "--terminal, auto with --auto.",
     ),
 ]
 _Robot = Annotated[str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")]

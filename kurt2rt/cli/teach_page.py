@@ -37,7 +37,7 @@ class PageOptions:
     spare_ports: int
     """Number of ports above to try, as for `kurt2rt.teacher.page.server.listen`."""
     address: str
-    """Address or name of this machine that a phone is told; auto: its addresses in its networks."""
+    """Address or name of this machine for phones; auto: its addresses in its networks."""
     while_stdin: bool
     as_json: bool
     """Report the served pages in lines of JSON, for `kurt2rt run`."""

@@ -39,25 +39,23 @@ def train(options: TrainOptions) -> None:
 
         kurt2rt train --task streets --seeds 100-119
 
-    The teacher ordinary reacts, errs and looks away like a person; superhuman
-    has the times of the task, as no person has (config/teachers):
+    The default teacher, ordinary, reacts, errs and looks away like a person;
+    superhuman reacts faster and never errs (config/teachers):
 
         kurt2rt train --teacher superhuman --seeds 100-119
 
-    With --seeds results are kept in --out with hashes of what made them; a run
-    that was interrupted goes on where it was. A robot of a basic task that was
-    made otherwise is taught again, and its knowledge file gets a new name.
+    With --seeds the results are kept in --out, so an interrupted run goes on
+    where it was. If the settings or the program changed since, a robot is taught
+    again, and its old knowledge file is renamed.
 
-    The task route teaches the mid level a fixed route through the streets, a
-    closed loop that the robot's seed draws, and then lets it drive without a
-    teacher:
+    The task route teaches the mid level a closed loop through the streets, which
+    the robot's seed draws. Then the robot drives it without a teacher:
 
         kurt2rt train --task route
         kurt2rt train --task route --seeds 0-9 --decisions 8 --decisions 12
 
-    The task errands leads the robot about the town and names places, and then
-    sends it to them by ways that it was never led as a whole; results are
-    kept in --out as well:
+    The task errands leads the robot through the town and names places. Then it
+    sends the robot to them, along routes it was never shown in one piece:
 
         kurt2rt train --task errands --seeds 0-9 --baselines
     """

@@ -62,13 +62,13 @@ class TrainOptions(EngineOptions):
     decisions: Annotated[
         list[int] | None,
         typer.Option(
-            help="Of a route: how many junctions its loop has; with --seeds repeat for several. Default: the task's."
+            help="Route only: number of junctions in its loop; with --seeds repeat for several. Default: the task's."
         ),
     ] = None
     basic: Annotated[
         Path | None,
         typer.Option(
-            help="Of a route, or errands: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
+            help="Route and errands only: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
             "train --task streets leaves them. Without it the streets are taught first."
         ),
     ] = None
@@ -76,7 +76,7 @@ class TrainOptions(EngineOptions):
         bool,
         typer.Option(
             "--baselines",
-            help="Of a route with --seeds, or errands: also go about it in other ways, to compare.",
+            help="Route with --seeds, and errands: also run other methods, to compare.",
         ),
     ] = False
 

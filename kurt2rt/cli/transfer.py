@@ -46,8 +46,8 @@ class _Options(EngineOptions):
     world: Annotated[
         list[str] | None,
         typer.Option(
-            help="New world, as in other commands; SEED in the name stands for the robot's seed. May be given again: "
-            "each robot is taught in each of them by itself. Default: rooms-SEED, of streets streets-SEED.",
+            help="New world, as in other commands; SEED in the name stands for the robot's seed. Repeat for several: "
+            "each robot is taught in each of them separately. Default: rooms-SEED, for streets streets-SEED.",
             show_default=False,
         ),
     ] = None
@@ -55,7 +55,7 @@ class _Options(EngineOptions):
         list[int] | None,
         typer.Option(
             min=0,
-            help="Number of presses in the new world after which the robot is examined there; may be given again. "
+            help="Examine the robot after this number of presses in the new world; repeat for several. "
             f"Default: {', '.join(map(str, AFTER))}.",
             show_default=False,
         ),
@@ -73,8 +73,7 @@ class _Options(EngineOptions):
         bool,
         typer.Option(
             "--baselines",
-            help="Also let the teacher of the new world answer questions only, and teach there robots that know "
-            "nothing from home.",
+            help="Also teach by answers alone, and teach robots in the new world that know nothing from home.",
         ),
     ] = False
     changes: Changes = None
@@ -86,20 +85,19 @@ class _Options(EngineOptions):
 def transfer(options: _Options) -> None:
     """Measure how many presses a robot that was taught at home needs to be right in a new world.
 
-    Each robot is taught in the world of its task. Then the same teacher goes on
-    in a new world, and answers and corrects there as at home. The robot is
-    examined there without its teacher after 0, 2, 5, 10, 15 and 20 presses, and
-    at home as soon as it is right there and at the end, each time against the
-    policy's own drive from the same start. The result is a curve: the share of
-    robots that are right, by presses.
+    Each robot is taught in the world of its task (home). Then the same teacher
+    goes on in a new world, and answers and corrects as at home. After 0, 2, 5,
+    10, 15 and 20 presses the robot is examined there without its teacher. It is
+    examined at home once it is right in the new world, and at the end. The
+    policy's own drive from the same start is the measure. The result is a curve:
+    the share of robots that are right, by presses.
 
     For example, other rooms for each robot, with baselines; and other streets:
 
         kurt2rt study transfer --baselines
         kurt2rt study transfer --task streets --teacher superhuman
 
-    Results are kept in --out with hashes of what made them; a run that was
-    interrupted goes on where it was.
+    Results are kept in --out, so an interrupted run goes on where it was.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.study.targets import reasons_against_judging

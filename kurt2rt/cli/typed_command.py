@@ -22,7 +22,7 @@ def typed_command(command: str, options: "DataclassInstance", instead: Mapping[s
     Args:
         command: its name.
         options: its options, as `takes_options` makes them; those with their default are left out.
-        instead: values of fields in place of the typed ones; they are stated also if they are the default or decide no
+        instead: values of fields instead of the typed ones; they are stated also if they are the default or decide no
             number in other commands, None never.
     """
     stated = instead or {}

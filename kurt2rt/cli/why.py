@@ -48,11 +48,13 @@ _Picture = Annotated[Path | None, typer.Option(help="Draw it, too: a file that e
 _Limit = Annotated[
     int,
     typer.Option(
-        metavar="N", min=1, help="Of a run with more stretches show those in which it did not drive by itself."
+        metavar="N",
+        min=1,
+        help="Most parts of a run to list; if it has more, those in which it did not drive by itself.",
     ),
 ]
 _Live = Annotated[
-    bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
+    bool, typer.Option("--live", help="Ask a running robot what it decides now, and why, instead of a recording.")
 ]
 _Device = Annotated[
     str | None,
@@ -86,17 +88,17 @@ def why(
 ) -> None:
     """Explain what the robot did, and why: in a run, or now.
 
-    Of one moment: which RLA won and by how much, which was behind it, which
-    features mattered, who taught it when and instead of what, how often it was
-    used since, what would have changed the decision, and what the guard made of
-    it; and where the robot stood, why.
+    For one moment it shows which RLA won, by how much, and which came second. It
+    shows who taught the RLA, when and instead of what, and how often it was used
+    since. It shows what would have changed the decision, and what the guard made
+    of it. If the robot stood, it shows why.
 
         kurt2rt why --at 12.34 --picture why.png
         kurt2rt why --from 60 --to 90 --picture minute.png
         kurt2rt why 20261122T031005Z-wall_following
         kurt2rt why --live
 
-    The run is replayed up to that moment, so what is told is what the robot
+    The run is replayed up to that moment, so the answer uses only what the robot
     knew then.
     """
     _require_picture(picture)

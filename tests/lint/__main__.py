@@ -4,6 +4,7 @@ import argparse
 import sys
 
 from tests.lint.ratchet import ROOT, counted, differences, findings, load_allowed, write_allowed
+from tests.lint.reader import help_findings
 
 
 def main() -> int:
@@ -12,7 +13,7 @@ def main() -> int:
     parser.add_argument("paths", nargs="*", metavar="PATH", help="list the findings below these folders or files")
     parser.add_argument("--update", action="store_true", help="write the numbers of today into the table")
     arguments = parser.parse_args()
-    found = sorted(findings(ROOT))
+    found = sorted([*findings(ROOT), *help_findings()])
     if arguments.paths:
         below = tuple(path.rstrip("/") for path in arguments.paths)
         listed = [

@@ -9,11 +9,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from tests.lint.last_bits import last_bits_findings
-from tests.lint.rules import RUFF_RULES, Finding, python_findings, sentence_findings, text_findings
+from tests.lint.reader import reader_findings
+from tests.lint.rules import RUFF_RULES, Finding, python_findings, text_findings
 
 ROOT = Path(__file__).parents[2]
 TABLE = Path(__file__).parent / "allowed.toml"
-_SUFFIXES = {".py", ".md", ".yaml", ".js", ".html", ".j2"}
+_SUFFIXES = {".py", ".md", ".yaml", ".js", ".html", ".j2", ".txt"}
 _ROOMS = ("config", "hal", "behaviors", "simbridge", "kurt2rt", "tests", "docs")
 _HEAD = "# Findings still allowed per folder and rule; `python -m tests.lint --update` rewrites this file.\n"
 
@@ -32,8 +33,7 @@ def findings(root: Path) -> Iterator[Finding]:
     for path in [*sorted(root.glob("*.md")), *sorted(files)]:
         name, text = str(path.relative_to(root)), path.read_text(encoding="utf-8")
         yield from text_findings(name, text)
-        if path.suffix == ".md":
-            yield from sentence_findings(name, text)
+        yield from reader_findings(name, text)
         if path.suffix == ".py":
             yield from python_findings(name, text)
             yield from last_bits_findings(name, text)

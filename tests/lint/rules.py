@@ -46,16 +46,6 @@ def text_findings(path: str, text: str) -> Iterator[Finding]:
             yield Finding(path, number, "banned-word", word.lower())
 
 
-def sentence_findings(path: str, text: str) -> Iterator[Finding]:
-    """Yield each sentence of a Markdown text that has more than LONGEST_SENTENCE words; tables and code have none."""
-    blank = re.sub(r"^```.*?^```$", lambda code: "\n" * code[0].count("\n"), text, flags=re.MULTILINE | re.DOTALL)
-    plain = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", re.sub(r"^(?:\||#|    ).*$", "", blank, flags=re.MULTILINE))
-    for sentence in re.finditer(r"(?:(?!\n\s*\n|\n *[-*\d]\.? |[.!?:]\*{0,2}\s).)+", plain, re.DOTALL):
-        if len(words := sentence[0].split()) > LONGEST_SENTENCE:
-            start = sentence.start() + len(sentence[0]) - len(sentence[0].lstrip())
-            yield Finding(path, plain.count("\n", 0, start) + 1, "long-sentence", " ".join(words[:8]))
-
-
 def python_findings(path: str, text: str) -> Iterator[Finding]:
     """Yield the findings of a Python module except banned words. Raises SyntaxError."""
     module = ast.parse(text, path)

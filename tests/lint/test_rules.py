@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.lint.rules import WORDS, first_word_rule, python_findings, sentence_findings, text_findings
+from tests.lint.rules import WORDS, first_word_rule, python_findings, text_findings
 
 
 def rules(source: str, path: str = "hal/x.py") -> list[str]:
@@ -13,20 +13,6 @@ def rules(source: str, path: str = "hal/x.py") -> list[str]:
 def test_text_with_banned_word_is_found_at_its_line(word: str) -> None:
     (finding,) = text_findings("README.md", f"Fine.\nSo {word.title()} it is.\n")
     assert (finding.line, finding.rule, finding.name) == (2, "banned-word", word)
-
-
-@pytest.mark.parametrize(
-    ("text", "found"),
-    [
-        ("one " * 22 + "end.\n", [1]),
-        ("one " * 21 + "end. One " + "two " * 20 + "end.\n", []),
-        ("# A\n\n| " + "cell " * 30 + "|\n```\n" + "code " * 30 + "\n```\n", []),
-        ("- " + "one " * 20 + "\n- " + "two " * 20 + "\n", []),
-        ("```\ncode\n```\n\nFine.\n" + "one " * 15 + "\n" + "two " * 8 + "[link](" + "x/" * 9 + ")\n", [6]),
-    ],
-)
-def test_sentence_of_more_than_22_words_is_found_at_its_line(text: str, found: list[int]) -> None:
-    assert [finding.line for finding in sentence_findings("x.md", text)] == found
 
 
 def test_text_with_longer_words_is_not_found() -> None:

@@ -20,13 +20,13 @@ from kurt2rt.service.settings import load_service
 Runs = Annotated[
     Path | None,
     typer.Option(
-        help="Folder of recorded runs, or one run of it: try it on all of that. "
-        "Default: the last ten minutes of the newest run where the settings say that runs are kept."
+        help="Replay all runs of this folder, or this one run, to preview. Default: the last ten minutes of the newest "
+        "run in the folder that the settings name."
     ),
 ]
-NoPreview = Annotated[bool, typer.Option("--no-preview", help="Replay nothing, ask nothing: do it.")]
+NoPreview = Annotated[bool, typer.Option("--no-preview", help="Do it without a replay and without a question.")]
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Only show what it would change.")]
-Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask; nor does it where there is no terminal.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask. Without a terminal it never asks.")]
 
 _MOST_STRETCHES = 8
 """Number of stretches shown of each run, the longest."""

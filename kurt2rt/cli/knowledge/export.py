@@ -44,7 +44,7 @@ def import_(
     task_name: Annotated[str | None, task_option("Default: the task whose settings came with it.")] = None,
     robot_name: RobotName = None,
 ) -> None:
-    """Make a knowledge file of an exported one; refuse what was changed, or has other features.
+    """Make a knowledge file from an exported one; refuse a changed file, or one of other features.
 
     For example:
 

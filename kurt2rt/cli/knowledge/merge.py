@@ -12,13 +12,14 @@ from kurt2rt.knowledge.versions.merge import merge as append_lessons
 
 def merge(
     file: KnowledgeFile,
-    other: Annotated[Path, typer.Argument(help="The file whose lessons are brought in; stays as it is.")],
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would come of it.")] = False,
+    other: Annotated[Path, typer.Argument(help="File whose lessons are added; it stays as it is.")],
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Only show what a merge would change.")] = False,
 ) -> None:
-    """Append the lessons that stand in OTHER to FILE; merging again adds nothing.
+    """Append the lessons of OTHER, except undone ones, to FILE; merging again adds nothing.
 
-    A lesson is left out, and listed, if the RLA that it corrects or rewards has
-    another action in FILE, or is gone. All that came can be undone together.
+    A lesson corrects or rewards an RLA. If this RLA is gone from FILE, or has
+    another action there, the lesson is left out and listed. A merge can be
+    undone as a whole.
 
     For example:
 

@@ -30,10 +30,10 @@ def show(
     file: KnowledgeFile,
     limit: Annotated[
         int | None,
-        typer.Option(metavar="N", min=1, help="Show only the oldest so many RLAs; with --rla so many features."),
+        typer.Option(metavar="N", min=1, help="Number of RLAs to show, oldest first; with --rla number of features."),
     ] = None,
     rla: Annotated[
-        int | None, typer.Option(metavar="N", help="Show this RLA whole, with what is expected to follow it.")
+        int | None, typer.Option(metavar="N", help="Show all of this RLA, with the situation that it expects next.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -57,9 +57,9 @@ def show(
 
 def lessons(
     file: KnowledgeFile,
-    limit: Annotated[int, typer.Option(metavar="N", min=1, help="Show only the newest so many lessons.")] = 20,
+    limit: Annotated[int, typer.Option(metavar="N", min=1, help="Number of lessons to show, newest first.")] = 20,
     teacher: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Only those of this teacher; critic: the robot's own critic.")
+        str | None, typer.Option(metavar="NAME", help="Only lessons of this teacher; critic: the robot's own critic.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -108,7 +108,7 @@ def _as_data(journal: Journal, rla_id: int | None, limit: int | None) -> dict[st
 def contradictions(
     file: KnowledgeFile, task_name: TaskOfTheFile = None, robot_name: RobotName = None, as_json: AsJson = False
 ) -> None:
-    """List the RLAs that none of their neighbours agrees with, as after a slip of the finger.
+    """List RLAs that contradict all of their neighbours, often after a wrong press.
 
     An RLA is listed if each of the five RLAs nearest to it does something that
     looks different. About two of five such RLAs are wrong; the others are

@@ -15,13 +15,13 @@ def undo(
     file: KnowledgeFile,
     lesson: Annotated[
         str | None,
-        typer.Option(help="Id of the lesson, hold or merge, as lessons and merge show it; else the last that stands."),
+        typer.Option(help="Id of the lesson, hold or merge, as knowledge lessons lists it. Default: the newest."),
     ] = None,
     teacher: Annotated[
         str | None,
         typer.Option(
             metavar="NAME",
-            help="All lessons of this teacher that stand, newest first; critic: the robot's own critic.",
+            help="All lessons of this teacher, newest first; critic: the robot's own critic.",
         ),
     ] = None,
     runs: Runs = None,
@@ -79,12 +79,12 @@ def redo(
         return
     apply_plan(planned, utc_now())
     for record in planned.lessons:
-        say(f"{file}: stands again: {format_lesson(record)}")
+        say(f"{file}: redone: {format_lesson(record)}")
     for refusal in planned.stay:
         say(f"stays undone: {text_of(refusal)}")
     if teacher is not None:
         stay = f", {len(planned.stay)} do not" if planned.stay else ""
-        say(f"{file}: {len(planned.lessons)} lessons of {teacher} stand again{stay}")
+        say(f"{file}: {len(planned.lessons)} lessons of {teacher} redone{stay}")
 
 
 def _require_one_of(lesson: str | None, teacher: str | None) -> None:
