@@ -24,7 +24,7 @@ def test_sentence_of_more_than_22_words_is_found_at_its_line(text: str, found: l
 @pytest.mark.parametrize(
     ("path", "text"),
     [
-        ("docs/x.md", "\n{}"),
+        ("docs/design.md", "\n{}"),
         ("tests/golden/x.txt", "\ncode: {}"),
         ("tests/golden/x.txt", "\nso many: Short. | {}"),
         ("kurt2rt/teacher/page/static/x.js", '// of "before\n  f("{}")'),
