@@ -64,7 +64,7 @@ class LinkSettings(Settings):
 
 
 class NoticeSettings(Settings):
-    """Disagreement of robot and teacher that the teacher can see."""
+    """Times in s after which a teacher who watches notices that the robot does the wrong thing."""
 
     different_after_s: Seconds
     """Time after which a wrong action is noticed that looks different from the right one."""

@@ -21,7 +21,7 @@ _WORD = re.compile(r"\s*\S+\s*")
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """One column of a table."""
+    """Column of a TextTable: its heading, and whether it holds numbers or may not be wrapped."""
 
     heading: str
     number: bool = False

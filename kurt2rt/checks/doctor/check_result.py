@@ -198,7 +198,7 @@ class CheckResult:
 
     @property
     def found(self) -> str:
-        """State that was found."""
+        """State that was found, in words."""
         return self.code.found.format(**self.values)
 
     @property

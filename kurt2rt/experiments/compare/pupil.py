@@ -26,7 +26,7 @@ _TITLES = {
 
 @dataclass(frozen=True, slots=True)
 class Pupil:
-    """One that is taught."""
+    """Learner that a study compares: the RLA system, or another one by name, with its gate."""
 
     name: str
     """`SHIPPED`, or the name of a learner."""
@@ -62,7 +62,7 @@ class Pupil:
 
     @property
     def label(self) -> str:
-        """Name in file names."""
+        """Name that file names can hold, such as k-nn-gate-0.8."""
         name = self.name.replace(":", ".")
         return name if self.gate is None else f"{name}-gate-{self.gate:g}"
 

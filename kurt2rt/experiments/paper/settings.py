@@ -65,7 +65,7 @@ class GrowthSettings(Settings):
 
 
 class PaperSettings(Settings):
-    """All of it."""
+    """Schema of `config/paper`: tasks, worlds and numbers of the paper's figures."""
 
     experiments: Annotated[tuple[ExperimentSettings, ...], Field(min_length=1)]
     growth: GrowthSettings

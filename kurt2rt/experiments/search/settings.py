@@ -28,7 +28,7 @@ class SeedRange(Settings):
 
     @property
     def seeds(self) -> range:
-        """Seeds in order."""
+        """Seeds of the range, ascending."""
         return range(self.first, self.first + self.count)
 
 
@@ -71,7 +71,7 @@ class Dimension(Settings):
 
 
 class SearchSettings(Settings):
-    """Search of one task."""
+    """Schema of `config/searches/*.yaml`: keys and ranges, robots, worlds and teacher of a search."""
 
     name: Name
     task: str

@@ -21,7 +21,10 @@ _WITNESSES = "witnesses"
 
 
 class BusWitnessOutcome(Outcome):
-    """Comparison of one robot in the batch and on the CAN bus."""
+    """Witness: the comparison of one robot that the batch drove with the same robot on the CAN bus.
+
+    One differing part refuses all results of the folder.
+    """
 
     job: str
     """Name of the job that was compared."""

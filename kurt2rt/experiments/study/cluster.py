@@ -40,7 +40,10 @@ def open_cluster(file: Path) -> Iterator["ClusterExecutor"]:
 
 
 class ClusterExecutor:
-    """Workers of a scheduler, one job each at a time. 1 % of the jobs run on two workers and must agree."""
+    """Executor of a study's jobs on the workers of a Dask scheduler, one job each at a time.
+
+    1 % of the jobs run on two workers and must agree.
+    """
 
     def __init__(self, client: Client) -> None:
         self._client = client

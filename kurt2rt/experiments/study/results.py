@@ -35,7 +35,7 @@ class StoredResult(Protocol):
 
     @property
     def made_of(self) -> Provenance:
-        """Provenance of the result."""
+        """Hashes of what made the result; a result of another making is refused."""
         ...
 
     @property

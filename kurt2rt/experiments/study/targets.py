@@ -26,7 +26,10 @@ def reasons_against_judging(seeds: Sequence[int]) -> Iterator[str]:
 
 
 class Verdict(NamedTuple):
-    """One number of a study: its name, what was asked, and what came."""
+    """Target of a study: its name, the number asked for, the number that came, and whether it was met.
+
+    Tables show it as met, MISSED or not judged; targets were written down before the runs.
+    """
 
     what: str
     asked: str

@@ -26,7 +26,7 @@ from kurt2rt.runs.replay.run import Run
 
 @dataclass(frozen=True, slots=True)
 class ExplainedMoment:
-    """Explained decision of a recorded run."""
+    """Explanation of one decision of a recorded run: facts, sentences and changes that would have changed it."""
 
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]

@@ -39,7 +39,7 @@ class LiveView:
 
     @property
     def address(self) -> str:
-        """Address that Foxglove opens."""
+        """Address that Foxglove opens, such as ws://127.0.0.1:8765."""
         return f"ws://{self._host}:{self.port}"
 
     def poll(self) -> None:

@@ -94,7 +94,7 @@ class Segment:
         self._writer.attach(log_time=time_ns, create_time=time_ns, name=name, media_type=media_type, data=data)
 
     def save(self) -> None:
-        """End the chunk and sync. Raises OSError; nothing is lost, try again."""
+        """End the present chunk and sync the file to the disk. Raises OSError; nothing is lost, so try again."""
         self._writer.flush()
         self._write_out()
 

@@ -10,7 +10,7 @@ from kurt2rt.teacher.scripted.press_times import PressTimes
 
 
 class TeacherView(NamedTuple):
-    """State of the robot as far as a teacher sees it."""
+    """State of the robot as far as a teacher sees it: decision, readings and touch of one tick."""
 
     asking: bool
     """Its basic level asks."""
