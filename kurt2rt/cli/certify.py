@@ -32,8 +32,6 @@ _GENERATED = {"wall_following": ("rooms-SEED",)}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(JobOptions):
-    """Arguments and options of `kurt2rt study certify`."""
-
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
     runs: Annotated[
         int, typer.Option(min=1, max=1_000_000, metavar="N", help="Number of runs; each is another robot.")
@@ -183,7 +181,6 @@ def _engine(options: _Options, refusal: str) -> Engine:
 
 
 def _exam_command(options: _Options, run: "RunOutcome") -> str:
-    """Return the command that drives a run again."""
     words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.number), "--world", run.world]
     words += ["--broken-sensor", run.broken] if run.broken else []
     changes = [*(options.changes or ()), *([f"{_SECONDS}={options.seconds:g}"] if options.seconds is not None else [])]

@@ -73,8 +73,6 @@ _Operator = Annotated[
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt commission`."""
-
     bus: _Bus
     name: _Name = "my-kurt2"
     out: _Out = None

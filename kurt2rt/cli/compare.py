@@ -28,8 +28,6 @@ _AFTER = (10, 20, 40)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(EngineOptions):
-    """Options of `kurt2rt study compare`."""
-
     learner: Annotated[
         list[str] | None,
         typer.Option(

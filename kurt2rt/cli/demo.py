@@ -34,8 +34,6 @@ from kurt2rt.platform.text_table import print_whole
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt demo`."""
-
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     teacher: Teacher = DEFAULT_TEACHER
     paper_defaults: PaperDefaults = False

@@ -24,8 +24,6 @@ from kurt2rt.platform.text_table import print_whole
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt study doubt`."""
-
     taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt train --seeds leaves them.")]
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-4.")] = "0-4"

@@ -29,8 +29,6 @@ from kurt2rt.platform.text_table import print_whole
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt exam`."""
-
     knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt train or kurt2rt run leaves it.")]
     task: TaskOfTheFile = None
     paper_defaults: PaperDefaults = False

@@ -26,8 +26,6 @@ _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(EngineOptions):
-    """Options of `kurt2rt study paper`."""
-
     quick: Annotated[
         bool, typer.Option("--quick", help="A small part in under a minute: fewer tasks and seeds, short lessons.")
     ] = False

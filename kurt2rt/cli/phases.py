@@ -30,8 +30,6 @@ _FOLDER = Path("results/phases")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(EngineOptions):
-    """Options of `kurt2rt study phases`."""
-
     task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
     teacher: Teacher = DEFAULT_TEACHER
     changes: Changes = None

@@ -29,8 +29,6 @@ Say = Callable[[str], None]
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt ros`."""
-
     connect: Annotated[
         list[str] | None,
         typer.Option(

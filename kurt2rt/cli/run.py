@@ -27,8 +27,6 @@ _NOT_RECORDED = (
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt run`."""
-
     bus: Annotated[
         str,
         typer.Option(

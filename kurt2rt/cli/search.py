@@ -21,8 +21,6 @@ _FOLDER = Path("results/search")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(JobOptions):
-    """Arguments and options of `kurt2rt study search`."""
-
     search: Annotated[str, search_argument()]
     trials: Annotated[
         int | None,

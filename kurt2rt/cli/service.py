@@ -38,8 +38,6 @@ UnitName = Annotated[str, typer.Option(help="Name of the unit and of its user; o
 
 @dataclass(frozen=True, slots=True)
 class _UnitOptions:
-    """Options of a unit."""
-
     bus: Annotated[str, typer.Option("--bus", help="Bus that the robot is on, as for kurt2rt run.")] = _BUS
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")

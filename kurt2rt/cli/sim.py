@@ -31,8 +31,6 @@ _STATUS_S = 1.0
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt sim`."""
-
     bus: Annotated[
         str,
         typer.Option(

@@ -35,8 +35,6 @@ _STYLES = {WARNS: "yellow", URGENT: "bold red"}
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Arguments and options of `kurt2rt status`."""
-
     knowledge: Annotated[
         Path | None,
         typer.Argument(help="Knowledge file of the robot program. Default: as the settings say."),

@@ -31,8 +31,6 @@ study = typer.Typer(
 
 @dataclass(frozen=True, slots=True)
 class _Options:
-    """Options of `kurt2rt study worker`."""
-
     cluster: _Cluster = None
     new: _New = None
     scheduler: _Scheduler = ""

@@ -115,8 +115,6 @@ def teach(
 
 @dataclass(frozen=True, slots=True)
 class _Arguments:
-    """Arguments of the command line."""
-
     terminal: bool
     auto: bool
     phone: bool

@@ -29,8 +29,6 @@ _WORLDS = {"streets": "streets-SEED"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Options(EngineOptions):
-    """Options of `kurt2rt study transfer`."""
-
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     teacher: Teacher = DEFAULT_TEACHER
     there: Annotated[

@@ -98,7 +98,6 @@ def kurt2_lessons(tmp_path_factory: pytest.TempPathFactory) -> Lessons:
 
 @contextmanager
 def _opened(request: pytest.FixtureRequest, **more: Any) -> "Iterator[SimulatedRobot]":
-    """Yield the robot of the test's marks."""
     from kurt2rt.library.simulated_robot import SimulatedRobot
 
     marked = _marked(request)

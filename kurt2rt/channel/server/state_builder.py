@@ -21,8 +21,6 @@ _LATENESS_EVERY = 20
 
 
 class _Nearest(TypedDict):
-    """Fields of the RLA nearest to the situation."""
-
     nearest: int | None
     nearest_action: str | None
     distance: float
@@ -33,8 +31,6 @@ class _Nearest(TypedDict):
 
 
 class _Critic(TypedDict):
-    """Fields of the critic."""
-
     opinion: int | None
     opinion_of: int | None
     agreement: float | None
@@ -45,8 +41,6 @@ class _Critic(TypedDict):
 
 
 class _Plan(TypedDict):
-    """Fields of the plan to a goal."""
-
     goal: str
     plan: tuple[str, ...]
     plan_says: str

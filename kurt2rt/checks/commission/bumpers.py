@@ -82,7 +82,6 @@ async def _find(stand: TestStand, name: str, untouched: int, found: dict[str, in
 
 
 def _held(heard: FrameStatistics) -> int:
-    """Return the bits set in every frame."""
     return reduce(and_, heard.bumpers) if heard.bumpers else 0
 
 

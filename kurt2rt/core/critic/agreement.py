@@ -94,7 +94,6 @@ class Agreement:
         return self._counted_at is not None and 0 <= tick - self._counted_at < self._apart_ticks
 
     def _remove(self, lesson: str) -> None:
-        """Remove the signal of an undone lesson."""
         for value, heard in self._signals.items():
             for each in [each for each in heard if each[0] == lesson]:
                 heard.remove(each)

@@ -148,7 +148,6 @@ def _bend(part: RlaNetwork, before: int, after: int) -> str:
 
 
 def _parts(network: RlaNetwork) -> dict[str, RlaNetwork]:
-    """Return the network of each behaviour."""
     members: dict[str, list[int]] = {}
     for rla_id in network:
         members.setdefault(network.nodes[rla_id]["behaviour"], []).append(rla_id)

@@ -71,8 +71,6 @@ def decode_event(text: str, where: str) -> TeachingEvent:
 
 
 class _FieldError(ValueError):
-    """Error of one field of an event."""
-
     def __init__(self, key: str, problem: str) -> None:
         super().__init__(problem)
         self.key = key

@@ -155,8 +155,6 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
 
 
 class _LevelSituation(NamedTuple):
-    """Situation of one level."""
-
     names: tuple[str, ...]
     vector: NDArray[np.float64]
     """Shape (d,)."""

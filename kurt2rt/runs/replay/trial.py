@@ -111,7 +111,6 @@ def format_answer(answer: PolicyAnswer) -> str:
 
 
 def _recorded_in(folder: Path) -> list[Path]:
-    """Return the runs with segments, oldest first."""
     return [each for each in runs_in(folder) if segments_in(each)]
 
 

@@ -124,5 +124,4 @@ class StateStream:
 
 
 def _turns(state: State) -> bool:
-    """Return whether a wheel turned in a state."""
     return bool(state.left_m_s or state.right_m_s)
