@@ -31,7 +31,7 @@ from tests.channel.states import COMMANDS, HELD, SHOWN, SURPRISED, state
 from tests.service.health.reports import ILL
 
 TEXT = (Path(__file__).parents[3] / "docs" / "the-wire.md").read_text(encoding="utf-8")
-PICTURE = TEXT[TEXT.index("### The picture") : TEXT.index("### Requests")]
+STATE = TEXT[TEXT.index("### The state") : TEXT.index("### Requests")]
 HEALTH = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
 SAID = TEXT[TEXT.index("### Requests") : TEXT.index("### Versions")]
 
@@ -46,9 +46,9 @@ def bodies() -> dict[str, list[str]]:
     return found
 
 
-def test_every_key_of_the_picture_is_explained() -> None:
+def test_every_key_of_the_state_is_explained() -> None:
     keys = set(cbor2.loads(encode_state(state())))
-    explained = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\|.*\|$", PICTURE, re.MULTILINE))))
+    explained = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\|.*\|$", STATE, re.MULTILINE))))
     assert keys <= explained, keys - explained
 
 
@@ -56,7 +56,7 @@ def test_every_key_of_the_picture_is_explained() -> None:
 def test_wire_page_rows_have_the_documented_places(key: str) -> None:
     shown = state(mid=COMMANDS, surprise=SURPRISED, standing=Standing(), hold=HELD, shown=SHOWN)
     row = cbor2.loads(encode_state(shown))[key]
-    written = re.search(rf"`{key}` is `\[(.*?)\]`", PICTURE)
+    written = re.search(rf"`{key}` is `\[(.*?)\]`", STATE)
     assert written is not None
     assert len(written[1].split(", ")) == len(row)
 
