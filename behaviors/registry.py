@@ -30,7 +30,7 @@ JUDGES = PluginKind(
 )
 METRICS = PluginKind(
     "metrics",
-    "course",
+    "metric",
     "a subclass of MetricSettings (behaviors.metrics.task_metric)",
     lambda found: is_settings_class(found, MetricSettings),
     lambda: shipped_kinds("behaviors.metrics", MetricSettings),
@@ -38,7 +38,7 @@ METRICS = PluginKind(
 
 
 class _Absent(KindSettings):
-    """Settings of a plug-in that is not here, with all their keys; a replay needs none of policy, judge and course."""
+    """Settings of a plug-in that is not here, with all their keys; a replay needs none of policy, judge and metric."""
 
     def build(self, *_: object, **__: object) -> NoReturn:
         """Raise SettingsError."""

@@ -147,12 +147,12 @@ def empty_system(
 ) -> RlaSystem:
     """Return the RLA system of all levels of a task, without any RLA. Raises hal.settings.SettingsError."""
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
     system = RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
-    if task.learning.passes_over_guesses:
+    if task.learning.skip_uncertain_lessons:
         system.is_guess = GuessedLessons(system, action_groups(task.repertoire)).includes
     return system
 
@@ -233,7 +233,7 @@ class _Assembly:
         return CommandHandler(
             self.basic,
             ControlAuthority(repertoire, attended=self._options.attended),
-            insert_beyond_share=self._task.learning.insert_beyond_share,
+            insert_radius_fraction=self._task.learning.insert_radius_fraction,
             handled_command_ids=(event.origin.command_id for event in self._events),
             parts=HandlerParts(
                 reinforcement=self.reinforcement,
@@ -243,12 +243,12 @@ class _Assembly:
                 mid=lessons,
                 goals=goals,
                 delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s), answered),
-                holds_yield=self._task.learning.holds_yield,
+                answers_override_holds=self._task.learning.answers_override_holds,
                 learner=self.learner,
                 lesson_speed=self._task.teaching.lesson_speed,
             ),
             teacher_available=self._options.teacher_available,
-            asks_beyond_share=self._task.learning.asks_beyond_share,
+            ask_radius_fraction=self._task.learning.ask_radius_fraction,
         )
 
     def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:

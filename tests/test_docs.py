@@ -93,7 +93,7 @@ def shortened_run(words: Sequence[str]) -> list[str]:
 
 def shortened_lesson(words: Sequence[str]) -> list[str]:
     if {"route", "errands"} & set(words):
-        starts = ("--set", "course.starts=1") if "route" in words else ()
+        starts = ("--set", "metric.starts=1") if "route" in words else ()
         return [*words, *SHORT_LESSON, *starts]
     return [*({"100-119": "100,101", "915-919": "915"}.get(word, word) for word in words), "--task", "short.yaml"]
 

@@ -25,7 +25,7 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 MINI = runpy.run_path(str(Path(__file__).parents[1] / "docs" / "examples" / "mini.py"))
 # The quickest scripted teacher, whose presses mean the present, with a robot that asks as soon as for a person.
-TASK = taught_by(short_task(6.0, 6.0), load_teacher("superhuman").model_copy(update={"asks_beyond_share": None}))
+TASK = taught_by(short_task(6.0, 6.0), load_teacher("superhuman").model_copy(update={"ask_radius_fraction": None}))
 
 
 class Comparison(TrainingRun):

@@ -331,9 +331,9 @@ def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None
 
 @pytest.mark.parametrize("key", ["learning.radius", "learning"])
 def test_setting_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
-    with pytest.raises(SettingsError, match=rf"streets\.yaml: {key} .*; give plain"):
-        load_task("streets", plain=True, changes={key: "300"})
-    assert load_task("streets", plain=True, changes={"plain.radius": "300"}).learning.radius == 300.0
+    with pytest.raises(SettingsError, match=rf"streets\.yaml: {key} .*; give paper_defaults"):
+        load_task("streets", paper_defaults=True, changes={key: "300"})
+    assert load_task("streets", paper_defaults=True, changes={"paper_defaults.radius": "300"}).learning.radius == 300.0
 
 
 def test_misspelt_kind_is_refused_though_another_fails_to_import(
@@ -363,7 +363,7 @@ def test_set_key_leads_to_a_place_of_a_list() -> None:
             "near",
             r"learning\.radius: .*'near'.*--set learning\.radius",
         ),
-        ("learning", "{radius: 3}", r"learning\.past_weight: .* 2 .*--set learning"),
+        ("learning", "{radius: 3}", r"learning\.history_weight: .* 2 .*--set learning"),
         ("policy.kind", "walls", r"policy\.kind: .*'walls'; .*: circle, "),
         ("learning.radius", "-1", r"learning\.radius: .*-1\)"),
         ("names.first", "x", "names: .*: name"),

@@ -27,7 +27,7 @@ class EightsSettings(MetricSettings):
         """Raise hal.settings.SettingsError unless the world has two posts. `behaviours` may be any."""
         if len(plan.posts) != 2:
             raise SettingsError(
-                f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
+                f"metric eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002

@@ -29,10 +29,10 @@ class ErrandsSettings(MetricSettings):
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
-            raise SettingsError(f"course errands: the task's behaviours must be among {', '.join(QUARTERS)}")
+            raise SettingsError(f"metric errands: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
             raise SettingsError(
-                f"course errands: world {plan.name} has no streets that meet", do="choose one with streets"
+                f"metric errands: world {plan.name} has no streets that meet", do="choose one with streets"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002

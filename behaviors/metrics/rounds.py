@@ -28,7 +28,7 @@ class RoundsSettings(MetricSettings):
         """Raise hal.settings.SettingsError unless the world has one post."""
         if len(plan.posts) != 1:
             raise SettingsError(
-                f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles",
+                f"metric rounds: world {plan.name} has {len(plan.posts)} round obstacles",
                 do="choose one with a single one",
             )
 

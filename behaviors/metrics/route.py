@@ -42,10 +42,10 @@ class RouteSettings(MetricSettings):
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Raise hal.settings.SettingsError without such a loop, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
-            raise SettingsError(f"course route: the task's behaviours must be among {', '.join(QUARTERS)}")
+            raise SettingsError(f"metric route: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
             raise SettingsError(
-                f"course route: world {plan.name} has no streets that meet", do="choose one with streets"
+                f"metric route: world {plan.name} has no streets that meet", do="choose one with streets"
             )
         self.route_in(plan, behaviours)
 

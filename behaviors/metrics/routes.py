@@ -74,7 +74,7 @@ def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], ch
         walk = _walk(on, chance.choice(begins), decisions, chance)
         if walk is not None and not _repeats(walk):
             return _closed(walk)
-    raise SettingsError(f"course route: these streets have no loop of {decisions} decisions", do="give another number")
+    raise SettingsError(f"metric route: these streets have no loop of {decisions} decisions", do="give another number")
 
 
 def _leads_back(on: dict[_Step, tuple[_Step, ...]], first: _Step, decisions: int) -> bool:

@@ -123,7 +123,7 @@ class RouteMetric(TaskMetric, Protocol):
 
 
 class MetricSettings(KindSettings):
-    """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
+    """Base of the settings of every metric: a class named after its file in this folder, which is the kind."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Check that a world has all that the metric needs, for a task that teaches these behaviours.

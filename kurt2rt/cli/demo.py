@@ -24,7 +24,7 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
+from kurt2rt.experiments.lockstep.compatibility import require_actions, require_metric
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
 from kurt2rt.experiments.lockstep.seed_result import seed_result
@@ -66,13 +66,13 @@ def demo(options: _Options) -> None:
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 
     task, settings = load_task_and_robot(
-        options.task, options.robot_settings, plain=options.paper_defaults, changes=changes_of(options.changes)
+        options.task, options.robot_settings, paper_defaults=options.paper_defaults, changes=changes_of(options.changes)
     )
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
-    require_course(stage, taught, worlds)
+    require_metric(stage, taught, worlds)
     require_actions(taught, settings)
     options.out.mkdir(parents=True, exist_ok=True)
     stem = options.out / f"{taught.name}-{options.seed}"

@@ -17,7 +17,7 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
 from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
 from kurt2rt.experiments.lockstep.report import exams_as_data, render_exams
@@ -69,16 +69,16 @@ def exam(options: _Options) -> None:
     task_name = options.task or task_of_file(options.knowledge)
     settings = load_robot_of(options.robot_settings, task_name)
     other = changes_of(options.changes)
-    taught = load_task(task_name, plain=options.paper_defaults, changes=other)
+    taught = load_task(task_name, paper_defaults=options.paper_defaults, changes=other)
     require_robot_of(taught, task_name, settings)
     if options.task is not None:
         task_of_file(options.knowledge, options.task)
-    if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
+    if isinstance(taught.metric, RouteSettings) and taught.metric.seed is None:
         taught = with_route(taught, options.seed)
     worlds = tuple(options.world) if options.world else taught.exam.worlds
     stage = simulations_of(settings)
     stage.require_worlds(*worlds)
-    require_course(stage, taught, worlds)
+    require_metric(stage, taught, worlds)
     events = read_lessons(options.knowledge, settings, taught)
     broken = None if options.broken is None else parse_break(options.broken, settings.infrared)
 

@@ -18,7 +18,7 @@ from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.lockstep.drawing import draw_exams
 from kurt2rt.experiments.lockstep.report import label_of, not_judged, verdict_of
@@ -48,12 +48,12 @@ def main(arguments: list[str]) -> None:
 
 def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, seed: int) -> None:
     robot, task = load_robot(robot_name), load_task(task_name)
-    if isinstance(task.course, RouteSettings) and task.course.seed is None:
+    if isinstance(task.metric, RouteSettings) and task.metric.seed is None:
         task = with_route(task, seed)
     worlds = task.exam.worlds
     stage = simulations_of(robot)
     stage.require_worlds(*worlds)
-    require_course(stage, task, worlds)
+    require_metric(stage, task, worlds)
     events = read_lessons(knowledge, robot, task)
     drives: dict[str, None] = {}
     told = -1.0

@@ -100,7 +100,7 @@ Changes = Annotated[
     typer.Option(
         "--set",
         metavar="KEY=VALUE",
-        help="Change one key of the task's file, with dots between its levels, such as learning.past_weight=1. Repeat "
+        help="Change one key of the task's file, with dots between its levels, such as learning.radius=600. Repeat "
         "it for several keys. Teach and examine with the same values.",
     ),
 ]

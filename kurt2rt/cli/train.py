@@ -18,7 +18,7 @@ from kurt2rt.cli.train_route import many_routes, one_route, require_no_route_opt
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_actions, require_course
+from kurt2rt.experiments.lockstep.compatibility import require_actions, require_metric
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
 from kurt2rt.experiments.lockstep.seed_result import seed_result
@@ -89,7 +89,7 @@ def _task_name(options: TrainOptions) -> str:
 
 def _setup(task_name: str, options: TrainOptions) -> TrainSetup:
     task, robot = load_task_and_robot(
-        task_name, options.robot_settings, plain=options.paper_defaults, changes=changes_of(options.changes)
+        task_name, options.robot_settings, paper_defaults=options.paper_defaults, changes=changes_of(options.changes)
     )
     taught = taught_by_named(task, options.teacher)
     command = typed_command("train", options, {"task": task_name})
@@ -100,7 +100,7 @@ def _basic_task(setup: TrainSetup, options: TrainOptions) -> None:
     task, out = setup.task, options.out or FOLDER
     worlds = (task.teaching.world, *(task.exam.worlds if options.seeds is not None else ()))
     setup.factory.require_worlds(*worlds)
-    require_course(setup.factory, task, worlds)
+    require_metric(setup.factory, task, worlds)
     require_actions(task, setup.robot)
     if options.seeds is None:
         _one_seed(setup, options, out)

@@ -16,7 +16,7 @@ from kurt2rt.platform.text_table import print_whole
 
 def runs_errands(task: TaskSettings) -> bool:
     """Return whether the task sends the robot to places of a town."""
-    return isinstance(task.course, ErrandsSettings)
+    return isinstance(task.metric, ErrandsSettings)
 
 
 def errands(setup: TrainSetup, options: TrainOptions) -> None:

@@ -22,7 +22,7 @@ from kurt2rt.platform.text_table import print_whole
 
 def teaches_route(task: TaskSettings) -> bool:
     """Return whether the task teaches a route."""
-    return isinstance(task.course, RouteSettings)
+    return isinstance(task.metric, RouteSettings)
 
 
 def require_no_route_options(task: TaskSettings, options: TrainOptions) -> None:

@@ -10,21 +10,21 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 
 
 def load_task_and_robot(
-    name: str, robot: str | None, *, plain: bool = False, changes: Mapping[str, str] | None = None
+    name: str, robot: str | None, *, paper_defaults: bool = False, changes: Mapping[str, str] | None = None
 ) -> tuple[TaskSettings, RobotSettings]:
     """Load a task, and the robot that is to drive it.
 
     Args:
         name: of the task, or its path.
         robot: by name or path; None: the robot of the task.
-        plain: take the task's settings of the plain reading (load_task).
+        paper_defaults: take those of the task in place of `learning` (load_task).
         changes: of the task's keys (load_task).
 
     Raises:
         hal.settings.SettingsError: one of them cannot be loaded, or the robot lacks sensors of the task.
     """
     settings = load_robot_of(robot, name)
-    task = load_task(name, plain=plain, changes=changes)
+    task = load_task(name, paper_defaults=paper_defaults, changes=changes)
     require_robot_of(task, name, settings)
     return task, settings
 

@@ -57,17 +57,17 @@ class LearningSettings(Settings):
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     """Confidence radius R, in the units of the situation (counts)."""
-    past_weight: Annotated[float, Field(ge=0, le=10)]
+    history_weight: Annotated[float, Field(ge=0, le=10)]
     """Weight of the averaged features in every distance, as a fraction of the recent ones' weight."""
     weights: tuple[FeatureWeight, ...] = ()
     """Weights other than 1."""
-    insert_beyond_share: Share
+    insert_radius_fraction: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
-    asks_beyond_share: Annotated[float, Field(gt=0, le=1)] = 1.0
+    ask_radius_fraction: Annotated[float, Field(gt=0, le=1)] = 1.0
     """Fraction of R beyond which the robot asks in phases 1 and 2, with a teacher there; otherwise it asks beyond R."""
-    holds_yield: bool = False
+    answers_override_holds: bool = False
     """Keep the action of an RLA that an answer or a press taught where a lesson of a hold would replace it."""
-    passes_over_guesses: bool = False
+    skip_uncertain_lessons: bool = False
     """Let neighbours answer, without a teacher, instead of a lesson of a hold that differs from its five nearest
     neighbours of other presses."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
@@ -84,18 +84,18 @@ class LearningSettings(Settings):
         return doubt
 
 
-class PlainSettings(LearningSettings):
+class PaperDefaults(LearningSettings):
     """Plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held.
 
     Only the radius can be set; other values would make it another reading.
     """
 
-    past_weight: Annotated[float, Field(ge=1, le=1)] = 1.0
+    history_weight: Annotated[float, Field(ge=1, le=1)] = 1.0
     weights: Annotated[tuple[FeatureWeight, ...], Field(max_length=0)] = ()
-    insert_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
-    asks_beyond_share: Annotated[float, Field(ge=1, le=1)] = 1.0
-    holds_yield: Literal[False] = False
-    passes_over_guesses: Literal[False] = False
+    insert_radius_fraction: Annotated[float, Field(ge=1, le=1)] = 1.0
+    ask_radius_fraction: Annotated[float, Field(ge=1, le=1)] = 1.0
+    answers_override_holds: Literal[False] = False
+    skip_uncertain_lessons: Literal[False] = False
     minimum_action_s: Annotated[float, Field(ge=0, le=0)] = 0.0
     doubt: None = None
 
@@ -198,7 +198,7 @@ class TaskSettings(Settings):
 
     name: Name
     """Name of the task, also in the names of its files."""
-    what: Sentence = ""
+    description: Sentence = ""
     """Task in one sentence to its teacher, such as "Teach it to follow the wall on its left"; made from the name by
     default.
     """
@@ -216,7 +216,7 @@ class TaskSettings(Settings):
     """Mid level, which selects the behaviours: a name in `config/mid_levels`, or its settings; None: the teacher
     selects."""
     learning: LearningSettings
-    plain: PlainSettings
+    paper_defaults: PaperDefaults
     """Settings instead of `learning` for the plain reading of the paper."""
     reinforcement: ReinforcementSettings = ReinforcementSettings()
     critic: AnyCritic = "basic"
@@ -226,7 +226,7 @@ class TaskSettings(Settings):
     phases: PhasesSettings | None = None
     """Settings of the study of phases 3 to 5; None: there is none."""
     policy: AnyPolicySettings
-    course: AnyMetricSettings
+    metric: AnyMetricSettings
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult = PaperResult()
@@ -234,7 +234,7 @@ class TaskSettings(Settings):
     @property
     def sentence(self) -> str:
         """Return the task in one sentence to its teacher."""
-        return self.what or f"Teach it the task {self.name.replace('_', ' ')}"
+        return self.description or f"Teach it the task {self.name.replace('_', ' ')}"
 
     @property
     def system_name(self) -> str:
@@ -274,27 +274,30 @@ class TaskSettings(Settings):
         return policy
 
 
-def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, str] | None = None) -> TaskSettings:
+def load_task(
+    name_or_path: str, *, paper_defaults: bool = False, changes: Mapping[str, str] | None = None
+) -> TaskSettings:
     """Load the settings of a shipped task by name, or of a file by path.
 
     Args:
         name_or_path: a name in `config/tasks`, or a path.
-        plain: take the plain reading of the paper instead of `learning`.
-        changes: values by dotted key, as in hal.settings.load_settings; none of `learning` if `plain`.
+        paper_defaults: take these, the plain reading of the paper, instead of `learning`.
+        changes: values by dotted key, as in hal.settings.load_settings; none of `learning` with `paper_defaults`.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid file, and for a change of `learning` if `plain`.
+        hal.settings.SettingsError: for a missing or invalid file, and for a change of `learning` with
+            `paper_defaults`.
     """
     path = find_config("tasks", name_or_path)
     for key in changes or ():
-        if plain and key.split(".")[0] == "learning":
+        if paper_defaults and key.split(".")[0] == "learning":
             raise SettingsError(
                 f"{key} changes nothing in the plain reading of the paper",
                 where=path,
-                do=f"give {key.replace('learning', 'plain', 1)}",
+                do=f"give {key.replace('learning', 'paper_defaults', 1)}",
             )
     task = load_settings(path, TaskSettings, changes)
-    return task.model_copy(update={"learning": task.plain}) if plain else task
+    return task.model_copy(update={"learning": task.paper_defaults}) if paper_defaults else task
 
 
 def installed_task(named: str) -> str:
@@ -334,8 +337,8 @@ def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
 def as_its_teacher_wants(task: TaskSettings) -> TaskSettings:
     """Return a copy of the task in which the robot asks, and drives its lessons, as its scripted teacher wants."""
     profile, learning, teaching = task.teaching.profile, task.learning, task.teaching
-    if profile.asks_beyond_share is not None:
-        learning = learning.model_copy(update={"asks_beyond_share": profile.asks_beyond_share})
+    if profile.ask_radius_fraction is not None:
+        learning = learning.model_copy(update={"ask_radius_fraction": profile.ask_radius_fraction})
     if task.name in profile.lesson_speeds:
         teaching = teaching.model_copy(update={"lesson_speed": profile.lesson_speeds[task.name]})
     return task.model_copy(update={"learning": learning, "teaching": teaching})

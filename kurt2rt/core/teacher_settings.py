@@ -127,15 +127,15 @@ class TeacherProfile(Settings):
     """
 
     name: Name
-    what: Sentence
+    description: Sentence
     """Teacher in one sentence."""
     corrects_by: Literal["press", "hold", "rewind", "nothing"] = "press"
     """Way to correct: a press that names the action, an action that is held, a stop and a look back (rewind), or
     answers only."""
     corrects_touch_by: Literal["rewind", "nothing"] = "nothing"
     """Way to correct what led to a touch: a look back for the last thing that looked wrong before it, or not at all."""
-    asks_beyond_share: Annotated[float, Field(gt=0, le=1)] | None = None
-    """Fraction of R beyond which the robot asks this teacher (`learning.asks_beyond_share`); None: as the task says."""
+    ask_radius_fraction: Annotated[float, Field(gt=0, le=1)] | None = None
+    """Fraction of R beyond which the robot asks this teacher; None: `learning.ask_radius_fraction` of the task."""
     lesson_speeds: Mapping[str, Annotated[float, Field(ge=SLOWEST, le=1)]] = {}
     """Fraction of their speed at which actions drive in this teacher's lessons, by task; in other tasks the task's own
     (`teaching.lesson_speed`)."""
@@ -158,7 +158,9 @@ class TeacherProfile(Settings):
 
 
 QUICK_TEACHER = TeacherProfile(
-    name=SUPERHUMAN, what="Reacts and corrects by the times of the task, without a break", asks_beyond_share=1.0
+    name=SUPERHUMAN,
+    description="Reacts and corrects by the times of the task, without a break",
+    ask_radius_fraction=1.0,
 )
 """Teacher of a task that names none; the same as `config/teachers/superhuman.yaml`."""
 

@@ -43,7 +43,7 @@ class BatchDrive:
         require_known(definition, load_task_repertoire(task, settings), drive_settings)
         self._simulation = simulation = factory.open(setup.world, setup.seed, PURPOSE)
         chance = setup.chance()
-        self._metric = task.course.build(simulation, task.behaviours, chance)
+        self._metric = task.metric.build(simulation, task.behaviours, chance)
         if setup.start is not None:
             simulation.put(setup.start)
         elif task.exam.start == "in_sight":

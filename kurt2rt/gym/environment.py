@@ -18,7 +18,7 @@ from hal.settings import SettingsError
 from hal.simulation import Pose, Position, SimulationFactory
 from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed, load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.gym.endings import TERMINAL, Ending, read_endings
 from kurt2rt.gym.engines import open_drive, read_engine
@@ -80,7 +80,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
         self._factory = Kurt2SimulationFactory(self._settings)
         self._world = world or self._task.teaching.world
         self._factory.require_worlds(self._world)
-        require_course(self._factory, self._task, [self._world])
+        require_metric(self._factory, self._task, [self._world])
         self._reward = build_reward(self._task, reward)
         self._ends_at = read_endings(ends_at)
         self.engine = read_engine(engine)

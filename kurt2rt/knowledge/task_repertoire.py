@@ -124,7 +124,7 @@ def build_taught_system(
     definition = load_situation(task.situation, sensors)
     learning = task.learning
     changed = ((each.features, each.weight) for each in learning.weights)
-    weights = feature_weights(definition, changed, learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, learning.history_weight, task.name)
     others = {} if mid is None else {MID: mid.space}
     system = RlaSystem(definition.dimensions, learning.radius, weights, others=others)
     system.apply_all(lessons)

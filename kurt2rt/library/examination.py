@@ -9,7 +9,7 @@ from hal.errors import UserError
 from hal.robot_settings import load_robot
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.library.blocking import run_blocking
@@ -100,7 +100,7 @@ def examine(
         raise UserError("there is no drive (got no world or no seed)", where="examine", do="give at least one of each")
     factory = open_factory(settings)
     factory.require_worlds(*wanted)
-    require_course(factory, task, wanted)
+    require_metric(factory, task, wanted)
 
     async def drive() -> tuple[WorldResult, ...]:
         found: list[WorldResult] = []

@@ -13,7 +13,7 @@ from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task, taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.fold import fold_journal
@@ -103,7 +103,7 @@ def teach(
     loaded = taught_by_named(load_task(task, changes=_duration(seconds)), teacher)
     require_robot_of(loaded, task, settings)
     factory = open_factory(settings)
-    require_course(factory, loaded, [loaded.teaching.world])
+    require_metric(factory, loaded, [loaded.teaching.world])
 
     async def lesson() -> None:
         await run_lesson(factory, settings, loaded, file, seed=seed, report=lambda _what, _done_s, _whole_s: None)

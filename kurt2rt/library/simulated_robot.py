@@ -20,7 +20,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Resume, Teach
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.files.atomic_write import write_new
@@ -95,7 +95,7 @@ class SimulatedRobot:
         self._make = learner
         self._factory = open_factory(settings, bus)
         self._factory.require_worlds(self._world)
-        require_course(self._factory, loaded, [self._world])
+        require_metric(self._factory, loaded, [self._world])
         self._sent = 0
         self._recorder: DriveRecorder | None = None
         with ExitStack() as opened:

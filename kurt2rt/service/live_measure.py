@@ -27,34 +27,34 @@ class LiveMeasure:
     def __init__(self, task: TaskSettings, simulation: Simulation) -> None:
         self._task = task
         self._simulation = simulation
-        self._course = self._begin()
+        self._metric = self._begin()
 
     @property
     def progress(self) -> float:
         """Progress since the run began, a count in `unit`."""
-        return self._course.progress
+        return self._metric.progress
 
     @property
     def unit(self) -> str:
         """Unit of `progress`: laps, rounds, eights or m."""
-        return self._course.unit
+        return self._metric.unit
 
     def on_tick(self, record: TickRecord) -> None:
         """Update the metric every 5 ticks; call it after each tick."""
         if any(isinstance(each, RobotRepositioned) for each in record.commands):
-            self._course.reset(self._simulation.pose)
+            self._metric.reset(self._simulation.pose)
         # The simulation counts laps itself; the distance to the wall is not needed.
-        elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
-            self._course.update(self._simulation.pose)
+        elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.metric, LapsSettings):
+            self._metric.update(self._simulation.pose)
 
     def _begin(self) -> TaskMetric:
-        course: MetricSettings = self._task.course
-        if not isinstance(course, _MEASURED_LIVE):
-            course = _WAY
+        metric: MetricSettings = self._task.metric
+        if not isinstance(metric, _MEASURED_LIVE):
+            metric = _WAY
         try:
-            return self._built(course)
+            return self._built(metric)
         except SettingsError:  # such as an eight in a world without two posts
             return self._built(_WAY)
 
-    def _built(self, course: MetricSettings) -> TaskMetric:
-        return course.build(self._simulation, self._task.behaviours, random.Random(0))
+    def _built(self, metric: MetricSettings) -> TaskMetric:
+        return metric.build(self._simulation, self._task.behaviours, random.Random(0))

@@ -35,7 +35,7 @@ def test_task_takes_parts_by_module_name_and_by_entry_point(plugin_folder: Path)
     install(plugin_folder, "parts", {"judges": {"moving": "parts_a:Moving"}})
     policy = {"kind": "parts_a:Turning", "front_m": 0.2}
     task = load_task(
-        str(write_task(plugin_folder, policy=policy, judge={"kind": "moving"}, course={"kind": "parts_a:Reach"}))
+        str(write_task(plugin_folder, policy=policy, judge={"kind": "moving"}, metric={"kind": "parts_a:Reach"}))
     )
     assert task.policy.build(ROBOT.infrared).choose(counts(s11=0.25), "") == "forward"
     assert [(each.group, each.name) for each in loaded_plugins()] == [

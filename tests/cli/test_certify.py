@@ -69,7 +69,7 @@ def test_exam_repeats_a_run_with_a_broken_sensor(kurt2rt: CommandLine, lessons: 
         (("--dead-sensors", "2"), "--dead-sensors"),
         (("--world", "nowhere"), "nowhere"),
         (("--task", "circle"), "circle"),
-        (("--world", "two_objects", "--set", "course.kind=rounds"), "course"),
+        (("--world", "two_objects", "--set", "metric.kind=rounds"), "metric"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(

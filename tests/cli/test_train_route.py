@@ -9,7 +9,7 @@ from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import teach
 from tests.experiments.route.test_study import short
 
-SHORT = ("--set", "teaching.corrections_s=1.5", "--set", "exam.duration_s=1", "--set", "course.starts=1")
+SHORT = ("--set", "teaching.corrections_s=1.5", "--set", "exam.duration_s=1", "--set", "metric.starts=1")
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +30,7 @@ def test_one_robot_is_taught_a_route_drives_it_and_is_drawn(kurt2rt: CommandLine
     # What was taught can be gone on with, and examined again, on the same route.
     knowledge = "made/route-12-1.knowledge"
     assert kurt2rt("train", "--task", "route", "--knowledge", knowledge, "--out", "made", *SHORT).exit_code == 0
-    said = kurt2rt("exam", knowledge, "--task", "route", "--set", "course.decisions=12", *SHORT)
+    said = kurt2rt("exam", knowledge, "--task", "route", "--set", "metric.decisions=12", *SHORT)
     assert said.exit_code == 0, said.err
 
 

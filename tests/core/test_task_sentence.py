@@ -13,7 +13,7 @@ SHIPPED = sorted(path.stem for path in find_config("tasks", "circle").parent.glo
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_task_says_what_it_is(name: str) -> None:
-    what = load_task(name).what
+    what = load_task(name).description
     assert what is not None
     assert what.split()[0] in ("Teach", "Lead")
 
@@ -21,7 +21,7 @@ def test_shipped_task_says_what_it_is(name: str) -> None:
 def task_file(folder: Path, what: str) -> Path:
     lines = find_config("tasks", "wall_following").read_text().splitlines()
     path = folder / "mine.yaml"
-    path.write_text("\n".join(what if line.startswith("what:") else line for line in lines))
+    path.write_text("\n".join(what if line.startswith("description:") else line for line in lines))
     return path
 
 
@@ -30,5 +30,5 @@ def test_task_without_a_sentence_is_told_by_its_name(tmp_path: Path) -> None:
 
 
 def test_sentence_of_two_lines_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="what"):
-        load_task(str(task_file(tmp_path, 'what: "one\\ntwo"')))
+    with pytest.raises(SettingsError, match="description"):
+        load_task(str(task_file(tmp_path, 'description: "one\\ntwo"')))

@@ -72,6 +72,6 @@ def test_taught_by_robot_drives_lessons_as_its_teacher_wants() -> None:
 
 def test_taught_by_robot_asks_as_its_teacher_wants() -> None:
     task = load_task("fleeing")
-    shares = {each: taught_by(task, load_teacher(each)).learning.asks_beyond_share for each in (*PEOPLE, SUPERHUMAN)}
-    assert shares == {**dict.fromkeys(PEOPLE, task.learning.asks_beyond_share), SUPERHUMAN: 1.0}
-    assert task.learning.asks_beyond_share < 1.0
+    shares = {each: taught_by(task, load_teacher(each)).learning.ask_radius_fraction for each in (*PEOPLE, SUPERHUMAN)}
+    assert shares == {**dict.fromkeys(PEOPLE, task.learning.ask_radius_fraction), SUPERHUMAN: 1.0}
+    assert task.learning.ask_radius_fraction < 1.0

@@ -86,8 +86,8 @@ class Corridor:
         tolerates_stalls: bool = False,
         asked: bool = True,
         asks_when_held: bool = True,
-        asks_beyond_share: float = 1.0,
-        holds_yield: bool = False,
+        ask_radius_fraction: float = 1.0,
+        answers_override_holds: bool = False,
     ) -> None:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
@@ -106,11 +106,11 @@ class Corridor:
         self.school = CommandHandler(
             self.level,
             authority,
-            insert_beyond_share=0.5,
+            insert_radius_fraction=0.5,
             handled_command_ids=(),
             teacher_available=asked,
-            asks_beyond_share=asks_beyond_share,
-            parts=HandlerParts(holds_yield=holds_yield),
+            ask_radius_fraction=ask_radius_fraction,
+            parts=HandlerParts(answers_override_holds=answers_override_holds),
         )
         parts = TickParts(
             robot=self.robot,

@@ -15,7 +15,7 @@ BETWEEN = 118
 
 def taught(*, asked: bool = True) -> Corridor:
     """Return a robot that learned forward at 100 counts, and asks beyond half of R while it is taught."""
-    corridor = Corridor(asked=asked, asks_beyond_share=SHARE)
+    corridor = Corridor(asked=asked, ask_radius_fraction=SHARE)
     corridor.run(TAUGHT_AT, teach("forward", "first"))
     corridor.run(TAUGHT_AT)
     return corridor

@@ -12,7 +12,7 @@ LONG = NOTICED + DELAY + 3 * STEADY
 
 def driving(*, yields: bool = True) -> Corridor:
     """Return a robot that was answered at 100 counts, and has driven there for two seconds."""
-    corridor = Corridor(holds_yield=yields)
+    corridor = Corridor(answers_override_holds=yields)
     corridor.run(ANSWERED_AT, teach("forward", "answer"))
     for _ in range(200):
         corridor.run(ANSWERED_AT)

@@ -71,7 +71,10 @@ class Run:
         self.clock = clock
         self.ledger = TickTimer(capacity=100)
         school = CommandHandler(
-            level, ControlAuthority(level.repertoire, attended=False), insert_beyond_share=0.5, handled_command_ids=()
+            level,
+            ControlAuthority(level.repertoire, attended=False),
+            insert_radius_fraction=0.5,
+            handled_command_ids=(),
         )
         parts = TickParts(
             robot=StandingRobot(),

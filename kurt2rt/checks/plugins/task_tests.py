@@ -25,7 +25,7 @@ from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 _SEED, _PURPOSE, _TRIED = 1, "plug-in test", 200
@@ -111,7 +111,7 @@ class JudgeTests(_PartTests, ABC):
 
 
 class MetricTests(_PartTests, ABC):
-    """Tests of a metric, the course of a task. Inherit them, and name its settings.
+    """Tests of a metric. Inherit them, and name its settings.
 
     For example:
 
@@ -225,7 +225,7 @@ class WorldTests(_PartTests):
 
 
 class TaskTests(PolicyTests, JudgeTests, MetricTests):
-    """Tests of a task with its policy, judge and course. Inherit them, and name it: `task = "my_task.yaml"`."""
+    """Tests of a task with its policy, judge and metric. Inherit them, and name it: `task = "my_task.yaml"`."""
 
     @property
     def policy(self) -> PolicySettings:
@@ -239,14 +239,14 @@ class TaskTests(PolicyTests, JudgeTests, MetricTests):
 
     @property
     def metric(self) -> MetricSettings:
-        """Settings of the task's course."""
-        return self.loaded()[0].course
+        """Settings of the task's metric."""
+        return self.loaded()[0].metric
 
     def test_worlds_have_what_the_course_needs(self) -> None:
         task, robot = self.loaded()
         worlds = (task.teaching.world, *task.exam.worlds)
         simulations_of(robot).require_worlds(*worlds)
-        require_course(simulations_of(robot), task, worlds)
+        require_metric(simulations_of(robot), task, worlds)
 
     def test_critic_has_its_sensors(self) -> None:
         task, robot = self.loaded()

@@ -61,7 +61,7 @@ class Critic:
 
         A weighted distance, dimensionless.
         """
-        return self.settings.learning.insert_beyond_share * self.settings.learning.radius
+        return self.settings.learning.insert_radius_fraction * self.settings.learning.radius
 
     def appraise(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
         """Return the critic's opinion of the features in this tick; None before the first lesson.

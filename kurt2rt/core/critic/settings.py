@@ -172,7 +172,7 @@ class CriticLearningSettings(Settings):
     """Settings of matching and lessons of the critic's RLA system."""
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
-    insert_beyond_share: Share
+    insert_radius_fraction: Share
     """Share of the radius beyond which another opinion inserts an RLA; nearer it replaces the opinion."""
     weights: AppraisalWeights
 

@@ -87,7 +87,7 @@ class LabelLearner(ABC):
 
     def stricter(self, *, taught: bool) -> float:
         """Return the fraction of its confidence that suffices now, 0 to 1: less while it is taught, as for RLAs."""
-        return self.setting.asks_beyond_share if taught else 1.0
+        return self.setting.ask_radius_fraction if taught else 1.0
 
     def distances(self, point: Points) -> Points:
         """Return the distances (n,) in counts of all labels from a point (d,)."""

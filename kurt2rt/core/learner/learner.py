@@ -67,9 +67,9 @@ class LearnerSetting(NamedTuple):
     """Weight of each feature in the RLAs' distances, shape (d,)."""
     radius: float
     """Confidence radius R of the RLAs, a weighted distance in counts."""
-    asks_beyond_share: float
+    ask_radius_fraction: float
     """Fraction of R beyond which an RLA system asks while it is taught; without a teacher it asks beyond R."""
-    insert_beyond_share: float
+    insert_radius_fraction: float
     """Fraction of R within which a correction replaces an RLA's action."""
     actions: tuple[str, ...]
     """Names of the repertoire."""

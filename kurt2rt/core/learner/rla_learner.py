@@ -26,7 +26,7 @@ class RlaLearner:
 
     def decide(self, situation: NDArray[np.float64], *, taught: bool) -> str | None:
         """Return the action of the RLA nearest to a situation (d,); None outside R, or its share while `taught`."""
-        self.system.radius_share = self.setting.asks_beyond_share if taught else 1.0
+        self.system.radius_share = self.setting.ask_radius_fraction if taught else 1.0
         match = self.system.match(situation)
         return match.rla.action if match is not None and match.known else None
 
@@ -36,7 +36,7 @@ class RlaLearner:
             return
         nearest = self.system.match(situation)
         if nearest is not None:
-            share = 0.0 if why is Why.ANSWER else self.setting.insert_beyond_share
+            share = 0.0 if why is Why.ANSWER else self.setting.insert_radius_fraction
             if nearest.distance <= share * self.system.whole_radius(nearest.rla):
                 if nearest.rla.action != action:
                     self.system.apply(

@@ -23,7 +23,7 @@ class MidLearningSettings(Settings):
 
     radius: Annotated[float, Field(ge=0, le=100_000)]
     """Confidence radius R; of histories the number of different places (paper: 6 of 12). 0: equal situations only."""
-    insert_beyond_share: Share
+    insert_radius_fraction: Share
     """Share of R beyond which a correction inserts an RLA; nearer it replaces the action."""
 
 

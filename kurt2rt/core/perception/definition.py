@@ -134,9 +134,9 @@ def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefi
 
 
 def feature_weights(
-    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float, task: str
+    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], history_weight: float, task: str
 ) -> NDArray[np.float64]:
-    """Return the weights, shape (d,): 1 for recent features except `changed` ones, times `past_weight` for averages.
+    """Return the weights, shape (d,): 1 for recent features except `changed` ones, times `history_weight` for averages.
 
     Raises SettingsError, with the name of the `task`, for an unknown feature, for one with two weights, and if all
     weights are 0.
@@ -158,4 +158,4 @@ def feature_weights(
     if not any(recent.values()):
         raise SettingsError("learning.weights: every feature weighs 0", where=f"task {task}", do="leave one with more")
     values = np.array([recent[name] for name in names])
-    return np.concatenate((values, past_weight * values))
+    return np.concatenate((values, history_weight * values))

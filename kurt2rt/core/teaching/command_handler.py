@@ -69,25 +69,25 @@ class CommandHandler:
         level: BasicLevel,
         authority: ControlAuthority,
         *,
-        insert_beyond_share: float,
+        insert_radius_fraction: float,
         handled_command_ids: Iterable[str],
         parts: HandlerParts | None = None,
         teacher_available: bool = True,
-        asks_beyond_share: float = 1.0,
+        ask_radius_fraction: float = 1.0,
     ) -> None:
         """Connect the level, the authority and the optional parts.
 
         Args:
-            insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
+            insert_radius_fraction: a correction farther than this share of R from the nearest condition inserts an RLA.
             handled_command_ids: ids of earlier runs, whose commands are not carried out again.
             teacher_available: False if there is no teacher to ask, as in an exam.
-            asks_beyond_share: fraction of R beyond which the robot asks while it is taught, in phases 1 and 2.
+            ask_radius_fraction: fraction of R beyond which the robot asks while it is taught, in phases 1 and 2.
         """
         parts = parts or HandlerParts()
         self._level = level
         self.teacher_available = teacher_available
         """False if there is no teacher to ask."""
-        self._asks_beyond_share = asks_beyond_share
+        self._ask_radius_fraction = ask_radius_fraction
         self.active_behaviour = level.active_behaviour
         self.authority = authority
         self.critic = parts.critic
@@ -98,7 +98,7 @@ class CommandHandler:
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
-        self._lessons = lesson_builder_for(level, self.recent, self._rewind, insert_beyond_share, parts)
+        self._lessons = lesson_builder_for(level, self.recent, self._rewind, insert_radius_fraction, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, self.recent)
@@ -179,7 +179,7 @@ class CommandHandler:
         self._level.skip_withdrawn = not self.teacher_available or self.phase is AUTONOMOUS
         self._level.counts = self.lesson_speed.counts
         taught = self.is_taught
-        self._level.system.radius_share = self._asks_beyond_share if taught else 1.0
+        self._level.system.radius_share = self._ask_radius_fraction if taught else 1.0
         if self._learner is not None:
             self._learner.counts, self._learner.taught = self.lesson_speed.counts, taught
         authority = self.authority

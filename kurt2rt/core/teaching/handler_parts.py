@@ -34,7 +34,7 @@ class HandlerParts:
     goals: GoalCommands | None = None
     delay: TeacherDelay | None = None
     """Delay of the teachers; None: it begins with the default."""
-    holds_yield: bool = False
+    answers_override_holds: bool = False
     """Keep what an answer or a press taught where a hold would replace it."""
     learner: LearnerLevel | None = None
     """Level of a learner that decides instead of the RLAs and gets each lesson; None: RLAs decide."""
@@ -58,19 +58,19 @@ def lesson_builder_for(
     level: BasicLevel,
     recent: DecisionHistory,
     rewind: RewindHistory,
-    insert_beyond_share: float,
+    insert_radius_fraction: float,
     parts: HandlerParts,
 ) -> LessonBuilder:
-    """Return the lesson builder of a handler; `insert_beyond_share`: share of R beyond which a correction inserts."""
+    """Return the lesson builder of a handler; `insert_radius_fraction`: of R, beyond which a correction inserts."""
     appraisal_lessons = None if parts.critic is None else AppraisalLessons(parts.critic, level.system, recent)
     return LessonBuilder(
         level,
         recent,
         rewind,
-        insert_beyond_share=insert_beyond_share,
+        insert_radius_fraction=insert_radius_fraction,
         reinforcement=parts.reinforcement,
         appraisal_lessons=appraisal_lessons,
         mid=parts.mid,
-        holds_yield=parts.holds_yield,
+        answers_override_holds=parts.answers_override_holds,
         learner=parts.learner,
     )

@@ -43,11 +43,11 @@ class LessonBuilder:
         recent: DecisionHistory,
         rewind: RewindHistory,
         *,
-        insert_beyond_share: float,
+        insert_radius_fraction: float,
         reinforcement: Reinforcement | None,
         appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
-        holds_yield: bool = False,
+        answers_override_holds: bool = False,
         learner: LearnerLevel | None = None,
     ) -> None:
         """Connect the level and its optional parts.
@@ -56,22 +56,22 @@ class LessonBuilder:
             level: whose RLAs are taught.
             recent: decisions that rewards and appraisals can be about.
             rewind: decisions that answers and corrections can be about.
-            insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
+            insert_radius_fraction: a correction farther than this share of R from the nearest condition inserts an RLA.
             reinforcement: shares rewards out; without it they are only counted.
             appraisal_lessons: lessons of the critic; None without a critic.
             mid: lessons of the mid level; None without one.
-            holds_yield: keep what an answer or a press taught where a hold would replace it.
+            answers_override_holds: keep what an answer or a press taught where a hold would replace it.
             learner: gets each lesson of the basic level, also those that change no RLA; None: RLAs decide.
         """
         self._level = level
         self._system = level.system
         self._recent = recent
         self._rewind = rewind
-        self._insert_beyond_share = insert_beyond_share
+        self._insert_radius_fraction = insert_radius_fraction
         self._reinforcement = reinforcement
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
-        self._holds_yield = holds_yield
+        self._answers_override_holds = answers_override_holds
         self._learner = learner
         self._feedback = FeedbackLessons(level.system, recent, reinforcement, appraisal_lessons)
         self._undos = UndoLessons(level, appraisal_lessons, mid, learner)
@@ -121,7 +121,7 @@ class LessonBuilder:
         """
         context = self._basic_context(meant, None)
         self._label(action, context, Why.HOLD, origin)
-        event = self._in_context(action, context, origin, yields=self._holds_yield)
+        event = self._in_context(action, context, origin, yields=self._answers_override_holds)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
@@ -131,7 +131,7 @@ class LessonBuilder:
 
         Returns None if the robot would do that action there already.
         """
-        context = LessonContext(vector, behaviour, BASIC, None, self._insert_beyond_share)
+        context = LessonContext(vector, behaviour, BASIC, None, self._insert_radius_fraction)
         self._label(action, context, Why.SHOWN, origin)
         return self._in_context(action, context, origin)
 
@@ -142,7 +142,7 @@ class LessonBuilder:
         nearest = self._system.match(context.vector, context.behaviour, BASIC)
         if self._agreeing(nearest, context, action) is not None:
             return None
-        share = context.insert_beyond_share
+        share = context.insert_radius_fraction
         if yields and nearest is not None and self._is_within(share, nearest) and _is_exact(nearest.rla):
             return None
         return self._corrected(action, nearest, context, share, origin).event
@@ -179,9 +179,9 @@ class LessonBuilder:
         replace_within_share = 0.0
         if isinstance(command, Correct):
             self.corrections_at[command.level] += 1
-            replace_within_share = context.insert_beyond_share
+            replace_within_share = context.insert_radius_fraction
         elif context.touched or (nearest is not None and nearest.rla.is_withdrawn):
-            replace_within_share = context.insert_beyond_share  # it waits for this answer
+            replace_within_share = context.insert_radius_fraction  # it waits for this answer
         elif context.level == MID and nearest is not None and _is_at_known_place(nearest, context):
             return self._add_alternative(command.action, context, nearest, origin)
         return self._corrected(command.action, nearest, context, replace_within_share, origin)
@@ -208,7 +208,7 @@ class LessonBuilder:
         return rla if rla.action == action else None
 
     def _basic_context(self, decision_tick: int | None, situation: Situation | None) -> LessonContext:
-        share = self._insert_beyond_share
+        share = self._insert_radius_fraction
         if decision_tick is None:
             assert situation is not None
             newest = self._recent.newest
@@ -299,7 +299,7 @@ def _is_exact(rla: Rla) -> bool:
 def _is_at_known_place(nearest: Match, context: LessonContext) -> bool:
     """Return whether a situation is so near to a known place that a second one would be the same place."""
     return (
-        context.insert_beyond_share > 0.0
+        context.insert_radius_fraction > 0.0
         and nearest.known
-        and (nearest.distance <= context.insert_beyond_share * nearest.radius)
+        and (nearest.distance <= context.insert_radius_fraction * nearest.radius)
     )

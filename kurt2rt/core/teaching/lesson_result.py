@@ -45,7 +45,7 @@ class LessonContext(NamedTuple):
     level: str
     drove: int | None
     """RLA that answered there; None if none did."""
-    insert_beyond_share: float
+    insert_radius_fraction: float
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     touched: bool = False
     """True if the robot asked at a bumper: an answer corrects the RLA that pushed on."""

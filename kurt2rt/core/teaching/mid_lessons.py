@@ -84,7 +84,7 @@ class MidLessons:
         Raises:
             CommandRefusedError: if the tick was forgotten, or the robot did not know its place then.
         """
-        share = self.mid.settings.learning.insert_beyond_share
+        share = self.mid.settings.learning.insert_radius_fraction
         if decision_tick is None:
             newest = self._history.newest
             return _known(LessonContext(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share))

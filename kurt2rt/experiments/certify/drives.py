@@ -97,7 +97,7 @@ class _Course:
     def __init__(self, simulation: FollowedSimulation, task: TaskSettings, setup: ExamSetup) -> None:
         """Build the metric at the robot's start. Raises SettingsError if task and world do not fit."""
         chance = random.Random(setup.chance_seed)
-        metric = task.course.build(simulation, task.behaviours, chance)
+        metric = task.metric.build(simulation, task.behaviours, chance)
         assert isinstance(metric, BorderMetric)
         metric.reset(simulation.pose)
         if task.exam.start == "in_sight":
@@ -147,7 +147,7 @@ def opened_batch(
 def _put_in_sight(task: TaskSettings, simulations: Sequence[FollowedSimulation], setups: Sequence[ExamSetup]) -> None:
     for simulation, setup in zip(simulations, setups, strict=True):
         chance = random.Random(setup.chance_seed)
-        task.course.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
+        task.metric.build(simulation, task.behaviours, chance)  # may draw before the robot is placed
         simulation.reposition(chance, in_sight=True)
 
 

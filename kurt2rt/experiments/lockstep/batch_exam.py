@@ -83,7 +83,7 @@ class _Drive:
         chance = random.Random(setup.chance_seed)
         self._simulation, self._task, self._setup = simulation, task, setup
         self._period_s = settings.cycle_s
-        metric: TaskMetric = task.course.build(simulation, task.behaviours, chance)
+        metric: TaskMetric = task.metric.build(simulation, task.behaviours, chance)
         self._metric = metric
         # Asked once, because these read all members of a protocol.
         self._stretch_metric = metric if isinstance(metric, StretchMetric) else None
@@ -172,7 +172,7 @@ class _Drive:
             unknown_positions=tuple(self._ask_positions),
             findings=self._metric.findings,
             collision_positions=tuple(self._collision_positions),
-            least_progress=self._task.course.least_progress(self._simulation, self._task.exam.duration_s),
+            least_progress=self._task.metric.least_progress(self._simulation, self._task.exam.duration_s),
         )
 
     def _stuck_after(self, poses: Sequence[Pose]) -> int | None:

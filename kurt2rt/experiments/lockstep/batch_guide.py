@@ -1,4 +1,4 @@
-"""Guide of a robot in a batch, on a course that wants another behaviour, or puts the robot elsewhere, at borders."""
+"""Guide of a robot in a batch, on a metric that wants another behaviour, or puts the robot elsewhere, at borders."""
 
 import random
 
@@ -11,7 +11,7 @@ class BatchGuide:
     """Guide of one robot, which stops at the borders of its metric."""
 
     def __init__(self, simulation: FollowedSimulation, metric: BorderMetric, chance: random.Random) -> None:
-        """`metric`: knows the poses up to the newest one. `chance`: of the course."""
+        """`metric`: knows the poses up to the newest one. `chance`: of the metric."""
         self._simulation, self._metric, self._chance = simulation, metric, chance
 
     def begin(self, batch: Batch, robot: int) -> None:

@@ -44,7 +44,7 @@ def build_lesson_settings(
         raise refused(task, f"policy {task.policy.kind}")
     definition = load_situation(task.situation, settings.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
     drive = build_drive_settings(settings, task)
     unknown = sorted(set(load_task_repertoire(task, settings)) - set(drive.actions))
     if unknown:

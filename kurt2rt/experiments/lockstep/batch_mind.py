@@ -44,9 +44,9 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
 
-_BORDER_COURSES = ("junctions",)
+_BORDER_METRICS = ("junctions",)
 """Courses that reposition the robot, or want another behaviour, at borders."""
-_COURSES = ("laps", "way", "rounds", "eights", *_BORDER_COURSES)
+_METRICS = ("laps", "way", "rounds", "eights", *_BORDER_METRICS)
 """Courses that never reposition the robot nor want another behaviour, or at borders only."""
 _ON_THE_BUS = "use the CAN bus (--engine can)"
 
@@ -58,19 +58,19 @@ def require_known_robot(settings: RobotSettings, task: TaskSettings) -> None:
 
 
 def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
-    """Check that a batch knows course and levels of a task. Raises BatchRefusedError.
+    """Check that a batch knows metric and levels of a task. Raises BatchRefusedError.
 
     `by_policy`: whether the policy drives, without the levels.
     """
-    if task.course.kind not in _COURSES:
-        raise refused(task, f"course {task.course.kind} (a batch knows {', '.join(_COURSES)})")
+    if task.metric.kind not in _METRICS:
+        raise refused(task, f"metric {task.metric.kind} (a batch knows {', '.join(_METRICS)})")
     if task.mid is not None and not by_policy:
         raise refused(task, "a mid level")
 
 
 def guides_robots(task: TaskSettings) -> bool:
-    """Return whether the course of a task repositions robots, or wants another behaviour, on their way."""
-    return task.course.kind in _BORDER_COURSES
+    """Return whether the metric of a task repositions robots, or wants another behaviour, on their way."""
+    return task.metric.kind in _BORDER_METRICS
 
 
 def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
@@ -94,7 +94,7 @@ def require_known_exams(settings: RobotSettings, task: TaskSettings) -> None:
         raise refused(task, f"policy {task.policy.kind}")
     definition = load_situation(task.situation, settings.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
     feature_table(definition, settings, weights, task)
     unknown = sorted(set(load_task_repertoire(task, settings)) - set(build_drive_settings(settings, task).actions))
     if unknown:

@@ -40,7 +40,7 @@ def require_accepted(
         raise LessonLostError(
             f"task {task.name}, tick {tick}: the robot refused {result.command_id}: {text_of(result.outcome)}",
             do=(
-                f"make policy {task.policy.kind}, course {task.course.kind} and repertoire {task.repertoire} "
+                f"make policy {task.policy.kind}, metric {task.metric.kind} and repertoire {task.repertoire} "
                 "fit together"
             ),
         )

@@ -10,14 +10,14 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 
 
-def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
+def require_metric(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
     """Check, before any training, that each of these worlds has all that the task's metric needs.
 
     Raises hal.settings.SettingsError that names task, metric and world.
     """
     for world in dict.fromkeys(worlds):
         try:
-            task.course.require(factory.plan_of(world), task.behaviours)
+            task.metric.require(factory.plan_of(world), task.behaviours)
         except SettingsError as error:
             raise SettingsError(str(error), where=f"task {task.name}") from error
 
@@ -37,12 +37,12 @@ def require_actions(task: TaskSettings, robot: RobotSettings) -> None:
         )
 
 
-def route_of(course: TaskMetric, task: TaskSettings) -> RouteMetric:
+def route_of(metric: TaskMetric, task: TaskSettings) -> RouteMetric:
     """Return the metric as a route metric. Raises hal.settings.SettingsError for another metric."""
-    if isinstance(course, RouteMetric):
-        return course
+    if isinstance(metric, RouteMetric):
+        return metric
     raise SettingsError(
-        f"course {task.course.kind} has no route to teach the mid level",
+        f"metric {task.metric.kind} has no route to teach the mid level",
         where=f"task {task.name}",
-        do="give the course route, or leave mid out",
+        do="give the metric route, or leave mid out",
     )

@@ -118,7 +118,7 @@ class Episode(ABC):
         self.task = task
         self.period_s = period_s
         self.ticks_per_second = round(1 / period_s)
-        self.metric = task.course.build(simulation, task.behaviours, chance)
+        self.metric = task.metric.build(simulation, task.behaviours, chance)
         self.trail: list[Position] = []
         self.ask_positions: list[Position] = []
         """Position of each question's first tick."""

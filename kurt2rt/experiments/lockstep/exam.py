@@ -233,7 +233,7 @@ class ExamRun(Episode):
             alarm=self._alarm,
             findings=metric.findings,
             collision_positions=tuple(self._collision_positions),
-            least_progress=self.task.course.least_progress(simulation, self.task.exam.duration_s),
+            least_progress=self.task.metric.least_progress(simulation, self.task.exam.duration_s),
         )
 
     def _command_behaviour(self, current: str) -> None:

@@ -25,10 +25,10 @@ def learner_setting(
     changed = ((each.features, each.weight) for each in learning.weights)
     return LearnerSetting(
         dimensions=definition.dimensions,
-        weights=feature_weights(definition, changed, learning.past_weight, task.name),
+        weights=feature_weights(definition, changed, learning.history_weight, task.name),
         radius=learning.radius,
-        asks_beyond_share=learning.asks_beyond_share,
-        insert_beyond_share=learning.insert_beyond_share,
+        ask_radius_fraction=learning.ask_radius_fraction,
+        insert_radius_fraction=learning.insert_radius_fraction,
         actions=tuple(load_task_repertoire(task, robot)),
         seed=seed,
         gate=gate,

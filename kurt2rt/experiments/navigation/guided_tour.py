@@ -53,10 +53,10 @@ class TourResult:
 
 def navigation_settings(task: TaskSettings) -> ErrandsSettings:
     """Return the navigation settings of a task. Raises hal.settings.SettingsError for a task without goals."""
-    if isinstance(task.course, ErrandsSettings) and task.mid is not None:
-        return task.course
+    if isinstance(task.metric, ErrandsSettings) and task.mid is not None:
+        return task.metric
     raise SettingsError(
-        "to run errands it needs the course errands, and a mid level of places", where=f"task {task.name}"
+        "to run errands it needs the metric errands, and a mid level of places", where=f"task {task.name}"
     )
 
 

@@ -30,22 +30,22 @@ _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "
 
 
 def all_tables(
-    outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teacher: str = SUPERHUMAN
+    outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teacher: str = SUPERHUMAN
 ) -> Iterator[Table]:
     """Yield all tables of the outcomes, one outcome per robot.
 
-    `course`: settings of the errands. `teacher`: name of the scripted teacher.
+    `metric`: settings of the errands. `teacher`: name of the scripted teacher.
     """
     reasons = list(reasons_against_judging([each.seed for each in outcomes]))
-    found = [((), verdict) for verdict in verdicts(_runs(outcomes, "planning"), course)]
+    found = [((), verdict) for verdict in verdicts(_runs(outcomes, "planning"), metric)]
     yield targets_table(found, reasons, title="Errands: what was asked")
-    yield runs_table(outcomes, course, teacher)
-    yield robots_table(outcomes, course)
+    yield runs_table(outcomes, metric, teacher)
+    yield robots_table(outcomes, metric)
 
 
-def verdicts(runs: Sequence[ErrandsRun], course: ErrandsSettings) -> Iterator[Verdict]:
-    """Yield the verdicts on the drives of all robots by a plan. `course`: settings of the errands."""
-    most, goals = course.detour_at_most, sum(len(run.errands) for run in runs)
+def verdicts(runs: Sequence[ErrandsRun], metric: ErrandsSettings) -> Iterator[Verdict]:
+    """Yield the verdicts on the drives of all robots by a plan. `metric`: settings of the errands."""
+    most, goals = metric.detour_at_most, sum(len(run.errands) for run in runs)
     good, needed = sum(run.good(most) for run in runs), needed_of(SHARE, goals)
     what = f"goals reached, way at most {most:g} times the shortest"
     yield Verdict(what, of_text(needed, goals), of_text(good, goals), good >= needed)
@@ -58,17 +58,17 @@ def verdicts(runs: Sequence[ErrandsRun], course: ErrandsSettings) -> Iterator[Ve
     yield Verdict("way to goals that were reached, mean", asked, f"{mean:.2f}", mean <= most)
 
 
-def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teacher: str) -> Table:
+def runs_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teacher: str) -> Table:
     """Return the table of the drives by planning and of the controls.
 
-    `course`: settings of the errands. `teacher`: name of the scripted teacher.
+    `metric`: settings of the errands. `teacher`: name of the scripted teacher.
     """
 
     def errands(how: Strategy) -> list[ErrandDone]:
         return [each for run in _runs(outcomes, how) for each in run.errands]
 
     def good(how: Strategy) -> int:
-        return sum(run.good(course.detour_at_most) for run in _runs(outcomes, how))
+        return sum(run.good(metric.detour_at_most) for run in _runs(outcomes, how))
 
     def detours(how: Strategy) -> list[float]:
         return [each.detour for each in errands(how) if each.reached]
@@ -86,15 +86,15 @@ def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings, teac
         ("most", lambda how: f"{max(detours(how)):.2f}" if detours(how) else ""),
         ("surprises", lambda how: sum(each.surprises for each in errands(how))),
         ("collisions", lambda how: sum(each.collisions for each in errands(how))),
-        note=f"Reached in time: without touching anything, by a way of at most {course.detour_at_most:g} times the "
+        note=f"Reached in time: without touching anything, by a way of at most {metric.detour_at_most:g} times the "
         f"shortest. Who repeats the shortest piece of the lesson that leads from start to goal: {shown}; for "
         f"{len(errands('planning')) - len(led)} goals there is no such piece. Taught by the scripted teacher "
         f"{teacher}.",
     )
 
 
-def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Return the table of single robots, a row for each. `course`: settings of the errands."""
+def robots_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Table:
+    """Return the table of single robots, a row for each. `metric`: settings of the errands."""
 
     def missed(each: ErrandsOutcome) -> str:
         (run,) = _runs([each], "planning")
@@ -105,7 +105,7 @@ def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) ->
 
     def reached(each: ErrandsOutcome) -> str:
         (run,) = _runs([each], "planning")
-        return of_text(run.good(course.detour_at_most), len(run.errands))
+        return of_text(run.good(metric.detour_at_most), len(run.errands))
 
     return table_of(
         "Each robot",

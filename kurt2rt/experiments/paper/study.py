@@ -10,7 +10,7 @@ from typing import ClassVar, Literal, NamedTuple
 from hal.settings_files import find_config
 from kurt2rt.core.phase_settings import PHASES
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import Report, run_exams
 from kurt2rt.experiments.lockstep.seed_result import counts_of
 from kurt2rt.experiments.paper.settings import ExperimentSettings, Extent, PaperSettings
@@ -123,11 +123,11 @@ def make_plan(
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
     _require_tasks(chosen, parts)
-    fingerprints = Fingerprints(parts["factory"], parts["robot"], ("paper", "plain", *PHASES))
+    fingerprints = Fingerprints(parts["factory"], parts["robot"], ("paper", "paper_defaults", *PHASES))
     robots: list[StudyJob] = []
     curves: list[StudyJob] = []
     for reading, each in product(readings, chosen):
-        task = taught_by_named(extent.task(load_task(each.task, plain=reading == "plain")), paper.teacher)
+        task = taught_by_named(extent.task(load_task(each.task, paper_defaults=reading == "plain")), paper.teacher)
         end = ", plain" if reading == "plain" else ""
         for seed in seeds:
             worlds = (*task.exam.worlds, *unseen_of(seed, each))
@@ -204,4 +204,4 @@ def _require_tasks(chosen: Sequence[ExperimentSettings], parts: JobParts) -> Non
             )
     for each, task in loaded:
         generated = each.unseen.names if each.unseen else ()
-        require_course(parts["factory"], task, (task.teaching.world, *task.exam.worlds, *generated))
+        require_metric(parts["factory"], task, (task.teaching.world, *task.exam.worlds, *generated))

@@ -46,17 +46,17 @@ class RouteMonitor:
         """True if at that entry the robot had noticed exactly the turns that it had made."""
         self._last: tuple[TickRecord, FixedRoute] | None = None
 
-    def on_tick(self, record: TickRecord, course: TaskMetric) -> None:
+    def on_tick(self, record: TickRecord, metric: TaskMetric) -> None:
         """Compare one tick: note junctions that the robot noticed or entered, and judge each that it left.
 
-        Call it on every tick, after the metric `course`, a FixedRoute, was updated. Errors are appended to `wrong`.
+        Call it on every tick, after the metric `metric`, a FixedRoute, was updated. Errors are appended to `wrong`.
         """
-        assert isinstance(course, FixedRoute)
-        self._last = record, course
+        assert isinstance(metric, FixedRoute)
+        self._last = record, metric
         mid = record.decision.mid
         if mid is not None and mid.event is not None:
             self._noticed.append(mid.event.quarters)
-        inside = course.ahead.inside
+        inside = metric.ahead.inside
         if inside and not self._inside:
             self._wanted, self._changed = record.behaviour, ""
             self._knew = self._knows()
@@ -72,8 +72,8 @@ class RouteMonitor:
     def _judge(self) -> None:
         if self._last is None:
             return
-        record, course = self._last
-        for passage in course.passages[self._judged :]:
+        record, metric = self._last
+        for passage in metric.passages[self._judged :]:
             self._judged += 1
             if passage.taken != passage.right:
                 layer = self._who_failed(passage, record)

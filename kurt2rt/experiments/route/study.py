@@ -77,9 +77,9 @@ class RouteJob(StudyJob):
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
         task = self.variant.task(self.task)
-        course, world = route_of_task(task), task.exam.worlds[0]
+        metric, world = route_of_task(task), task.exam.worlds[0]
         lessons = []
-        for plan in self.variant.plans(task, course.starts):
+        for plan in self.variant.plans(task, metric.starts):
             lesson, events = await self.teach(knowledge, _named(report, plan), task, plan)
             lessons.append(lesson)
         watching = RouteMonitor()
@@ -93,7 +93,7 @@ class RouteJob(StudyJob):
                 lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
             )
         watching.end()
-        legs = course.route_in(self.factory.plan_of(world), task.behaviours).legs
+        legs = metric.route_in(self.factory.plan_of(world), task.behaviours).legs
 
         def of_all(name: str) -> int:
             return sum(getattr(each, name) for each in lessons)
@@ -127,9 +127,9 @@ def _named(report: Report, plan: LessonPlan) -> Report:
 
 def route_of_task(task: TaskSettings) -> RouteSettings:
     """Return the settings of a task's route. Raises hal.settings.SettingsError for a task without one."""
-    if isinstance(task.course, RouteSettings):
-        return task.course
-    raise SettingsError(f"its course is {task.course.kind}, and there is no route to teach", where=f"task {task.name}")
+    if isinstance(task.metric, RouteSettings):
+        return task.metric
+    raise SettingsError(f"its metric is {task.metric.kind}, and there is no route to teach", where=f"task {task.name}")
 
 
 def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
@@ -137,11 +137,11 @@ def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> T
 
     Raises hal.settings.SettingsError for a task that teaches no route.
     """
-    course = route_of_task(task)
-    update: dict[str, object] = {"seed": seed if course.seed is None else course.seed}
+    metric = route_of_task(task)
+    update: dict[str, object] = {"seed": seed if metric.seed is None else metric.seed}
     if decisions is not None:
         update["decisions"] = decisions
-    return task.model_copy(update={"course": course.model_copy(update=update)})
+    return task.model_copy(update={"metric": metric.model_copy(update=update)})
 
 
 class RouteTasks(NamedTuple):

@@ -13,7 +13,7 @@ from hal.settings import Settings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
@@ -164,4 +164,4 @@ def require_places(factory: SimulationFactory, task: TaskSettings, worlds: Itera
     """Check that all worlds can be built, and that the task can be driven there. Raises hal.settings.SettingsError."""
     needed = tuple(dict.fromkeys(worlds))
     factory.require_worlds(*needed)
-    require_course(factory, task, needed)
+    require_metric(factory, task, needed)

@@ -84,14 +84,14 @@ class Fingerprints:
         self,
         factory: SimulationFactory,
         robot: RobotSettings,
-        leave_out: Collection[str] = ("paper", "plain", "phases"),
+        leave_out: Collection[str] = ("paper", "paper_defaults", "phases"),
     ) -> None:
         """`leave_out`: parts of a task that change nothing in these experiments.
 
         The task's own numbers of the paper, and the reading that is not taken, never do; nor does its sentence to the
         teacher, which is always left out.
         """
-        self._leave_out = {*leave_out, "what"}
+        self._leave_out = {*leave_out, "description"}
         self._versions = versions()
         self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
         self._stage = factory
@@ -140,5 +140,5 @@ class Fingerprints:
 def _plugin_sources(task: TaskSettings) -> list[str]:
     """Return the hash of each plug-in's source that a task names; the program's own source has a field of its own."""
     actions = load_settings(find_config("repertoires", task.repertoire), RepertoireSettings).actions
-    hashes = map(source_hash_of, (task.policy, task.course, task.judge, *actions))
+    hashes = map(source_hash_of, (task.policy, task.metric, task.judge, *actions))
     return [each for each in dict.fromkeys(hashes) if each]

@@ -67,7 +67,7 @@ def test_least_progress_is_a_tenth_of_a_metre_a_second() -> None:
         laps = LapsSettings(kind="laps", wanted_m=WANTED_M).least_progress(simulation, 300.0)
         assert laps * simulation.lap_m == pytest.approx(30.0)
         assert WaySettings(kind="way").least_progress(simulation, 300.0) == pytest.approx(30.0)
-        assert load_task("circle").course.least_progress(simulation, 300.0) == 0.0
+        assert load_task("circle").metric.least_progress(simulation, 300.0) == 0.0
     finally:
         simulation.close()
 

@@ -15,7 +15,7 @@ from simbridge.simulation import Kurt2SimulationFactory
 
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
 PLAN = Kurt2SimulationFactory(load_kurt2()).plan_of("manhattan")
-COURSE = load_task("errands").course
+COURSE = load_task("errands").metric
 
 
 @pytest.fixture(scope="module")

@@ -54,7 +54,7 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -
     assert (told.left_m_s, told.right_m_s) == (0.3, 0.3)
     learning = desk.runtime.task.learning  # in phase 1 the robot asks sooner
     assert (told.nearest, told.nearest_action) == (1, "forward")
-    assert told.radius == learning.radius * learning.asks_beyond_share
+    assert told.radius == learning.radius * learning.ask_radius_fraction
     assert told.distance < 1.0
     assert (told.taught_by, told.taught_at, told.teacher) == ("ann", STAMP, "ann")
     assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)

@@ -48,7 +48,7 @@ def test_taught_action_is_lost_while_its_situation_is_unknown(folder: Path) -> N
 
 
 def test_its_past_is_its_own_and_begins_where_it_is_started(tmp_path: Path) -> None:
-    past = load_task("wall_following", changes={"learning.past_weight": "1.0", "name": "with_past"})
+    past = load_task("wall_following", changes={"learning.history_weight": "1.0", "name": "with_past"})
     path = tmp_path / "with_past.yaml"
     path.write_text(past.model_dump_json(exclude_unset=True))
     keep(tmp_path / "taught.knowledge", past, created(1, condition_at(WALL), "forward", radius=20.0))

@@ -10,8 +10,8 @@ SETTING = LearnerSetting(
     dimensions=1,
     weights=np.ones(1),
     radius=10.0,
-    asks_beyond_share=0.5,
-    insert_beyond_share=0.2,
+    ask_radius_fraction=0.5,
+    insert_radius_fraction=0.2,
     actions=("a", "b", "c"),
     seed=1,
 )

@@ -103,6 +103,7 @@ def mirrored(feature: str) -> str:
 def test_weights_of_fleeing_are_symmetric() -> None:
     learning = load_task("fleeing").learning
     changed = [(each.features, each.weight) for each in learning.weights]
-    weights = dict(zip(NAMES[:34], feature_weights(DEFINITION, changed, learning.past_weight, "fleeing"), strict=False))
+    values = feature_weights(DEFINITION, changed, learning.history_weight, "fleeing")
+    weights = dict(zip(NAMES[:34], values, strict=False))
     assert {feature: weights[mirrored(feature)] for feature in weights} == weights
     assert len(set(weights.values())) > 1

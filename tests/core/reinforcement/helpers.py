@@ -94,7 +94,7 @@ class Track:
         self.school = CommandHandler(
             self.level,
             ControlAuthority(actions, attended=False),
-            insert_beyond_share=SHARE,
+            insert_radius_fraction=SHARE,
             handled_command_ids=(event.origin.command_id for event in events),
             parts=HandlerParts(
                 reinforcement=self.reinforcement,

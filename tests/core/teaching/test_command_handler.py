@@ -60,7 +60,7 @@ class Lesson:
         self.school = CommandHandler(
             self.small.level,
             ControlAuthority(self.small.actions, attended=False),
-            insert_beyond_share=SHARE,
+            insert_radius_fraction=SHARE,
             handled_command_ids=taken,
         )
         self.events: list[TeachingEvent] = list(events)

@@ -32,7 +32,7 @@ def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequ
 def taught_shortly(name: str, *, plain: bool) -> TaskSettings:
     """Return a task with a short lesson and exam."""
     times = {"teaching.supervised_s": EXAM_S / 2, "teaching.corrections_s": EXAM_S, "exam.duration_s": EXAM_S}
-    return load_task(name, plain=plain, changes={key: str(seconds) for key, seconds in times.items()})
+    return load_task(name, paper_defaults=plain, changes={key: str(seconds) for key, seconds in times.items()})
 
 
 def test_results_are_those_of_the_bus(tmp_path: Path) -> None:

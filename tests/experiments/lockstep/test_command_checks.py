@@ -38,12 +38,12 @@ class FlySettings(MetricSettings):
     """Wants what no task teaches."""
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
-        course = WaySettings(kind="way").build(simulation, behaviours, chance)
-        course.behaviour = "fly"  # type: ignore[misc]
-        return course
+        metric = WaySettings(kind="way").build(simulation, behaviours, chance)
+        metric.behaviour = "fly"  # type: ignore[misc]
+        return metric
 
 
-FLYING = short_task(3.0, 0.0, 3.0).model_copy(update={"course": FlySettings(kind="fly")})
+FLYING = short_task(3.0, 0.0, 3.0).model_copy(update={"metric": FlySettings(kind="fly")})
 
 
 def test_an_answer_that_the_repertoire_lacks_ends_the_lesson(tmp_path: Path) -> None:

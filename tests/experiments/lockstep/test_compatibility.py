@@ -2,7 +2,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.compatibility import require_metric
 from tests.experiments.helpers import STAGE
 
 
@@ -16,12 +16,12 @@ from tests.experiments.helpers import STAGE
 )
 def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[str, str], why: str) -> None:
     fits, does_not = worlds
-    require_course(STAGE, load_task(task), [fits])
+    require_metric(STAGE, load_task(task), [fits])
     with pytest.raises(SettingsError, match=why):
-        require_course(STAGE, load_task(task), [fits, does_not])
+        require_metric(STAGE, load_task(task), [fits, does_not])
 
 
-def test_require_course_refuses_behaviours_without_an_exit() -> None:
+def test_require_metric_refuses_behaviours_without_an_exit() -> None:
     task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
     with pytest.raises(SettingsError, match="straight_on"):
-        require_course(STAGE, task, ["manhattan"])
+        require_metric(STAGE, task, ["manhattan"])

@@ -60,7 +60,7 @@ def test_batch_refuses_another_plan(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("task", "why"),
     [
-        (load_task("route"), "course route"),
+        (load_task("route"), "metric route"),
         (load_task("wall_following", changes={"learning.doubt.asks": "true"}), "asks at a doubt"),
     ],
 )

@@ -34,7 +34,7 @@ class Robot:
 
 def task_of(name: str, teacher: str, seconds: float) -> TaskSettings:
     task = load_task(name)
-    plain = {"doubt": None, "passes_over_guesses": False, "holds_yield": False}
+    plain = {"doubt": None, "skip_uncertain_lessons": False, "answers_override_holds": False}
     parts = {
         "learning": task.learning.model_copy(update=plain),
         "teaching": task.teaching.model_copy(update={"supervised_s": seconds / 2, "corrections_s": seconds / 2}),

@@ -1,4 +1,4 @@
-"""Every shipped task: its teacher can drive it, its course measures it, and it can be taught."""
+"""Every shipped task: its teacher can drive it, its metric measures it, and it can be taught."""
 
 from pathlib import Path
 
@@ -58,20 +58,20 @@ def test_files_fit_together(name: str) -> None:
 
 @pytest.mark.parametrize("name", TASKS)
 def test_every_task_has_a_plain_reading_of_the_paper(name: str) -> None:
-    task, plain = load_task(name), load_task(name, plain=True)
+    task, plain = load_task(name), load_task(name, paper_defaults=True)
     learning = plain.learning
-    assert (learning.past_weight, learning.weights) == (1.0, ())
-    assert (learning.insert_beyond_share, learning.minimum_action_s) == (1.0, 0.0)
-    assert plain == task.model_copy(update={"learning": task.plain})
+    assert (learning.history_weight, learning.weights) == (1.0, ())
+    assert (learning.insert_radius_fraction, learning.minimum_action_s) == (1.0, 0.0)
+    assert plain == task.model_copy(update={"learning": task.paper_defaults})
 
 
 @pytest.mark.parametrize(
     "change",
     [
-        {"plain.past_weight": "0.5"},
-        {"plain.weights": "[{weight: 2.0, features: [s1]}]"},
-        {"plain.insert_beyond_share": "0.1"},
-        {"plain.minimum_action_s": "0.1"},
+        {"paper_defaults.history_weight": "0.5"},
+        {"paper_defaults.weights": "[{weight: 2.0, features: [s1]}]"},
+        {"paper_defaults.insert_radius_fraction": "0.1"},
+        {"paper_defaults.minimum_action_s": "0.1"},
     ],
     ids=str,
 )

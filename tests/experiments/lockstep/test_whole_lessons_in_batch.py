@@ -28,7 +28,7 @@ def test_whole_lesson_and_exams_are_equal_in_the_batch(name: str, teacher: str, 
 @pytest.mark.parametrize("teacher", ["superhuman", "ordinary"])
 @pytest.mark.parametrize("name", TASKS)
 def test_whole_lesson_of_the_plain_reading_is_equal(name: str, teacher: str, seed: int) -> None:
-    assert_equal_on_the_bus(taught_by(load_task(name, plain=True), load_teacher(teacher)), seed)
+    assert_equal_on_the_bus(taught_by(load_task(name, paper_defaults=True), load_teacher(teacher)), seed)
 
 
 def assert_equal_on_the_bus(task: TaskSettings, seed: int) -> None:

@@ -99,7 +99,7 @@ def test_the_plain_reading_has_the_settings_of_its_own() -> None:
     shipped, plain = planned("circle", readings=("shipped", "plain"), seeds=(100,)).of(TaughtJob)
     ordinary = load_teacher("ordinary")
     assert shipped.task == taught_by(load_task("circle"), ordinary)
-    assert plain.task == taught_by(load_task("circle", plain=True), ordinary)
+    assert plain.task == taught_by(load_task("circle", paper_defaults=True), ordinary)
     assert plain.made_of.differences(shipped.made_of) == ["task"]
 
 

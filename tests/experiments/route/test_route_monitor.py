@@ -36,7 +36,7 @@ class Watched:
     """A drive, junction by junction."""
 
     watching: RouteMonitor = field(default_factory=RouteMonitor)
-    course: ARoute = field(default_factory=ARoute)
+    metric: ARoute = field(default_factory=ARoute)
     tick: int = 0
 
     def look(self, wanted: int, event: int | None = None, *, asks: bool = False, mid: bool = True) -> None:
@@ -49,19 +49,19 @@ class Watched:
         situation = Situation(np.zeros(1), history_frozen=False)
         grant = GuardResult(STANDSTILL, (), latched=False)
         record = TickRecord(self.tick, 0.01 * self.tick, sensed(100), situation, decision, grant, (), behaviour)
-        self.watching.on_tick(record, self.course)
+        self.watching.on_tick(record, self.metric)
 
     def junction(
         self, right: int, wanted: int, taken: int | None, noticed: int | None, within: int | None = None
     ) -> None:
         """Drive through one junction, which is detected after it; `within`: the direction wanted inside it."""
         self.look(wanted)
-        self.course.inside = True
+        self.metric.inside = True
         self.look(wanted)
         if within is not None:
             self.look(within)
-        self.course.inside = False
-        self.course.passages.append(Passage(0, right, taken, 1.0, 2.0))
+        self.metric.inside = False
+        self.metric.passages.append(Passage(0, right, taken, 1.0, 2.0))
         self.look(wanted if within is None else within)
         if noticed is not None:
             self.look(wanted, noticed)
@@ -113,12 +113,12 @@ def test_route_monitor_unknown_history_is_mid_stuck_is_basic() -> None:
     watched = Watched()
     watched.junction(0, 0, 0, 0)
     watched.look(0, asks=True)
-    watched.course.passages.append(Passage(1, 1, None, 1.0, 2.0))
+    watched.metric.passages.append(Passage(1, 1, None, 1.0, 2.0))
     watched.watching.end()
     assert watched.blamed == ["mid"]
     watched = Watched()
     watched.look(1)
-    watched.course.passages.append(Passage(0, 1, None, 1.0, 2.0))
+    watched.metric.passages.append(Passage(0, 1, None, 1.0, 2.0))
     watched.watching.end()
     assert watched.blamed == ["basic"]
 
@@ -128,7 +128,7 @@ def test_route_monitor_stuck_after_a_junction_is_basic() -> None:
     for turn in (0, 1, -1) * 5:
         watched.junction(turn, turn, turn, turn)
     watched.junction(1, 1, 1, None)
-    watched.course.passages.append(Passage(1, 0, None, 1.0, 2.0))
+    watched.metric.passages.append(Passage(1, 0, None, 1.0, 2.0))
     watched.watching.end()
     assert watched.blamed == ["basic"]
 
@@ -136,7 +136,7 @@ def test_route_monitor_stuck_after_a_junction_is_basic() -> None:
 def test_without_a_mid_level_it_is_always_the_basic_one() -> None:
     watched = Watched()
     watched.look(0, mid=False)
-    watched.course.passages.append(Passage(0, 1, 0, 1.0, 2.0))
+    watched.metric.passages.append(Passage(0, 1, 0, 1.0, 2.0))
     watched.look(0, mid=False)
     assert watched.blamed == ["basic"]
 

@@ -48,14 +48,14 @@ def test_key_with_a_default_that_the_file_leaves_out_is_found(tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("key", "low", "high", "told"),
     [
-        ("learning.radios", 1.0, 2.0, r"learning.radios: no such key \(got radios, allowed radius, past_weight,"),
+        ("learning.radios", 1.0, 2.0, r"learning.radios: no such key \(got radios, allowed radius, history_weight,"),
         ("learning.weights.9.weight", 1.0, 2.0, r"no such key \(got 9, allowed 0, 1, 2, 3\)"),
         ("learning.weights.x.weight", 1.0, 2.0, r"no such key \(got x"),
         ("learning.radius.more", 1.0, 2.0, "no such key .* allowed nothing"),
-        ("learning.holds_yield", 0.0, 1.0, "no number"),
+        ("learning.answers_override_holds", 0.0, 1.0, "no number"),
         ("learning.weights.0.features", 0.0, 1.0, "no number"),
         ("learning.radius", 100.0, 800.0, r"leaves the shipped value out \(got 900, allowed 100 to 800\)"),
-        ("learning.past_weight", 0.0, 20.0, "past_weight"),
+        ("learning.history_weight", 0.0, 20.0, "history_weight"),
     ],
 )
 def test_key_that_does_not_fit_is_refused(key: str, low: float, high: float, told: str, tmp_path: Path) -> None:
@@ -71,7 +71,7 @@ def test_ranges_whose_ends_do_not_fit_each_other_are_refused(tmp_path: Path) -> 
 
 
 def test_key_that_the_teacher_decides_is_refused(tmp_path: Path) -> None:
-    asks = {"key": "learning.asks_beyond_share", "low": 0.3, "high": 1.0}
+    asks = {"key": "learning.ask_radius_fraction", "low": 0.3, "high": 1.0}
     space(tmp_path, asks)
     with pytest.raises(SettingsError, match="the teacher superhuman decides it"):
         space(tmp_path, asks, teacher="superhuman")

@@ -47,7 +47,7 @@ def test_unknown_task_goes_to_the_bus_and_is_named() -> None:
     assert {job.engines for job in choice.apply(jobs(4, UNKNOWN))} == {ON_BUS}
     assert {job.engines for job in choice.apply(jobs(4))} == {BOTH}
     (refusal,) = choice.refusals
-    assert refusal.startswith("route: lessons and exams on the CAN bus, because a batch does not know course route")
+    assert refusal.startswith("route: lessons and exams on the CAN bus, because a batch does not know metric route")
 
 
 def test_study_stays_on_the_bus_unless_a_batch_is_asked_for() -> None:

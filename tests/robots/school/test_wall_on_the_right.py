@@ -14,7 +14,7 @@ SCHOOL = load_robot("school")
 
 
 def laps_of_policy(policy_side: str, laps_side: str) -> float:
-    changes = {"policy.side": policy_side, "course.side": laps_side, "exam.duration_s": "30"}
+    changes = {"policy.side": policy_side, "metric.side": laps_side, "exam.duration_s": "30"}
     task = load_task("school/wall_following", changes=changes)
     with closing(simulations_of(SCHOOL).open("school/a", 1, "exam")) as simulation:
         setup = ExamSetup("school/a", 1, teacher_policy=True)

@@ -21,7 +21,7 @@ from tests.teacher.helpers import correct, resume, set_phase, stop, teach
 def lesson() -> Iterator[Lesson]:
     """Asks for 0.2 s, drives ahead for a second, is corrected, stopped for half a second, and drives on."""
     # A correction that replaces: two RLAs next to each other would drive in turn, by the noise of the sensors.
-    lesson = Lesson(changes={"learning.insert_beyond_share": "0.2"})
+    lesson = Lesson(changes={"learning.insert_radius_fraction": "0.2"})
     lesson.go_on(20)
     lesson.go_on(100, teach("forward"))
     lesson.go_on(50, set_phase(Phase.CORRECTIONS), correct("bear_right"))

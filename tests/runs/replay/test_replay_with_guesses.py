@@ -43,7 +43,7 @@ def slips_and_leaves(scene: Scene, record: TickRecord) -> None:
 
 def test_run_over_a_guess_is_replayed_bit_for_bit(tmp_path: Path) -> None:
     task = load_task("wall_following")
-    assert task.learning.passes_over_guesses
+    assert task.learning.skip_uncertain_lessons
     run = read_run(record_story("walls", tmp_path, seconds=2, other=slips_and_leaves, task=task))
     replay, passed_over = Replay(run), 0
     for entry, record in replay:

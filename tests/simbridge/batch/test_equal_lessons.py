@@ -17,11 +17,12 @@ BLIND_TEACHER = dict.fromkeys(("policy.front_m", "policy.edge_m", "policy.wary_m
 
 
 def lesson_task(
-    name: str, teacher: str, changes: Mapping[str, str] | None = None, *, plain: bool = False
+    name: str, teacher: str, changes: Mapping[str, str] | None = None, *, paper_defaults: bool = False
 ) -> TaskSettings:
     """Return a short lesson; a third of it without corrections."""
     times = {"teaching.supervised_s": f"{SECONDS / 3:.2f}", "teaching.corrections_s": f"{SECONDS * 2 / 3:.2f}"}
-    return taught_by(load_task(name, plain=plain, changes={**times, **(changes or {})}), load_teacher(teacher))
+    task = load_task(name, paper_defaults=paper_defaults, changes={**times, **(changes or {})})
+    return taught_by(task, load_teacher(teacher))
 
 
 def equal_lesson(task: TaskSettings, seed: int) -> GivenLesson:
@@ -38,7 +39,7 @@ def test_lesson_is_equal_in_the_batch(name: str, teacher: str) -> None:
 
 @pytest.mark.parametrize(("name", "teacher"), [("streets", "ordinary")])
 def test_lesson_of_the_plain_reading_is_equal_in_the_batch(name: str, teacher: str) -> None:
-    assert equal_lesson(lesson_task(name, teacher, plain=True), 7).events
+    assert equal_lesson(lesson_task(name, teacher, paper_defaults=True), 7).events
 
 
 @pytest.mark.deep

@@ -62,7 +62,8 @@ def person(
     phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, profile: dict[str, Any] | None = None, **changes: Any
 ) -> ScriptedPerson:
     own = limits(**changes)
-    taught = TeacherProfile(name="p", what="A person", person=own, **{"corrects_tick": "noticed", **(profile or {})})
+    other = {"corrects_tick": "noticed", **(profile or {})}
+    taught = TeacherProfile(name="p", description="A person", person=own, **other)
     sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
     teacher = ScriptedPerson(taught, own, sense, period_s=PERIOD_S, seed=seed, session="s")
     if phase is not Phase.SUPERVISED:

@@ -1,4 +1,4 @@
-"""A course that a world cannot give is refused before anything is taught."""
+"""A metric that a world cannot give is refused before anything is taught."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 
 from tests.cli.helpers import CommandLine
 
-NO_POST = "task circle: course rounds: world A has 0 round obstacles; choose one with a single one"
+NO_POST = "task circle: metric rounds: world A has 0 round obstacles; choose one with a single one"
 
 
 @pytest.mark.parametrize(
