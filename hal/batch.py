@@ -133,6 +133,10 @@ class Turn(NamedTuple):
 Action = FixedSpeeds | WallDistance | Turn
 
 
+MOST_KEPT = 256
+"""Most positions in a window of a batch's `StuckRule`."""
+
+
 class StuckRule(NamedTuple):
     """Rule by which a robot is stuck: all its positions of a window are near the newest one."""
 
@@ -190,9 +194,7 @@ class Tally(NamedTuple):
     stuck: bool
     """True if the rule of the settings ended the drive."""
     travelled_m: float
-    """Distance over the positions of every tenth tick, from the tenth on."""
-    pose: Pose
-    """Pose after the last tick."""
+    """Distance on the robot's own wheels."""
 
 
 class Trace(NamedTuple):

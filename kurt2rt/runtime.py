@@ -98,6 +98,8 @@ class Runtime:
     task: TaskSettings
     definition: SituationDefinition
     level: BasicLevel
+    learner: LearnerLevel | None
+    """Level that decides in place of the RLAs; None: RLAs decide."""
     mid: MidLevel | None
     """None if the task has no mid level."""
     navigator: Navigator | None
@@ -302,6 +304,7 @@ def build_runtime(
         task=task,
         definition=mind.definition,
         level=mind.basic,
+        learner=mind.learner,
         mid=mind.mid,
         navigator=mind.navigator,
         active_behaviour=mind.active_behaviour,

@@ -38,13 +38,10 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.core.teaching.commands import Command, SetPhase
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.certify.drives import Subject, drive_in_batch
-from kurt2rt.experiments.certify.run import Run
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
+from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
-from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.experiments.lockstep.lesson import GivenLesson, teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
@@ -303,23 +300,23 @@ async def batch(bench: Bench) -> list[Row]:
     """Drive exams and runs of a certificate, and give lessons, in compiled loops, and some of them on the CAN bus."""
     task = wall_following(bench.count(345), bench.count(60))
     worlds, seeds = task.exam.worlds, range(bench.count(30))
-    setups = [ExamSetup(worlds[seed % len(worlds)], seed, teacher_policy=seed % 2 == 1) for seed in seeds]
-    exams = [BatchExam(setup, bench.events) for setup in setups]
-    runs = [Run(setup.seed, setup.world) for setup in setups]
-    subject = Subject(ROBOT, task, bench.events)
+    setups = [
+        ExamSetup(worlds[seed % len(worlds)], seed, teacher_policy=seed % 2 == 1, events=bench.events) for seed in seeds
+    ]
+    runs = [ExamSetup(setup.world, setup.seed, events=bench.events) for setup in setups]
     exam_ns, run_ns, bus_ns = [], [], []
     with on_one_core():
         for _ in range(1 + bench.count(5)):  # the first one compiles, or loads what is compiled
             begun_ns = time.perf_counter_ns()
-            finished = examine_in_batch(FACTORY, ROBOT, task, exams)
+            finished = examine_in_batch(FACTORY, ROBOT, task, setups)
             exam_ns.append(per_tick(begun_ns, sum(each.duration_s for each in finished if each is not None)))
             begun_ns = time.perf_counter_ns()
-            driven = drive_in_batch(FACTORY, subject, runs, ignore)
-            run_ns.append(per_tick(begun_ns, sum(each.ticks for each in driven if each is not None) * PERIOD_S))
+            driven = examine_in_batch(FACTORY, ROBOT, task, runs, measured=False)
+            run_ns.append(per_tick(begun_ns, sum(each.duration_s for each in driven if each is not None)))
         for setup, result in itertools.islice(zip(setups, finished, strict=True), bench.count(6)):
             begun_ns = time.perf_counter_ns()
             with closing(FACTORY.open(setup.world, setup.seed, "exam")) as simulation:
-                on_bus = await examine(simulation, ROBOT, task, bench.events, setup, ignore)
+                on_bus = await examine(simulation, ROBOT, task, setup, ignore)
             bus_ns.append(per_tick(begun_ns, on_bus.duration_s))
             assert result in (on_bus, None)
         rows = [

@@ -3,12 +3,13 @@
 import shlex
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 from rich.text import Text
 
-from hal.robot_settings import load_robot_of
+from hal.batch import BatchRefusedError
+from hal.robot_settings import RobotSettings, load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.options import Changes, RobotName, TaskOfTheFile, changes_of, results_option
@@ -16,16 +17,16 @@ from kurt2rt.cli.study_run import JobOptions, job_parts, say_if_interpreted, stu
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
+from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
-if TYPE_CHECKING:
-    from kurt2rt.experiments.certify.run import RunOutcome
-    from kurt2rt.experiments.lockstep.exam import ExamResult
-
 _FOLDER = Path("results/certify")
 _SECONDS = "exam.duration_s"
+_LEFT_OUT = {"verdict", "unit", "progress", "least_progress", "action_changes_per_s", "findings", "teacher", *PLACES}
+"""Fields of a run that a certificate does not measure."""
 _GENERATED = {"wall_following": ("rooms-SEED",)}
 """Generated worlds of a task without --world, besides those of its exam."""
 
@@ -105,8 +106,14 @@ def certify(options: _Options) -> None:
     that the batch does not know, such as routes, are driven on the CAN bus.
     """
     # Not at the top: the simulator and drawing are extras, and every command is loaded where --help is said.
-    from kurt2rt.experiments.certify.run import BrokenShare, Run
-    from kurt2rt.experiments.certify.study import Extent, drive_again, find_refusal, make_plan, read_certificate
+    from kurt2rt.experiments.certify.study import (
+        BrokenShare,
+        Extent,
+        make_plan,
+        picture_jobs,
+        read_certificate,
+        read_pictures,
+    )
     from kurt2rt.experiments.certify.tables import all_tables, draw_worst, summarise, worst_runs, write_certificate
     from kurt2rt.experiments.study.table import as_rich
 
@@ -114,24 +121,21 @@ def certify(options: _Options) -> None:
     robot = load_robot_of(options.robot_settings, options.task or task_of_file(options.knowledge))
     places = tuple(dict.fromkeys(options.world or (*task.exam.worlds, *_GENERATED.get(task.name, ()))))
     parts = job_parts(robot, options.out)
-    one = Run(options.first, places[0])
-    parts["factory"].require_worlds(one.world)
-    engine = _engine(options, find_refusal(task, options.knowledge, one, parts))
-    broken = BrokenShare(options.dead_sensors, robot.infrared.names)
-    extent = Extent(options.first, options.runs, places, engine, broken)
+    engine = _engine(options, task, robot)
+    shares = BrokenShare(options.dead_sensors, robot.infrared.names)
+    extent = Extent(options.first, options.runs, places, engine, shares)
     plan, command = make_plan(task, options.knowledge, extent, parts), _command(options, engine)
     report = options.out / "report.html"
-    with study_run(plan, parts, options) as bar:
+    with study_run(plan, parts, options) as study:
         certificate = read_certificate(plan)
-        worst = worst_runs(certificate.outcomes, options.pictures)
-        commands = [_exam_command(options, each) for each in worst]
-        bar.say("all runs")
-        exams: list[ExamResult] = []
-        if worst:
-            bar.begin_next(len(worst) * task.exam.duration_s)
-            exams = drive_again(plan, worst, options.jobs, bar.update)
-        bar.say("figures and report")
-        pictures = list(draw_worst(exams, commands, parts["factory"], options.out))
+        worst = worst_runs(certificate.drives, options.pictures)
+        broken = {run.number: run.broken for run in plan.about.runs}
+        commands = [_exam_command(options, each, broken[each.seed]) for each in worst]
+        again = picture_jobs(plan, worst)
+        study.say("all runs")
+        study.run([again])
+        study.say("figures and report")
+        pictures = list(draw_worst(read_pictures(again, worst), commands, parts["factory"], options.out))
         tables = list(all_tables(certificate, worst))
         write_certificate(certificate, tables, pictures, command, report)
     if not options.as_json:
@@ -145,8 +149,10 @@ def certify(options: _Options) -> None:
             "seconds": task.exam.duration_s,
             "places": list(summarise(certificate)),
             "compared": certificate.compared,
-            "on_bus": sorted(certificate.on_bus),
-            "worst": [{**each.model_dump(), "command": word} for each, word in zip(worst, commands, strict=True)],
+            "worst": [
+                {**each.model_dump(exclude=_LEFT_OUT), "broken": broken[each.seed], "command": word}
+                for each, word in zip(worst, commands, strict=True)
+            ],
             "report": report,
         }
     )
@@ -170,19 +176,23 @@ def _task(options: _Options) -> TaskSettings:
     return task
 
 
-def _engine(options: _Options, refusal: str) -> Engine:
-    """Return the engine that drives the runs, and say why if it is slow; `refusal`: of the compiled one, or empty."""
-    if options.engine is Engine.COMPILED and refusal:
+def _engine(options: _Options, task: TaskSettings, robot: RobotSettings) -> Engine:
+    """Return the engine that drives the runs, and say why if it is slow."""
+    if options.engine is Engine.CAN:
+        return Engine.CAN
+    try:
+        require_known_exams(robot, task, policy=False)
+    except BatchRefusedError as refusal:
         typer.echo(f"{refusal}: all runs are driven there, some 100 times slower", err=True)
         return Engine.CAN
-    if options.engine is Engine.COMPILED:
-        say_if_interpreted()
-    return options.engine
+    say_if_interpreted()
+    return Engine.COMPILED
 
 
-def _exam_command(options: _Options, run: "RunOutcome") -> str:
-    words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.number), "--world", run.world]
-    words += ["--broken-sensor", run.broken] if run.broken else []
+def _exam_command(options: _Options, run: DriveRow, broken: str) -> str:
+    """Return the command that drives a run again; `broken`: its broken sensor, empty for none."""
+    words = ["kurt2rt", "exam", str(options.knowledge), "--seed", str(run.seed), "--world", run.world]
+    words += ["--broken-sensor", broken] if broken else []
     changes = [*(options.changes or ()), *([f"{_SECONDS}={options.seconds:g}"] if options.seconds is not None else [])]
     words += [word for change in changes for word in ("--set", change)]
     words += ["--task", options.task] if options.task is not None else []

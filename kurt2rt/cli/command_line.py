@@ -57,7 +57,7 @@ _OPTION_PANELS = {
         "robot",
     ),
     "Recording": ("record", "no_record", "can_log", "live_view"),
-    "Study": ("jobs", "cluster", "engine", "checkpoint", "baselines", "out", "quick"),
+    "Study": ("jobs", "cluster", "engine", "checkpoint", "out", "quick"),
 }
 """Options of long helps, by the title of their panel."""
 _LONG_HELP = 10

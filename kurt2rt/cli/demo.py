@@ -24,10 +24,13 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_actions, require_metric
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
-from kurt2rt.experiments.lockstep.seed_result import seed_result
+from kurt2rt.experiments.lockstep.compatibility import require_actions
+from kurt2rt.experiments.lockstep.curriculum import Report, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.study.exam_tables import curriculum_as_data, exam_tables, lesson_table
+from kurt2rt.experiments.study.jobs import require_places
+from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
 
@@ -71,24 +74,24 @@ def demo(options: _Options) -> None:
     taught = taught_by_named(task, options.teacher)
     stage = simulations_of(settings)
     worlds = (taught.teaching.world, *taught.exam.worlds)
-    stage.require_worlds(*worlds)
-    require_metric(stage, taught, worlds)
+    require_places(stage, taught, worlds)
     require_actions(taught, settings)
     options.out.mkdir(parents=True, exist_ok=True)
     stem = options.out / f"{taught.name}-{options.seed}"
     knowledge, picture = Path(f"{stem}.knowledge"), Path(f"{stem}.png")
     archive_existing(knowledge)
 
-    async def run(report: Report) -> CurriculumResult:
+    async def run(report: Report) -> tuple[TrainingResult, tuple[DriveRow, ...]]:
         lesson, events = await run_lesson(stage, settings, taught, knowledge, seed=options.seed, report=report)
         exams = await run_exams(stage, settings, taught, events, taught.exam.worlds, seed=options.seed, report=report)
-        return CurriculumResult(lesson, exams)
+        return lesson, exams
 
     with job_bars() as report:
-        result = anyio.run(run, report)
-    draw_curriculum(result, taught, stage, picture)
+        lesson, exams = anyio.run(run, report)
+    draw_curriculum(lesson, exams, taught, stage, picture)
     if options.as_json:
-        print_json({**curriculum_as_data(seed_result(result), taught), "picture": picture, "knowledge": knowledge})
+        print_json({**curriculum_as_data(lesson.counts, exams, taught), "picture": picture, "knowledge": knowledge})
         return
     files = (f"picture    {picture}", f"knowledge  {knowledge}")
-    print_whole(console_of(), render_curriculum(result, taught), *files)
+    tables = (lesson_table(lesson.counts, taught), *exam_tables(exams, taught))
+    print_whole(console_of(), *map(as_rich, tables), *files)

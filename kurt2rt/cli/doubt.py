@@ -5,25 +5,17 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, parse_seeds, task_option
-from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.cli.options import RobotName, parse_seeds, results_option, task_option
+from kurt2rt.cli.study_run import JobOptions, job_parts, study_run
+from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import load_task_and_robot
-from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
-from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
-from kurt2rt.experiments.study.jobs import world_of
-from kurt2rt.experiments.study.pool import run_jobs
-from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.platform.text_table import print_whole
+from kurt2rt.experiments.doubt.drive import DoubtResponse
 
 
-@dataclass(frozen=True, slots=True)
-class _Options:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Options(JobOptions):
     taught: Annotated[Path, typer.Argument(help="Folder with knowledge files, as kurt2rt train --seeds leaves them.")]
     task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
     seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-4.")] = "0-4"
@@ -44,9 +36,8 @@ class _Options:
             help="Move a robot that stands for this time to another start; 0: never.",
         ),
     ] = 10.0
-    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path, results_option("results/doubt")] = Path("results/doubt")
     robot_settings: RobotName = None
-    as_json: AsJson = False
 
 
 @takes_options(_Options)
@@ -62,42 +53,22 @@ def doubt(options: _Options) -> None:
         kurt2rt train --task wall_following --seeds 915-919
         kurt2rt study doubt results/train --seeds 915-919 --world floors-SEED
         kurt2rt study doubt results/train --seeds 915-919 --world floors-SEED --response stands --reposition-after 0
-    """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    import scipy.special  # noqa: F401 # of the extra `studies`: told before the drives, not after them
 
-    taught, settings = load_task_and_robot(options.task, options.robot_settings)
-    task = with_doubt(taught, DoubtResponse.TELLS)
-    factory = simulations_of(settings)
-    worlds = options.world or list(task.exam.worlds)
-    seeds = parse_seeds(options.seeds)
-    factory.require_worlds(*(world_of(world, seed) for world in worlds for seed in seeds))
-    responses = tuple(options.response or DoubtResponse)
-    work = [
-        DoubtJob(
-            factory,
-            settings,
-            task,
-            options.taught / f"{task.name}-{seed}.knowledge",
-            DoubtSetup(world_of(world, seed), seed, options.seconds, response, options.reposition_after),
-        )
-        for response in responses
-        for seed in seeds
-        for world in worlds
-    ]
-    columns = (TextColumn("drives"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
-        bar = progress.add_task("drives", total=len(work))
-        logs = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
-    each = len(work) // len(responses)
-    by_response = {response.value: logs[n * each : (n + 1) * each] for n, response in enumerate(responses)}
-    assert task.learning.doubt is not None
-    tables = [collision_table(by_response, options.reposition_after)]
-    told = by_response.get(DoubtResponse.TELLS.value)
-    if told is not None:
-        tables.insert(0, score_table(told, task.learning.doubt.threshold))
-    if options.as_json:
-        print_json({"tables": tables_of(tables)})
-        return
-    for table in tables:
-        print_whole(console_of(), as_rich(table))
+    Results are kept in --out, so an interrupted run goes on where it was.
+    """
+    # Not at the top: the simulator is an extra, and every command is loaded where --help is said.
+    from kurt2rt.experiments.doubt.study import DoubtDrives, all_tables, make_plan
+
+    task, robot = load_task_and_robot(options.task, options.robot_settings)
+    parts = job_parts(robot, options.out)
+    about = DoubtDrives(
+        task,
+        tuple(options.world or task.exam.worlds),
+        tuple(options.response or DoubtResponse),
+        options.seconds,
+        options.reposition_after,
+    )
+    plan = make_plan(about, parse_seeds(options.seeds), options.taught, parts)
+    with study_run(plan, parts, options):
+        tables = list(all_tables(plan))
+    print_study(tables, (), as_json=options.as_json)

@@ -4,11 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import anyio
 import typer
 
-from behaviors.metrics.route import RouteSettings
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
@@ -17,13 +14,10 @@ from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_metric
-from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
-from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
-from kurt2rt.experiments.lockstep.report import exams_as_data, render_exams
-from kurt2rt.experiments.route.study import with_route
+from kurt2rt.experiments.study.exam_tables import exam_tables, exams_as_data
+from kurt2rt.experiments.study.examination import examine_file
+from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.task_of_file import task_of_file
-from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -73,21 +67,17 @@ def exam(options: _Options) -> None:
     require_robot_of(taught, task_name, settings)
     if options.task is not None:
         task_of_file(options.knowledge, options.task)
-    if isinstance(taught.metric, RouteSettings) and taught.metric.seed is None:
-        taught = with_route(taught, options.seed)
-    worlds = tuple(options.world) if options.world else taught.exam.worlds
-    stage = simulations_of(settings)
-    stage.require_worlds(*worlds)
-    require_metric(stage, taught, worlds)
-    events = read_lessons(options.knowledge, settings, taught)
-    broken = None if options.broken is None else parse_break(options.broken, settings.infrared)
-
-    async def run(report: Report) -> tuple[WorldResult, ...]:
-        return await run_exams(stage, settings, taught, events, worlds, seed=options.seed, report=report, broken=broken)
-
     with job_bars() as report:
-        results = anyio.run(run, report)
+        results = examine_file(
+            options.knowledge,
+            settings,
+            taught,
+            options.seed,
+            report,
+            worlds=options.world or (),
+            broken=options.broken,
+        )
     if options.as_json:
         print_json({"knowledge": options.knowledge, "seed": options.seed, **exams_as_data(results, taught)})
     else:
-        print_whole(console_of(), render_exams(results, taught))
+        print_whole(console_of(), *map(as_rich, exam_tables(results, taught)))

@@ -9,21 +9,16 @@ import sys
 import threading
 from pathlib import Path
 
-import anyio
-
-from behaviors.metrics.route import RouteSettings
 from hal.errors import ExitCode
 from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.compatibility import require_metric
-from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
 from kurt2rt.experiments.lockstep.drawing import draw_exams
-from kurt2rt.experiments.lockstep.report import label_of, not_judged, verdict_of
-from kurt2rt.experiments.route.study import with_route
-from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.experiments.lockstep.drive_row import label_of
+from kurt2rt.experiments.study.exam_tables import verdict_text
+from kurt2rt.experiments.study.examination import examine_file
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 NICENESS = 10
@@ -48,35 +43,24 @@ def main(arguments: list[str]) -> None:
 
 def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, seed: int) -> None:
     robot, task = load_robot(robot_name), load_task(task_name)
-    if isinstance(task.metric, RouteSettings) and task.metric.seed is None:
-        task = with_route(task, seed)
-    worlds = task.exam.worlds
-    stage = simulations_of(robot)
-    stage.require_worlds(*worlds)
-    require_metric(stage, task, worlds)
-    events = read_lessons(knowledge, robot, task)
     drives: dict[str, None] = {}
     told = -1.0
 
     def report(what: str, done_s: float, whole_s: float) -> None:
         nonlocal told
         drives[what] = None
-        share = min(1.0, (len(drives) - 1 + done_s / whole_s) / (2 * len(worlds)))
+        share = min(1.0, (len(drives) - 1 + done_s / whole_s) / (2 * len(task.exam.worlds)))
         if share - told >= _TELL_EACH_SHARE:
             told = share
             _tell(ExamStatus(True, share, what))
 
-    async def run() -> tuple[WorldResult, ...]:
-        return await run_exams(stage, robot, task, events, worlds, seed=seed, report=report)
-
-    results = anyio.run(run)
+    results = examine_file(knowledge, robot, task, seed, report)
     unborn = picture.with_name(f".{picture.name}.unborn")
     picture.parent.mkdir(parents=True, exist_ok=True)
-    draw_exams(results, stage, unborn)
+    draw_exams(results, simulations_of(robot), unborn)
     unborn.rename(picture)
     verdicts = tuple(
-        WorldVerdict(label_of(each.learned.world), each.succeeded, verdict_of(each), not not_judged(each))
-        for each in results
+        WorldVerdict(label_of(each.world), each.passed, verdict_text(each), each.judged) for each in results
     )
     passed, judged = (sum(counts) for counts in zip(*((each.passed, each.judged) for each in verdicts), strict=True))
     unjudged = f"; {len(verdicts) - judged} not judged" if judged < len(verdicts) else ""

@@ -56,7 +56,6 @@ def search(options: _Options) -> None:
     # Not at the top: simulator, drawing and Optuna are extras, and every command is loaded where --help is said.
     from kurt2rt.experiments.lockstep.engine import Engine
     from kurt2rt.experiments.search.check import begin_check, check_time_s, require_unchecked, run_check
-    from kurt2rt.experiments.search.journal import TrialJournal
     from kurt2rt.experiments.search.plan import make_plan
     from kurt2rt.experiments.search.settings import load_search
     from kurt2rt.experiments.search.tables import all_tables, draw_trials, verdict_text, write_found, write_search
@@ -78,19 +77,14 @@ def search(options: _Options) -> None:
     executors = open_executor(options.cluster, options.jobs)
     with says_how_to_go_on(results), executors as executor, results.held(), one_bar(whole_s) as bar:
         require_no_difference(results, {plan.made_of.source})
-        journal = TrialJournal(plan)
-        run_trials(plan, journal, trials, executor, bar.update)
-        record = begin_check(plan, journal, trials)
+        made = run_trials(plan, trials, executor, bar.update)
+        record = begin_check(plan, made, trials)
         check = run_check(
-            plan,
-            journal,
-            record,
-            executor,
-            lambda told: bar.update(told._replace(done_s=trials_s + told.done_s)),
+            plan, made, record, executor, lambda told: bar.update(told._replace(done_s=trials_s + told.done_s))
         )
         bar.say("figure and report")
-        tables = all_tables(plan, journal, check)
-        picture = draw_trials(plan, journal.trials[:trials], plan.folder / "trials.png")
+        tables = all_tables(plan, made, check)
+        picture = draw_trials(plan, made.all[:trials], plan.folder / "trials.png")
         found, report = plan.folder / "found.yaml", plan.folder / "report.html"
         write_found(plan, check, command, found)
         write_search(plan, check, tables, [picture], command, report)

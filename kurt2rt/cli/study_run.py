@@ -17,7 +17,7 @@ from kurt2rt.cli.progress import OneBar, one_bar
 from kurt2rt.experiments.study.bus_witness import require_no_difference
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.runner import Executor, missing_time_s, open_processes, run_missing
+from kurt2rt.experiments.study.runner import Executor, Waves, missing_time_s, open_processes, run_missing
 from kurt2rt.experiments.study.study_plan import AboutT, EngineChoice, EngineRequest, RequestedEngine, StudyPlan
 
 Cluster = Annotated[
@@ -122,17 +122,33 @@ def says_how_to_go_on(results: Results) -> Iterator[None]:
         raise
 
 
+@dataclass(frozen=True, slots=True)
+class RunningStudy:
+    """Study whose jobs are done, and whose folder is held while tables and figures are made."""
+
+    bar: OneBar
+    executor: Executor
+    results: Results
+
+    def say(self, what: str) -> None:
+        """Show what is done after the jobs."""
+        self.bar.say(what)
+
+    def run(self, waves: Waves) -> None:
+        """Run further jobs that have no result, with a bar of their own."""
+        if missing_s := missing_time_s(waves, self.results):
+            self.bar.begin_next(missing_s)
+        run_missing(waves, self.results, self.executor, self.bar.update)
+
+
 @contextmanager
-def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> Iterator[OneBar]:
+def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> Iterator[RunningStudy]:
     """Run the jobs of a study that have no result; the context holds the folder while tables and figures are made.
 
     Args:
         plan: of the study.
         parts: with the folder of its results.
         options: of the command.
-
-    Yields:
-        The progress bar.
 
     Raises:
         StudyError: another run writes to the folder, or it has results of other settings.
@@ -149,4 +165,4 @@ def study_run(plan: StudyPlan[AboutT], parts: JobParts, options: JobOptions) -> 
             _say_choice(plan.choice)
         with one_bar(missing_s) as bar:
             run_missing(plan.waves, results, executor, bar.update)
-            yield bar
+            yield RunningStudy(bar, executor, results)

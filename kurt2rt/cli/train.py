@@ -18,12 +18,14 @@ from kurt2rt.cli.train_route import many_routes, one_route, require_no_route_opt
 from kurt2rt.cli.typed_command import typed_command
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.lockstep.compatibility import require_actions, require_metric
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
-from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
-from kurt2rt.experiments.lockstep.seed_result import seed_result
+from kurt2rt.experiments.lockstep.compatibility import require_actions
+from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.lockstep.lesson import LessonCounts
+from kurt2rt.experiments.study.exam_tables import curriculum_as_data, lesson_table, seeds_tables
+from kurt2rt.experiments.study.jobs import require_places
 from kurt2rt.experiments.study.seeds import forget_lost_robots, forget_result, make_plan, read_results
 from kurt2rt.experiments.study.study_plan import EngineRequest
+from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
@@ -57,7 +59,7 @@ def train(options: TrainOptions) -> None:
     The task errands leads the robot through the town and names places. Then it
     sends the robot to them, along routes it was never shown in one piece:
 
-        kurt2rt train --task errands --seeds 0-9 --baselines
+        kurt2rt train --task errands --seeds 0-9
     """
     setup = _setup(_task_name(options), options)
     task = setup.task
@@ -99,8 +101,7 @@ def _setup(task_name: str, options: TrainOptions) -> TrainSetup:
 def _basic_task(setup: TrainSetup, options: TrainOptions) -> None:
     task, out = setup.task, options.out or FOLDER
     worlds = (task.teaching.world, *(task.exam.worlds if options.seeds is not None else ()))
-    setup.factory.require_worlds(*worlds)
-    require_metric(setup.factory, task, worlds)
+    require_places(setup.factory, task, worlds)
     require_actions(task, setup.robot)
     if options.seeds is None:
         _one_seed(setup, options, out)
@@ -116,16 +117,16 @@ def _one_seed(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
         archive_existing(file)
         forget_result(out, task.name, options.seed)
 
-    async def run(report: Report) -> CurriculumResult:
-        result, _ = await run_lesson(setup.factory, setup.robot, task, file, seed=options.seed, report=report)
-        return CurriculumResult(result, ())
+    async def run(report: Report) -> LessonCounts:
+        given = await run_lesson(setup.factory, setup.robot, task, file, seed=options.seed, report=report)
+        return given.result.counts
 
     with job_bars() as report:
-        result = anyio.run(run, report)
+        lesson = anyio.run(run, report)
     if options.as_json:
-        print_json({**curriculum_as_data(seed_result(result), task), "knowledge": file})
+        print_json({**curriculum_as_data(lesson, (), task), "knowledge": file})
     else:
-        print_whole(console_of(), render_curriculum(result, task), f"knowledge  {file}")
+        print_whole(console_of(), as_rich(lesson_table(lesson, task)), f"knowledge  {file}")
 
 
 def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
@@ -135,7 +136,8 @@ def _many_seeds(setup: TrainSetup, options: TrainOptions, out: Path) -> None:
     with study_run(plan, parts, options):
         robots = read_results(plan)
     if options.as_json:
-        data = [curriculum_as_data(each, setup.task) for each in robots]
+        data = [curriculum_as_data(each.lesson, each.drives, setup.task) for each in robots]
         print_json({"task": setup.task.name, "teacher": setup.task.teaching.profile.name, "robots": data})
     else:
-        print_whole(console_of(), render_seeds(robots, setup.task))
+        tables = seeds_tables([(each.lesson, each.drives) for each in robots], setup.task)
+        print_whole(console_of(), *map(as_rich, tables))

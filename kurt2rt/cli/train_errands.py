@@ -37,7 +37,7 @@ def errands(setup: TrainSetup, options: TrainOptions) -> None:
         raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
     task, out = setup.task, options.out or ERRANDS
     parts = setup.parts(out)
-    plan = make_plan(task, options.all_seeds, parts, basic_folder=options.basic, controls=options.baselines)
+    plan = make_plan(task, options.all_seeds, parts, basic_folder=options.basic)
     with study_run(plan, parts, options) as bar:
         bar.say("pictures")
         outcomes = [job.results.read(job, ErrandsOutcome) for job in plan.of(NavigationJob)]

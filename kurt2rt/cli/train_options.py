@@ -72,13 +72,6 @@ class TrainOptions(EngineOptions):
             "train --task streets leaves them. Without it the streets are taught first."
         ),
     ] = None
-    baselines: Annotated[
-        bool,
-        typer.Option(
-            "--baselines",
-            help="Route with --seeds, and errands: also run other methods, to compare.",
-        ),
-    ] = False
 
     @property
     def all_seeds(self) -> Sequence[int]:

@@ -12,7 +12,6 @@ from kurt2rt.cli.train_options import ROUTES, TrainOptions, TrainSetup
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteOutcome, make_plan
-from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.experiments.study.targets import reasons_against_judging
 from kurt2rt.knowledge.files.archive_existing import archive_existing
@@ -27,7 +26,7 @@ def teaches_route(task: TaskSettings) -> bool:
 
 def require_no_route_options(task: TaskSettings, options: TrainOptions) -> None:
     """Raise typer.BadParameter if the options include one that only a task with a route has."""
-    of_a_route = {"--decisions": options.decisions, "--basic": options.basic, "--baselines": options.baselines}
+    of_a_route = {"--decisions": options.decisions, "--basic": options.basic}
     for name, value in of_a_route.items():
         if value:
             raise typer.BadParameter(f"task {task.name} teaches no route; leave it out", param_hint=name)
@@ -47,10 +46,10 @@ def one_route(setup: TrainSetup, options: TrainOptions) -> None:
     from kurt2rt.experiments.route.tables import robot_table
 
     given = tuple(options.decisions or ())
-    if len(given) > 1 or options.baselines:
+    if len(given) > 1:
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
     out = options.out or ROUTES
-    plan = make_plan(setup.task, (options.seed,), given, (TAUGHT,), setup.parts(out), basic_folder=options.basic)
+    plan = make_plan(setup.task, (options.seed,), given, setup.parts(out), basic_folder=options.basic)
     (job,), task = plan.of(RouteJob), plan.of(RouteJob)[0].task
     out.mkdir(parents=True, exist_ok=True)
     stem = f"{task.name}-{job.decisions}-{job.seed}"
@@ -91,10 +90,7 @@ def many_routes(setup: TrainSetup, options: TrainOptions) -> None:
     from kurt2rt.experiments.route.tables import all_tables, read_study, write_routes
 
     parts = setup.parts(options.out or ROUTES)
-    variants = (TAUGHT, *(CONTROLS if options.baselines else ()))
-    plan = make_plan(
-        setup.task, options.all_seeds, options.decisions or (), variants, parts, basic_folder=options.basic
-    )
+    plan = make_plan(setup.task, options.all_seeds, options.decisions or (), parts, basic_folder=options.basic)
     with study_run(plan, parts, options) as bar:
         bar.say("pictures and report")
         study, folder = read_study(plan), parts["results"].folder

@@ -21,7 +21,7 @@ from kurt2rt.cli.study_run import EngineOptions, job_parts, study_run
 from kurt2rt.cli.tables import print_study
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import taught_by_named
-from kurt2rt.experiments.transfer.study import AFTER, CONTROLS, NewWorlds, make_plan, taught_on_by
+from kurt2rt.experiments.transfer.study import AFTER, NewWorlds, make_plan
 
 _WORLDS = {"streets": "streets-SEED"}
 """New world of a task without --world; rooms-SEED for other tasks."""
@@ -67,13 +67,6 @@ class _Options(EngineOptions):
             show_default=False,
         ),
     ] = None
-    baselines: Annotated[
-        bool,
-        typer.Option(
-            "--baselines",
-            help="Also teach by answers alone, and teach robots in the new world that know nothing from home.",
-        ),
-    ] = False
     changes: Changes = None
     out: Annotated[Path, results_option("results/transfer")] = Path("results/transfer")
     robot_settings: RobotName = None
@@ -90,9 +83,9 @@ def transfer(options: _Options) -> None:
     policy's own drive from the same start is the measure. The result is a curve:
     the share of robots that are right, by presses.
 
-    For example, other rooms for each robot, with baselines; and other streets:
+    For example, other rooms for each robot; and other streets:
 
-        kurt2rt study transfer --baselines
+        kurt2rt study transfer
         kurt2rt study transfer --task streets --teacher superhuman
 
     Results are kept in --out, so an interrupted run goes on where it was.
@@ -106,9 +99,8 @@ def transfer(options: _Options) -> None:
     places = options.world or [_WORLDS.get(shipped.name, "rooms-SEED")]
     plan = make_plan(
         taught_by_named(shipped, options.teacher),
-        NewWorlds(tuple(places), tuple(sorted(set(options.checkpoint or AFTER))), options.seconds),
+        NewWorlds(tuple(places), tuple(sorted(set(options.checkpoint or AFTER))), options.seconds, options.there),
         parse_seeds(options.seeds),
-        (taught_on_by(options.there), *(CONTROLS if options.baselines else ())),
         parts,
         engine=options.requested_engine(),
     )

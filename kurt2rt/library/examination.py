@@ -10,8 +10,8 @@ from hal.robot_settings import load_robot
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
-from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
-from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.lockstep.curriculum import run_exams
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.library.blocking import run_blocking
 from kurt2rt.library.knowledge import Knowledge
 from kurt2rt.library.simulation import open_factory
@@ -26,27 +26,27 @@ _COLUMNS = ("world", "seed", "progress", "teacher's", "collisions", "verdict")
 class Examination:
     """Drives of an examination, each with the drive of the teacher's own policy from the same start."""
 
-    drives: tuple[WorldResult, ...]
+    drives: tuple[DriveRow, ...]
     factory: SimulationFactory
     """Draws the worlds."""
 
     @property
     def passed(self) -> int:
         """Number of drives that passed."""
-        return sum(drive.succeeded for drive in self.drives)
+        return sum(drive.passed for drive in self.drives)
 
     @property
     def judged(self) -> int:
         """Number of drives that were judged; where the teacher's policy gets nowhere, none is."""
-        return sum(drive.verdict is not ExamVerdict.NOT_JUDGED for drive in self.drives)
+        return sum(drive.judged for drive in self.drives)
 
     def plot(self) -> "Figure":
         """Return a figure of the first drive from above, with the places of unknown situations."""
         # Late import: matplotlib is an extra that a robot does not need.
         from kurt2rt.library.figures import drive_figure
 
-        drive = self.drives[0].learned
-        return drive_figure(self.factory, drive.world, drive.trail, drive.unknown_positions)
+        drive = self.drives[0]
+        return drive_figure(self.factory, drive.world, drive.trail, drive.asked_at)
 
     def __repr__(self) -> str:
         """Return a line for each drive, and the number that passed."""
@@ -62,12 +62,12 @@ class Examination:
     def _rows(self) -> list[tuple[str, ...]]:
         return [
             (
-                drive.learned.world,
-                str(drive.learned.seed),
-                f"{drive.learned.progress:.1f} {drive.learned.unit}",
-                f"{drive.teacher.progress:.1f} {drive.teacher.unit}",
-                str(drive.learned.collisions),
-                EXAM_VERDICT_TEXTS[drive.verdict],
+                drive.world,
+                str(drive.seed),
+                f"{drive.progress:.1f} {drive.unit}",
+                "" if drive.teacher is None else f"{drive.teacher.progress:.1f} {drive.teacher.unit}",
+                str(drive.collisions),
+                drive.verdict.text,
             )
             for drive in self.drives
         ]
@@ -102,8 +102,8 @@ def examine(
     factory.require_worlds(*wanted)
     require_metric(factory, task, wanted)
 
-    async def drive() -> tuple[WorldResult, ...]:
-        found: list[WorldResult] = []
+    async def drive() -> tuple[DriveRow, ...]:
+        found: list[DriveRow] = []
         for seed in seeds:
             found += await run_exams(
                 factory,

@@ -211,7 +211,6 @@ class RobotBatch:
             first_collision=int(record["first_collision"]),
             stuck=bool(record["stuck"]),
             travelled_m=float(record["travelled_m"]),
-            pose=Pose(*(float(record[name]) for name in Pose._fields)),
         )
 
     def command(self, robot: int, action: int) -> None:

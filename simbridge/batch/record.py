@@ -8,7 +8,7 @@ from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from hal.batch import TRACED_TICKS
+from hal.batch import MOST_KEPT, TRACED_TICKS
 from hal.open_question import question_ticks
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Floats, Integers, StuckLaw
@@ -31,8 +31,6 @@ SEEN = 15
 """Sensors that policies look at."""
 CANDIDATES = 16
 """RLAs that a search for the nearest one keeps."""
-MOST_KEPT = 256
-"""Most positions that the rule of being stuck keeps."""
 BOX_STATE = len(BodyState._fields)
 SLIP_AHEAD, NOISE_AHEAD = 2 * STRETCH, 8 * STRETCH
 """Random numbers that lie ahead of a robot at the begin of a stretch: of slip, of its sensors."""
@@ -221,9 +219,6 @@ class Robot:
     """Ticks for which the last question stays open; 0: none is (hal.open_question)."""
     first_question: int
     first_collision: int
-    mark_x_m: float
-    """Position from which the next part of the distance is measured."""
-    mark_y_m: float
     travelled_m: float
     stuck: int
     """1 if the robot is stuck, which ends its drive."""
@@ -283,8 +278,6 @@ def empty_robots(count: int, sizes: Sizes) -> Robots:
     return np.zeros(count, dtype=fields).view(np.recarray)
 
 
-TRAIL_TICKS = 10
-"""Ticks between two positions of the travelled distance."""
 _question_ticks = compiled(question_ticks)
 
 
@@ -302,11 +295,8 @@ def count_tick(robot: Robot, law: StuckLaw) -> None:
             robot.first_question = robot.tick
     if robot.collisions > 0 and robot.first_collision == 0:
         robot.first_collision = robot.tick
-    if robot.tick % TRAIL_TICKS == 0:
-        if robot.tick > TRAIL_TICKS:
-            dx, dy = robot.x_m - robot.mark_x_m, robot.y_m - robot.mark_y_m
-            robot.travelled_m += math.sqrt(dx * dx + dy * dy)
-        robot.mark_x_m, robot.mark_y_m = robot.x_m, robot.y_m
+    dx, dy = robot.x_m - robot.last_x_m, robot.y_m - robot.last_y_m
+    robot.travelled_m += math.sqrt(dx * dx + dy * dy)
     if law.positions > 0 and (robot.tick - robot.kept_since) % law.every_ticks == 0:
         robot.stuck = _stays(robot, law)
 

@@ -25,7 +25,7 @@ from hal.robot import HIGHEST_COUNTS
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.matching import LANES
 from simbridge.batch.minds import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
-from simbridge.batch.record import MOST_KEPT, MOST_VALUES
+from simbridge.batch.record import MOST_VALUES
 from simbridge.simulated_kurt2 import SimulatedKurt2
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}
@@ -58,11 +58,6 @@ def require_known(
         raise BatchRefusedError(f"speed mode {robot.can.speed_mode}: the batch knows SPEED_CM", do=ON_THE_BUS)
     if any(each.time_s for each in simulated):
         raise BatchRefusedError("a robot has driven already", do="open a fresh simulation")
-    if settings.stuck is not None and settings.stuck.positions > MOST_KEPT:
-        raise BatchRefusedError(
-            f"being stuck is judged by {settings.stuck.positions} positions (a batch keeps {MOST_KEPT} at most)",
-            do=ON_THE_BUS,
-        )
     policies = {mind.policy for mind in minds if isinstance(mind, PolicyMind)}
     for policy in policies:
         if type(policy) not in _POLICIES:

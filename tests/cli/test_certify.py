@@ -19,7 +19,7 @@ def test_certificate_names_runs_that_exam_repeats(kurt2rt: CommandLine, lessons:
     page = Path(found["report"]).read_text(encoding="utf-8")
     assert "--runs 3 --seconds 1 --world c --first-seed 20000" in page
     for worst in found["worst"]:
-        assert Path(f"made/run-{worst['number']}.png").is_file()
+        assert Path(f"made/run-{worst['seed']}.png").is_file()
         again = json.loads(kurt2rt(*worst["command"].split()[1:], "--json").out)
         (exam,) = again["exams"]
         assert exam["learned"]["collisions"] == worst["collisions"]
@@ -30,7 +30,7 @@ def test_certificate_goes_on_with_what_is_missing(kurt2rt: CommandLine, lessons:
     whole = kurt2rt("study", "certify", lessons, *SHORT)
     assert "Probability within 1 s of wall_following" in whole.out
     assert "report  made/report.html" in whole.out
-    gone, *others = sorted(Path("made/results").glob("witness-*.json"))
+    gone, *others = sorted(Path("made/results").glob("witnesses/runs-*.json"))
     others += Path("made/results").glob("runs-*.json")
     before = gone.read_bytes(), [path.stat().st_mtime_ns for path in others]
     gone.unlink()

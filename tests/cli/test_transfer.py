@@ -22,7 +22,7 @@ def test_robots_are_taught_on_once_and_reported(kurt2rt: CommandLine) -> None:
     assert set(document) == {"tables", "not_judged", "figure"}
     assert [row[:2] for row in document["tables"][-1]["rows"]] == [["1100", "rooms-1100"], ["1101", "rooms-1101"]]
     assert Path(document["figure"]).is_file()
-    kept = Path("made/results/taught-on/rooms-SEED/wall_following-1100.json")
+    kept = Path("made/results/rooms-SEED/wall_following-1100.json")
     before = kept.stat().st_mtime_ns
     said = kurt2rt(*words)
     assert said.exit_code == 0, said.err

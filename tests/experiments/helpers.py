@@ -9,9 +9,9 @@ import anyio
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from simbridge.simulation import Kurt2SimulationFactory
@@ -70,13 +70,13 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
     return Taught(task, knowledge, result, events, saved, reported_s)
 
 
-def teachers_drive(task: TaskSettings) -> ExamResult:
+def teachers_drive(task: TaskSettings) -> DriveRow:
     """Return the exam result of the teacher's own policy in the exam's first world."""
     setup = ExamSetup(task.exam.worlds[0], 1, teacher_policy=True)
-    return exam_on_bus(task, BatchExam(setup))
+    return exam_on_bus(task, setup)
 
 
-def exam_on_bus(task: TaskSettings, exam: BatchExam) -> ExamResult:
+def exam_on_bus(task: TaskSettings, setup: ExamSetup) -> DriveRow:
     """Return the result of an exam on the CAN bus."""
-    with closing(STAGE.open(exam.setup.world, exam.setup.seed, "exam")) as simulation:
-        return anyio.run(examine, simulation, ROBOT, task, exam.events, exam.setup, lambda _: None)
+    with closing(STAGE.open(setup.world, setup.seed, "exam")) as simulation:
+        return anyio.run(examine, simulation, ROBOT, task, setup, lambda _: None)

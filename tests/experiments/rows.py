@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.seed_result import LessonCounts
-from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.core.task_settings import SuccessSettings
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict
+from kurt2rt.experiments.lockstep.lesson import LessonCounts
 from kurt2rt.experiments.study.provenance import Provenance
 
 MADE_OF = Provenance(task="t", robot="r", worlds="w", source="s", versions="Python 3")
@@ -15,6 +15,7 @@ def row(world: str = "a", verdict: ExamVerdict = PASSED, **more: Any) -> DriveRo
     """Return a drive of 300 s and 8 laps without a fault, but for `more`."""
     fields: dict[str, Any] = {
         "world": world,
+        "seed": 1,
         "verdict": verdict,
         "duration_s": 300.0,
         "unit": "laps",
@@ -29,6 +30,12 @@ def row(world: str = "a", verdict: ExamVerdict = PASSED, **more: Any) -> DriveRo
         "trail": ((1.0, 1.0), (1.1, 1.0), (1.2, 1.1)),
     }
     return DriveRow.model_validate({**fields, **more})
+
+
+def judged(teachers_laps: float = 9.0, **more: Any) -> DriveRow:
+    """Return a drive of 8 laps, but for `more`, with its verdict by the teacher's own drive."""
+    drive = row(**more).judged_by(teachers_laps, SuccessSettings())
+    return drive.model_copy(update={"teacher": row(drive.world, progress=teachers_laps)})
 
 
 def lesson(seed: int, **more: Any) -> LessonCounts:

@@ -13,7 +13,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.cli import exam_process
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.exam_verdict import NOT_JUDGED_BECAUSE
+from kurt2rt.experiments.lockstep.drive_row import NOT_JUDGED_BECAUSE
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.service.live_exam import LiveExam

@@ -113,7 +113,7 @@ def test_simulated_robot_bad_input_is_one_clear_error(robot: kurt2rt.SimulatedRo
 async def test_examine_works_where_an_event_loop_runs(robot: kurt2rt.SimulatedRobot, tmp_path: Path) -> None:
     robot.teach("forward")
     result = kurt2rt.examine(robot.save(tmp_path / "one.knowledge"), worlds=["a"], seeds=[1, 2], seconds=2)
-    assert [drive.learned.seed for drive in result.drives] == [1, 2]
+    assert [drive.seed for drive in result.drives] == [1, 2]
     assert repr(result).endswith(f"{result.passed} of {result.judged} judged drives passed")
     assert result._repr_html_().count("<tr>") == 3
 

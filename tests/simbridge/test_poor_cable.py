@@ -74,7 +74,7 @@ async def policy_drives(open_line: Callable[[], CanLine], seed: int = 1, seconds
     task = load_task("wall_following")
     task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
     with closing(Kurt2Simulation(ROBOT, world, seed, "exam", open_line=open_line)) as simulation:
-        result = await examine(simulation, ROBOT, task, [], ExamSetup(world, seed, teacher_policy=True), lambda _: None)
+        result = await examine(simulation, ROBOT, task, ExamSetup(world, seed, teacher_policy=True), lambda _: None)
         assert simulation.robot.health.latched is None
         assert (result.collisions, result.stuck) == (0, False)
         return simulation.simulated_robot.state_hash()

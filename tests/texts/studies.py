@@ -1,23 +1,22 @@
 """Listings of the sentences below the tables of lessons, exams and studies."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
-from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
-from kurt2rt.experiments.lockstep.report import verdict_of
+from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
 from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
 from kurt2rt.experiments.paper.tables import paper_targets_table
 from kurt2rt.experiments.phases.steps import ASKS
 from kurt2rt.experiments.phases.tables import phases_targets_table, words_of_controls
 from kurt2rt.experiments.route.tables import all_tables as route_tables
+from kurt2rt.experiments.study.exam_tables import verdict_text
 from kurt2rt.experiments.study.targets import reasons_against_judging
 from kurt2rt.experiments.transfer.tables import all_tables as transfer_tables
 from tests.experiments.navigation import test_tables as navigation
 from tests.experiments.navigation.test_goals import settings
 from tests.experiments.paper import test_tables as paper
 from tests.experiments.phases.outcomes import exam, stage, study, teaching
-from tests.experiments.results import exam_result, world_result
 from tests.experiments.route import test_tables as route
+from tests.experiments.rows import judged, row
 from tests.experiments.transfer import test_tables as transfer
 
 
@@ -30,7 +29,7 @@ def targets() -> Iterator[tuple[str, str]]:
         ("paper", paper_targets_table([streets, walls], "targets")),
         ("phases", phases_targets_table(study(2), [])),
         ("route", next(route_tables(route.study([route.outcome(seed) for seed in range(100, 120)])))),
-        ("errands", next(navigation_tables([navigation.robot(1, navigation.GOOD)], settings()))),
+        ("errands", next(navigation_tables([navigation.robot(1, *navigation.GOOD)], settings()))),
         ("transfer", next(transfer_tables(transfer.robots(*[transfer.RIGHT_AT_ONCE] * 20)))),
     ):
         yield from ((f"{label} {number}", " | ".join(row)) for number, row in enumerate(table.rows, 1))
@@ -38,7 +37,7 @@ def targets() -> Iterator[tuple[str, str]]:
 
 def results() -> Iterator[tuple[str, str]]:
     """Yield the texts of verdicts on exams."""
-    yield from ((f"exam {verdict}", EXAM_VERDICT_TEXTS[verdict]) for verdict in ExamVerdict)
+    yield from ((f"exam {verdict}", verdict.text) for verdict in ExamVerdict)
 
 
 def reasons() -> Iterator[tuple[str, str]]:
@@ -49,16 +48,16 @@ def reasons() -> Iterator[tuple[str, str]]:
 
 def exams() -> Iterator[tuple[str, str]]:
     """Yield the line of an exam."""
-    good = world_result(exam_result())
+    good, stuck = judged(), {"stuck": True, "duration_s": 123.0}
     for label, result in (
         ("passed", good),
-        ("one collision", world_result(exam_result(collisions=1))),
-        ("stuck", world_result(exam_result(collisions=2, stuck=True))),
-        ("alarm", replace(good, learned=replace(good.learned, alarm="bus lost"))),
-        ("teacher failed", replace(good, teacher=replace(good.teacher, stuck=True))),
-        ("not judged", world_result(exam_result(), teachers_laps=0.0)),
+        ("one collision", judged(collisions=1)),
+        ("stuck", judged(collisions=2, **stuck)),
+        ("alarm", good.model_copy(update={"alarm": "bus lost"})),
+        ("teacher failed", good.model_copy(update={"teacher": row(progress=9.0, stuck=True)})),
+        ("not judged", judged(0.0)),
     ):
-        yield label, verdict_of(result)
+        yield label, verdict_text(result)
 
 
 def controls() -> Iterator[tuple[str, str]]:

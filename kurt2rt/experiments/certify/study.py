@@ -1,22 +1,26 @@
-"""Certificate: blocks of runs in a batch, witnesses that the CAN bus drives as well, and the outcomes of all runs."""
+"""Certificate: runs of one taught robot in blocks, and witnesses that batch and CAN bus drive."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+import random
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-import anyio
-
-from hal.batch import BatchFactory, BatchRefusedError
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.certify.drives import Subject, drive_in_batch, drive_on_bus, opened_batch
-from kurt2rt.experiments.certify.run import ALL_WORK, BrokenShare, Run, RunOutcome, draw_runs
-from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine, choose_witnesses
-from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.engine import (
+    ON_BUS,
+    BatchDiffersError,
+    Engine,
+    Engines,
+    choose_witnesses,
+)
+from kurt2rt.experiments.lockstep.exam import ExamSetup
+from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, parse_break
+from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import SEED, JobParts, Outcome, StudyJob, require_places, world_of
-from kurt2rt.experiments.study.pool import PoolProgress, Progress, run_jobs
 from kurt2rt.experiments.study.provenance import Fingerprints, settings_hash
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -28,102 +32,78 @@ _MOST_ROBOT_S = 60_000.0
 """Limits of a job in the batch, which keeps the set points of all its runs: 24 MB."""
 
 
+class BrokenShare(NamedTuple):
+    """Share of the runs with a broken sensor, and the sensors that may break."""
+
+    share: float
+    """0 to 1."""
+    sensors: tuple[str, ...]
+    """Names, such as s15."""
+
+
+ALL_WORK = BrokenShare(0.0, ())
+
+
+class Run(NamedTuple):
+    """One drive without a teacher, repeated by `kurt2rt exam --seed NUMBER --world WORLD`."""
+
+    number: int
+    """Seed of the robot, its noise, its start and the choice of the world."""
+    place: str
+    """Kind of world, with SEED where each run has a world of its own."""
+    broken: str = ""
+    """Sensor that breaks and the way in which, such as s15=low; empty: all work."""
+
+    @property
+    def world(self) -> str:
+        """Name of the world."""
+        return world_of(self.place, self.number)
+
+
+def draw_runs(first: int, count: int, places: Sequence[str], broken: BrokenShare = ALL_WORK) -> list[Run]:
+    """Return the runs of the numbers from `first` on; each place is equally likely for each run."""
+    return [
+        Run(number, random.Random(f"world of run {number}").choice(places), _draw_break(number, broken))
+        for number in range(first, first + count)
+    ]
+
+
+def _draw_break(number: int, broken: BrokenShare) -> str:
+    chance = random.Random(f"broken sensor of run {number}")
+    if chance.random() >= broken.share:
+        return ""
+    return f"{chance.choice(broken.sensors)}={chance.choice(list(FaultKind))}"
+
+
 class BlockOutcome(Outcome):
-    """Outcomes of the runs of one job, in order."""
+    """Drives of the runs of one job, in order."""
 
-    runs: tuple[RunOutcome, ...]
-    on_bus: tuple[int, ...] = ()
-    """Numbers of the runs that the CAN bus drove alone, such as those with a broken sensor."""
-
-
-class WitnessOutcome(Outcome):
-    """Run that the batch and the CAN bus drove, with equal results."""
-
-    run: RunOutcome
-    compared: bool
-    """False if the run left the batch, so that there was nothing to compare."""
+    drives: tuple[DriveRow, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DriveJob(StudyJob):
-    """Runs of one knowledge file, which the first of their numbers is the seed of."""
+class BlockJob(StudyJob):
+    """Runs that one process drives, at once in a batch; the job's seed is the first of their numbers."""
 
+    outcome = BlockOutcome
     keeps_knowledge: ClassVar[bool] = False
     taught: Path
     """File with the lessons of the robot."""
-
-    def subject(self) -> Subject:
-        """Return the taught robot. Raises KnowledgeError."""
-        return Subject(self.robot, self.task, read_lessons(self.taught, self.robot, self.task))
-
-    def drive_in_batch(self, subject: Subject, runs: Sequence[Run], tell: Progress) -> list[RunOutcome | None]:
-        """Drive runs in a batch; `tell` gets their progress in s.
-
-        Raises BatchRefusedError, and all that `drives.drive_in_batch` raises.
-        """
-        if not isinstance(self.factory, BatchFactory):
-            raise BatchRefusedError("this simulation has no batch", do="give --engine can")
-        return drive_in_batch(self.factory, subject, runs, lambda done_s: tell(done_s / BATCH_GAIN))
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BlockJob(DriveJob):
-    """Runs that one process drives at once."""
-
-    outcome = BlockOutcome
     runs: tuple[Run, ...]
-    engine: Engine
+    places: bool = False
+    """True if the drives are stored with the places of pictures."""
 
     async def measure(self, knowledge: Path, report: Report) -> BlockOutcome:  # noqa: ARG002 - nothing is taught
-        """Drive all runs and return their outcomes; those that leave the batch are driven on the CAN bus."""
-
-        def tell(done_s: float) -> None:
-            report(self.name, done_s, self.robot_time_s)
-
-        subject = self.subject()
-        working = [run for run in self.runs if not run.broken]
-        in_batch = self.drive_in_batch(subject, working, tell) if working and self.engine is Engine.COMPILED else []
-        finished = {each.number: each for each in in_batch if each}
-        left = [run for run in self.runs if run.number not in finished]
-        for run in left:
-            finished[run.number], _ = await drive_on_bus(self.factory, subject, run, tell)
-        return BlockOutcome(
-            made_of=self.made_of,
-            seed=self.seed,
-            runs=tuple(finished[run.number] for run in self.runs),
-            on_bus=tuple(run.number for run in left),
-        )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WitnessJob(DriveJob):
-    """Run that is driven in a batch and on the CAN bus, which must agree."""
-
-    outcome = WitnessOutcome
-    witness: Run
-
-    async def measure(self, knowledge: Path, report: Report) -> WitnessOutcome:  # noqa: ARG002 - nothing is taught
-        """Drive the run twice, compare, and return the outcome. Raises BatchDiffersError where the outcomes differ."""
-
-        def tell(done_s: float) -> None:
-            report(self.name, done_s, self.robot_time_s)
-
-        subject = self.subject()
-        (in_batch,) = self.drive_in_batch(subject, [self.witness], lambda _: None)
-        on_bus, _ = await drive_on_bus(self.factory, subject, self.witness, tell)
-        if in_batch is not None:
-            require_equal(in_batch, on_bus)
-        return WitnessOutcome(made_of=self.made_of, seed=self.seed, run=on_bus, compared=in_batch is not None)
-
-
-def require_equal(batch: RunOutcome, bus: RunOutcome) -> None:
-    """Check that a run in the batch had the outcome of the CAN bus. Raises BatchDiffersError."""
-    if differing := batch.differing(bus):
-        raise BatchDiffersError(
-            f"the batch and the CAN bus differ in {', '.join(differing)}; all results of the batch are refused",
-            where=f"run {bus.number} in world {bus.world}",
-            do="report it, and give --engine can and a new folder with --out",
-        )
+        """Drive all runs and return the outcome."""
+        events, infrared = read_lessons(self.taught, self.robot, self.task), self.robot.infrared
+        setups = []
+        for run in self.runs:
+            broken = parse_break(run.broken, infrared) if run.broken else None
+            setups.append(ExamSetup(run.world, run.number, events=events, broken=broken))
+        engine = self.engines.exams
+        drives = await run_drives(self.factory, self.robot, self.task, setups, report, engine, measured=False)
+        stored = tuple(each.stored(places=self.places) for each in drives)
+        return BlockOutcome(made_of=self.made_of, seed=self.seed, drives=stored)
 
 
 class Extent(NamedTuple):
@@ -138,24 +118,6 @@ class Extent(NamedTuple):
     broken: BrokenShare = ALL_WORK
 
 
-def find_refusal(task: TaskSettings, knowledge: Path, run: Run, parts: JobParts) -> str:
-    """Return why a batch cannot drive a robot with this knowledge in a run; empty if it can.
-
-    Raises:
-        KnowledgeError: the knowledge file cannot be read.
-        hal.settings.SettingsError: task and world do not fit.
-    """
-    factory, robot = parts["factory"], parts["robot"]
-    if not isinstance(factory, BatchFactory):
-        return "this simulation has no batch"
-    subject = Subject(robot, task, read_lessons(knowledge, robot, task))
-    try:
-        with opened_batch(factory, subject, [run]):
-            return ""
-    except BatchRefusedError as error:
-        return str(error)
-
-
 class Certified(NamedTuple):
     """Task that is certified, and its runs."""
 
@@ -166,15 +128,16 @@ class Certified(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Plan and outcomes."""
+    """Plan and drives."""
 
     plan: StudyPlan[Certified]
-    outcomes: tuple[RunOutcome, ...]
+    drives: tuple[DriveRow, ...]
     """One for each run of the plan, in order."""
-    on_bus: frozenset[int]
-    """Numbers of the runs that only the CAN bus drove."""
-    compared: int
-    """Runs that the batch and the CAN bus drove with equal outcomes."""
+
+    @property
+    def compared(self) -> int:
+        """Number of runs that the batch and the CAN bus drove, with equal results."""
+        return len(self.plan.of(BusWitnessJob))
 
 
 def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobParts) -> StudyPlan[Certified]:
@@ -199,116 +162,64 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
     # A generated world follows from its name and the source: all of them need not be built here.
     worlds, taught = [place for place in extent.places if SEED not in place], settings_hash(repr(lessons))
 
-    def block(part: tuple[Run, ...]) -> BlockJob:
-        first, last, in_batch = part[0].number, part[-1].number, 0
-        if extent.engine is Engine.COMPILED:
-            in_batch = sum(not run.broken for run in part)
+    def block(part: Sequence[Run], engine: Engine, gain: float = 1.0) -> BlockJob:
+        first, last = part[0].number, part[-1].number
         return BlockJob(
             **parts,
             task=task,
             seed=first,
-            made_of=fingerprints.of(task, worlds, taught, repr((part, extent.engine))),
-            name=f"runs {first} to {last}",
+            made_of=fingerprints.of(task, worlds, taught, repr(tuple(part))),
+            name=f"run {first} in world {part[0].world}" if first == last else f"runs {first} to {last}",
             stem=f"runs-{first}-{last}",
-            robot_time_s=task.exam.duration_s * (len(part) - in_batch + in_batch / BATCH_GAIN),
+            robot_time_s=task.exam.duration_s * len(part) / gain,
+            engines=Engines(exams=engine),
             wave=1,
             taught=knowledge,
-            runs=part,
-            engine=extent.engine,
+            runs=tuple(part),
         )
 
-    def witness(run: Run) -> WitnessJob:
-        return WitnessJob(
-            **parts,
-            task=task,
-            seed=run.number,
-            made_of=fingerprints.of(task, worlds, taught, repr(run)),
-            name=f"run {run.number} on the CAN bus",
-            stem=f"witness-{run.number}",
-            robot_time_s=task.exam.duration_s,
-            taught=knowledge,
-            witness=run,
-        )
-
-    step, witnesses = 1, list[Run]()
-    if extent.engine is Engine.COMPILED:
-        step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s)))
-        working = [run for run in runs if not run.broken]  # the CAN bus alone drives the others
-        witnesses = choose_witnesses(working, f"{len(runs)} runs from {extent.first}")
-    blocks = (runs[begin : begin + step] for begin in range(0, len(runs), step))
-    jobs = (*map(witness, witnesses), *map(block, blocks))
-    return StudyPlan(Certified(task, extent, runs), tuple(run.number for run in runs), jobs)
+    in_batch = [run for run in runs if extent.engine is Engine.COMPILED and not run.broken]
+    step = min(_MOST_RUNS, max(1, int(_MOST_ROBOT_S / task.exam.duration_s)))
+    blocks = [block(in_batch[at : at + step], Engine.COMPILED, BATCH_GAIN) for at in range(0, len(in_batch), step)]
+    alone = [block((run,), Engine.CAN) for run in runs if run.broken or extent.engine is Engine.CAN]
+    chosen = choose_witnesses(in_batch, f"{len(runs)} runs from {extent.first}")
+    witnesses = [BusWitnessJob.witness_of(replace(block((run,), Engine.COMPILED), wave=0)) for run in chosen]
+    numbers = tuple(run.number for run in runs)
+    return StudyPlan(Certified(task, extent, runs), numbers, (*witnesses, *blocks, *alone))
 
 
 def read_certificate(plan: StudyPlan[Certified]) -> Certificate:
-    """Read the results of all jobs of the plan.
+    """Read the results of all jobs of the plan. Raises StudyError if one is missing or damaged."""
+    outcomes = (job.results.read(job, BlockOutcome) for job in plan.of(BlockJob))
+    drives = {each.seed: each for outcome in outcomes for each in outcome.drives}
+    return Certificate(plan, tuple(drives[number] for number in plan.seeds))
 
-    Raises:
-        StudyError: a result is missing or damaged.
-        BatchDiffersError: the outcome of a witness is another one than that of its block.
+
+def picture_jobs(plan: StudyPlan[Certified], runs: Iterable[DriveRow]) -> list[BlockJob]:
+    """Return a job for each of these runs, which drives it again on the CAN bus, for the places of its picture."""
+    by_number = {run.number: (job, run) for job in plan.of(BlockJob) for run in job.runs}
+    jobs = []
+    for each in runs:
+        job, run = by_number[each.seed]
+        name, stem = f"picture of run {each.seed}", f"pictures/run-{each.seed}"
+        made = replace(job, seed=each.seed, name=name, stem=stem, robot_time_s=job.task.exam.duration_s)
+        jobs.append(replace(made, engines=ON_BUS, runs=(run,), places=True))
+    return jobs
+
+
+def read_pictures(jobs: Iterable[BlockJob], runs: Iterable[DriveRow]) -> list[DriveRow]:
+    """Return the drives of picture jobs, with their places.
+
+    `runs`: as they were driven before. Raises BatchDiffersError where the outcome is another one, StudyError.
     """
-    blocks = [job.results.read(job, BlockOutcome) for job in plan.of(BlockJob)]
-    witnesses = [job.results.read(job, WitnessOutcome) for job in plan.of(WitnessJob)]
-    outcomes = {each.number: each for block in blocks for each in block.runs}
-    for each in witnesses:
-        require_equal(outcomes[each.run.number], each.run)
-    return Certificate(
-        plan,
-        tuple(outcomes.values()),
-        frozenset(number for block in blocks for number in block.on_bus),
-        sum(each.compared for each in witnesses),
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PictureJob:
-    """Run of a block that the CAN bus drives again for its trail."""
-
-    block: BlockJob
-    expected: RunOutcome
-    """Outcome of the same run before."""
-    again: Run
-
-    @property
-    def name(self) -> str:
-        """Name in progress displays."""
-        return f"picture of run {self.again.number}"
-
-    @property
-    def robot_time_s(self) -> float:
-        """Simulated time in s."""
-        return self.block.task.exam.duration_s
-
-    def run(self, tell: Progress) -> ExamResult:
-        """Drive and return the result; `tell` gets the progress in s.
-
-        Raises BatchDiffersError where the outcome is another one than before; else as `drives.drive_on_bus`.
-        """
-        block = self.block
-        outcome, exam = anyio.run(drive_on_bus, block.factory, block.subject(), self.again, tell)
-        require_equal(self.expected, outcome)
-        return exam
-
-
-def drive_again(
-    plan: StudyPlan[Certified],
-    runs: Sequence[RunOutcome],
-    processes: int,
-    on_progress: Callable[[PoolProgress], None],
-) -> list[ExamResult]:
-    """Drive runs of the plan on the CAN bus and return their results, with trails, in order.
-
-    Args:
-        plan: of the certificate.
-        runs: outcomes of the runs.
-        processes: number of processes.
-        on_progress: called with the progress of all runs.
-
-    Raises:
-        BatchDiffersError: the outcome of a run is another one than before.
-        JobKilledError: a process was killed.
-    """
-    by_number = {run.number: (block, run) for block in plan.of(BlockJob) for run in block.runs}
-    found = [(each, *by_number[each.number]) for each in runs]
-    jobs = [PictureJob(block=block, expected=each, again=run) for each, block, run in found]
-    return run_jobs(jobs, processes, on_progress=on_progress)
+    drives = []
+    for job, before in zip(jobs, runs, strict=True):
+        (again,) = job.results.read(job, BlockOutcome).drives
+        if again.stored() != before:
+            raise BatchDiffersError(
+                "the batch and the CAN bus differ; all results of the batch are refused",
+                where=f"run {before.seed} in world {before.world}",
+                do="report it, and give --engine can and a new folder with --out",
+            )
+        drives.append(again)
+    return drives

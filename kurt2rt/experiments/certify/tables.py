@@ -7,14 +7,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.certify.run import RunOutcome
-from kurt2rt.experiments.certify.study import Certificate
-from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.report import label_of, wilson_interval
-from kurt2rt.experiments.study.drive_row import row_of
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
-from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of
+from kurt2rt.experiments.certify.study import BlockJob, Certificate
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
+from kurt2rt.experiments.lockstep.engine import Engine
+from kurt2rt.experiments.lockstep.trails import legend_below
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
+from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.report import Section, write_report
 from kurt2rt.experiments.study.table import Table, collisions_text, table_of, to_text
 
@@ -64,31 +62,29 @@ def summarise(certificate: Certificate) -> Iterator[PlaceSummary]:
 
     Runs with a broken sensor have a summary of their own.
     """
-    plan = certificate.plan
-    period_s, extent = plan.jobs[0].robot.cycle_s, plan.about.extent
-    pairs = list(zip(plan.about.runs, certificate.outcomes, strict=True))
-    working = [(run.place, outcome) for run, outcome in pairs if not run.broken]
-    broken = [outcome for run, outcome in pairs if run.broken]
+    extent, runs = certificate.plan.about.extent, certificate.plan.about.runs
+    pairs = list(zip(runs, certificate.drives, strict=True))
+    working = [(run.place, drive) for run, drive in pairs if not run.broken]
+    broken = [drive for run, drive in pairs if run.broken]
     for place in extent.places:
-        if runs := [outcome for where, outcome in working if where == place]:
-            yield summarise_runs(place, runs, period_s)
+        if drives := [drive for where, drive in working if where == place]:
+            yield summarise_runs(place, drives)
     if len(extent.places) > 1 and working:
-        yield summarise_runs(ALL, [outcome for _, outcome in working], period_s)
+        yield summarise_runs(ALL, [drive for _, drive in working])
     if broken:
-        yield summarise_runs(BROKEN, broken, period_s)
+        yield summarise_runs(BROKEN, broken)
 
 
-def summarise_runs(place: str, runs: Sequence[RunOutcome], period_s: float) -> PlaceSummary:
-    """Return the summary of runs in one place; `period_s`: of a tick, in s."""
+def summarise_runs(place: str, runs: Sequence[DriveRow]) -> PlaceSummary:
+    """Return the summary of runs in one place."""
 
-    def share(happened: Callable[[RunOutcome], bool]) -> Share:
+    def share(happened: Callable[[DriveRow], bool]) -> Share:
         count = sum(map(happened, runs))
         return Share(count, count / len(runs), *wilson_interval(count, len(runs)))
 
-    hours = [each.ticks * period_s / 3600 for each in runs]
-    ticks = sum(each.ticks for each in runs)
+    hours, seconds = [each.duration_s / 3600 for each in runs], math.fsum(each.duration_s for each in runs)
     asked = share(lambda run: run.questions > 0)
-    until_asked = sum((each.first_question or each.ticks) * period_s / 3600 for each in runs)
+    until_asked = math.fsum((each.first_question_s or each.duration_s) / 3600 for each in runs)
     fewest, most = poisson_interval(asked.events)
     return PlaceSummary(
         place=place,
@@ -97,27 +93,31 @@ def summarise_runs(place: str, runs: Sequence[RunOutcome], period_s: float) -> P
         collided=share(lambda run: run.collisions > 0),
         stuck=share(lambda run: run.stuck),
         asked=asked,
-        stopped=share(lambda run: bool(run.stopped)),
-        clean=share(lambda run: run.clean),
+        stopped=share(lambda run: bool(run.alarm)),
+        clean=share(is_clean),
         collisions_per_hour=_clustered([each.collisions for each in runs], hours),
         first_questions_per_hour=Rate(asked.events / until_asked, fewest / until_asked, most / until_asked),
         questions_per_hour=_clustered([each.questions for each in runs], hours),
-        unknown_share=sum(each.unknown_ticks for each in runs) / ticks,
-        m_per_minute=sum(each.travelled_m for each in runs) / (ticks * period_s / 60),
+        unknown_share=math.fsum(each.share_unknown * each.duration_s for each in runs) / seconds,
+        m_per_minute=math.fsum(each.way_m for each in runs) / (seconds / 60),
     )
 
 
-def worst_runs(outcomes: Sequence[RunOutcome], count: int) -> list[RunOutcome]:
+def is_clean(run: DriveRow) -> bool:
+    """Return whether a run had no collision, no question and no early end."""
+    return not (run.failed or run.questions)
+
+
+def worst_runs(drives: Sequence[DriveRow], count: int) -> list[DriveRow]:
     """Return so many runs at most: those with most collisions, then those stopped, stuck or asking soonest.
 
     Runs without any of these are left out.
     """
 
-    def badness(run: RunOutcome) -> tuple[float, ...]:
-        ended = bool(run.stopped) or run.stuck
-        return -run.collisions, not ended, run.ticks, run.first_question or math.inf, run.number
+    def badness(run: DriveRow) -> tuple[float, ...]:
+        return -run.collisions, not run.ended_early, run.duration_s, run.first_question_s or math.inf, run.seed
 
-    return sorted((each for each in outcomes if not each.clean), key=badness)[:count]
+    return sorted((each for each in drives if not is_clean(each)), key=badness)[:count]
 
 
 def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
@@ -127,7 +127,7 @@ def _clustered(counts: Sequence[int], hours: Sequence[float]) -> Rate:
     return rate_of([sum(counts[i : i + size]) for i in starts], [sum(hours[i : i + size]) for i in starts])
 
 
-def all_tables(certificate: Certificate, worst: Sequence[RunOutcome]) -> Iterator[Table]:
+def all_tables(certificate: Certificate, worst: Sequence[DriveRow]) -> Iterator[Table]:
     """Yield all tables: probabilities, rates and, if there are any, the worst runs."""
     summaries = list(summarise(certificate))
     yield probability_table(certificate, summaries)
@@ -173,35 +173,35 @@ def rate_table(summaries: Sequence[PlaceSummary]) -> Table:
     )
 
 
-def worst_table(certificate: Certificate, worst: Sequence[RunOutcome]) -> Table:
+def worst_table(certificate: Certificate, worst: Sequence[DriveRow]) -> Table:
     """Return one row for each of the worst runs."""
-    period_s = certificate.plan.jobs[0].robot.cycle_s
+    broken = {run.number: run.broken for run in certificate.plan.about.runs}
 
-    def format_tick(tick: int) -> str:
-        return f"{tick * period_s:.1f}" if tick else ""
+    def format_time(time_s: float) -> str:
+        return f"{time_s:.1f}" if time_s else ""
 
     return table_of(
         "Worst runs",
         worst,
-        ("run", lambda each: each.number),
+        ("run", lambda each: each.seed),
         ("world", lambda each: label_of(each.world)),
-        ("broken sensor", lambda each: each.broken),
+        ("broken sensor", lambda each: broken[each.seed]),
         ("collisions", lambda each: each.collisions),
-        ("first after s", lambda each: format_tick(each.first_collision)),
-        ("first question after s", lambda each: format_tick(each.first_question)),
-        ("stuck after s", lambda each: format_tick(each.ticks if each.stuck else 0)),
-        ("stopped", lambda each: each.stopped),
+        ("first after s", lambda each: format_time(each.first_collision_s)),
+        ("first question after s", lambda each: format_time(each.first_question_s)),
+        ("stuck after s", lambda each: format_time(each.duration_s if each.stuck else 0.0)),
+        ("stopped", lambda each: each.alarm),
         words=3,
         note="Most collisions first. The number of a run is its seed.",
     )
 
 
 def _format_witnesses(certificate: Certificate) -> str:
-    """Return how many runs the batch and the CAN bus drove with equal outcomes, and how many the loop alone."""
-    alone = len(certificate.on_bus)
-    if alone == len(certificate.outcomes):
+    """Return how many runs the batch and the CAN bus drove with equal outcomes, and how many the bus alone."""
+    alone = sum(job.engines.exams is Engine.CAN for job in certificate.plan.of(BlockJob))
+    if alone == len(certificate.drives):
         return "All runs were driven on the CAN bus."
-    left = f"; {alone} with a broken sensor, or that left the batch, were driven there alone" if alone else ""
+    left = f"; {alone} with a broken sensor were driven there alone" if alone else ""
     return f"{certificate.compared} runs were driven on the CAN bus too, with equal results{left}."
 
 
@@ -216,22 +216,22 @@ def _format_share(share: Share) -> str:
 
 
 def draw_worst(
-    exams: Sequence[ExamResult], commands: Sequence[str], factory: SimulationFactory, folder: Path
+    drives: Sequence[DriveRow], commands: Sequence[str], factory: SimulationFactory, folder: Path
 ) -> Iterator[SavedFigure]:
     """Draw each run into the folder and yield it: run-NUMBER.png.
 
     `commands`: by which a user drives each run again. Raises OSError.
     """
-    for exam, command in zip(exams, commands, strict=True):
-        path, drive = folder / f"run-{exam.seed}.png", row_of(exam, ExamVerdict.NOT_JUDGED, trails=True)
+    for drive, command in zip(drives, commands, strict=True):
+        path = folder / f"run-{drive.seed}.png"
         figure, (axes,) = panels_of(1, 1, (5.6, 6.0))
         draw_drive(axes, factory, drive)
-        axes.set_title(f"Run {exam.seed} in world {label_of(exam.world)}")
+        axes.set_title(f"Run {drive.seed} in world {label_of(drive.world)}")
         legend_below(axes, columns=4)
         save(figure, path)
-        asked = f"{len(drive.asked_at)} times in the unknown" if drive.asked_at else ""
-        parts = (f"world {label_of(exam.world)}", collisions_text(drive.collisions), asked, drive.early_end)
-        yield SavedFigure(path, f"Run {exam.seed}: {', '.join(filter(None, parts))}", command)
+        asked = f"{drive.questions} times in the unknown" if drive.questions else ""
+        parts = (f"world {label_of(drive.world)}", collisions_text(drive.collisions), asked, drive.early_end)
+        yield SavedFigure(path, f"Run {drive.seed}: {', '.join(filter(None, parts))}", command)
 
 
 def write_certificate(

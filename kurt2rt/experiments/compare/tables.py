@@ -14,8 +14,8 @@ from scipy.stats import t as students_t
 
 from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
 from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome
-from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.study.figures import save
+from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import Table, of_text, table_of
 

@@ -1,15 +1,31 @@
 """Measures of a score against wrong actions and collisions, from the ticks of uncorrected drives."""
 
+import zlib
+from base64 import b64decode, b64encode
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import zip_longest
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import PlainSerializer, PlainValidator
+
+from hal.settings import Settings
 
 Scores = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+
+def _unpacked(kind: type[np.generic], value: Any) -> Any:
+    """Return the array (n,) of a compressed text; an array stays as it is."""
+    return np.frombuffer(zlib.decompress(b64decode(value)), kind) if isinstance(value, str) else value
+
+
+_COMPRESSED = PlainSerializer(lambda array: b64encode(zlib.compress(array.tobytes())).decode())
+StoredScores = Annotated[Scores, PlainValidator(partial(_unpacked, np.float64)), _COMPRESSED]
+StoredFlags = Annotated[Flags, PlainValidator(partial(_unpacked, np.bool_)), _COMPRESSED]
 BEFORE_TICKS = 200
 """Ticks before a collision that count as leading to it: 2 s."""
 WRONG_TICKS = 30
@@ -20,17 +36,16 @@ _APART_TICKS = 300
 """Ticks below the threshold after which the next crossing is another question: an answer takes 3 s."""
 
 
-@dataclass(frozen=True, slots=True)
-class DriveLog:
+class DriveLog(Settings):
     """Ticks of one drive; all arrays have shape (n,)."""
 
     world: str
-    doubt: Scores
-    distance: Scores
+    doubt: StoredScores
+    distance: StoredScores
     """Distance / R of the nearest RLA."""
-    driving: Flags
+    driving: StoredFlags
     """True while an RLA's action drives and the robot was not set down in the last second."""
-    missed: Flags
+    missed: StoredFlags
     """True where the teacher's policy turns away and the robot does not."""
     collisions: tuple[int, ...]
     """Ticks in which collisions began."""

@@ -4,13 +4,13 @@ The robot drives compiled stretches as if its teacher did nothing. Then the teac
 Where it gives a command, the robot goes back to that tick, and its own runtime carries the command out.
 """
 
-import math
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from functools import partial
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from behaviors.metrics.task_metric import BorderMetric, StretchMetric
 from hal.batch_lesson import LessonCause, LessonFactory, LessonRobot
@@ -26,9 +26,7 @@ from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_sett
 from kurt2rt.experiments.lockstep.batch_mind import choice_of
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
-from kurt2rt.experiments.lockstep.lesson import TrainingRun
-from kurt2rt.experiments.lockstep.lesson_ahead import LessonAhead
+from kurt2rt.experiments.lockstep.lesson import GivenLesson, TrainingRun
 from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
@@ -48,6 +46,7 @@ def teach_in_batch(
     *,
     seed: int,
     on_progress: Callable[[float], None],
+    learners: LearnerTeam | None = None,
 ) -> GivenLesson | None:
     """Teach an untaught robot as `teach` does; return the lesson, None if it belongs on the CAN bus.
 
@@ -57,13 +56,14 @@ def teach_in_batch(
         task: to teach.
         seed: of robot and teacher.
         on_progress: called once for each simulated second, with the simulated seconds.
+        learners: taught in place of the RLAs; None: RLAs decide.
 
     Raises:
         BatchRefusedError: the batch does not know the task or its teacher.
         LessonLostError: the robot refused a command.
         hal.settings.SettingsError: task and world do not fit.
     """
-    with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress) as run:
+    with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress, learners=learners) as run:
         return run.given() if run.drive_stretches() else None
 
 
@@ -115,8 +115,6 @@ class BatchTrainingRun(TrainingRun):
         self._stretch_metric = self.metric if isinstance(self.metric, StretchMetric) else None
         self._messages: list[tuple[int, HoldAction]] = []
         """Messages of a hold that goes on in the present stretch, with their ticks."""
-        self.on_stretch: Callable[[], None] = lambda: None
-        """Called after each stretch: in its last tick the teacher may have sent a command, never in an earlier one."""
 
     def given(self) -> GivenLesson:
         """Return the lesson so far."""
@@ -156,7 +154,7 @@ class BatchTrainingRun(TrainingRun):
         if self._mind.holds:
             self._hold_on(begin + 1 + due, cut)
         self._pass(begin, cut, poses)
-        self.on_stretch()
+        self._note_labels()
         return True
 
     def _drive_on(self, begin: int) -> int | None:
@@ -247,7 +245,7 @@ class BatchTrainingRun(TrainingRun):
         differs = asks | ((actions[1:] >= 0) & (actions[1:] != right[1:]))
         # A question has no action, and a robot without an action asks or was stopped.
         changes = (actions[1:] != actions[:-1]) | (right[1:] != right[:-1])
-        ahead = LessonAhead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
+        ahead = _LessonAhead(*(np.flatnonzero(each) + begin + 1 for each in (asks, differs, changes)))
         held_to = self._mind.held_to
         tick, until = begin, last if held_to is None else min(last, held_to)
         # A teacher sees at once that another behaviour is wanted.
@@ -315,13 +313,44 @@ class BatchTrainingRun(TrainingRun):
                 self.ask_positions.append(Position(pose.x_m, pose.y_m))
 
     def _measure_all(self, poses: list[Pose]) -> None:
-        # Added one by one, as in each tick of `Episode`: another order would change the last digits.
-        path = self.robot.log.poses[self.ticks - len(poses) + 1 : self.ticks + 1, :2]
-        for step_m in map(math.hypot, *np.diff(path, axis=0, prepend=[self._pose[:2]]).T.tolist()):
-            self.distance_travelled_m += step_m
         self._pose = poses[-1]
         if self._stretch_metric is not None:
             self._stretch_metric.update_all(poses)
             return
         for pose in poses:
             self.metric.update(pose)
+
+
+class _LessonAhead:
+    """Ticks that were driven and that a teacher may skip (kurt2rt.teacher.scripted.basic_teacher.Ahead)."""
+
+    def __init__(self, questions: NDArray[np.intp], differences: NDArray[np.intp], changes: NDArray[np.intp]) -> None:
+        """Know the ticks of questions and so on, ascending, each (n,)."""
+        self._questions, self._differences, self._changes = questions, differences, changes
+        self._tick = 0
+        self.ticks = 0
+        """Number of known ticks."""
+
+    def after(self, tick: int, until: int) -> "_LessonAhead":
+        """Look from the tick after `tick` on, up to `until`."""
+        self._tick, self.ticks = tick, until - tick
+        return self
+
+    @property
+    def until_question(self) -> int:
+        """Number of ticks before the first in which the robot asks; all without one."""
+        return self._until(self._questions)
+
+    @property
+    def until_difference(self) -> int:
+        """Number of ticks before the first in which it asks or does another action than the policy's."""
+        return self._until(self._differences)
+
+    @property
+    def until_change(self) -> int:
+        """Number of ticks before the first with another action, or another right action, than in the tick before."""
+        return self._until(self._changes)
+
+    def _until(self, ticks: NDArray[np.intp]) -> int:
+        place = ticks.searchsorted(self._tick, side="right")
+        return min(ticks.item(place) - 1 - self._tick, self.ticks) if place < len(ticks) else self.ticks

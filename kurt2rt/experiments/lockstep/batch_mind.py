@@ -10,6 +10,7 @@ from behaviors.keep_distance import KeepDistance
 from behaviors.motor_primitive import MotorPrimitive
 from behaviors.turn_by_angle import TurnByAngle
 from hal.batch import (
+    MOST_KEPT,
     Action,
     AskedMind,
     BatchRefusedError,
@@ -21,6 +22,7 @@ from hal.batch import (
     FollowedSimulation,
     Mind,
     PolicyMind,
+    StuckRule,
     TabledPolicy,
     TaughtMind,
     Turn,
@@ -38,8 +40,8 @@ from kurt2rt.core.perception.definition import (
     feature_weights,
     load_situation,
 )
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.episode import build_stuck_rule
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
@@ -68,14 +70,17 @@ def require_known_task(task: TaskSettings, *, by_policy: bool = False) -> None:
         raise refused(task, "a mid level")
 
 
-def guides_robots(task: TaskSettings) -> bool:
-    """Return whether the metric of a task repositions robots, or wants another behaviour, on their way."""
-    return task.metric.kind in _BORDER_METRICS
+def stuck_rule_of(settings: RobotSettings, task: TaskSettings) -> StuckRule:
+    """Return the rule by which a robot is stuck in an exam."""
+    return build_stuck_rule(task.exam.stuck_after_s, settings.cycle_s, least_m=task.exam.stuck_within_m)
 
 
-def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
+def require_known(settings: RobotSettings, task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
     """Check that a batch can drive exams of a task. Raises BatchRefusedError."""
     doubt = task.learning.doubt
+    require_known_robot(settings, task)
+    if stuck_rule_of(settings, task).positions > MOST_KEPT:
+        raise refused(task, f"robots that are stuck after {task.exam.stuck_after_s:g} s")
     require_known_task(task, by_policy=all(setup.teacher_policy for setup in setups))
     if doubt is not None and doubt.asks and doubt.alone:
         raise refused(task, "a robot that stands at a doubt without a teacher")
@@ -83,14 +88,13 @@ def require_known(task: TaskSettings, setups: Sequence[ExamSetup]) -> None:
         raise refused(task, "a broken sensor")
 
 
-def require_known_exams(settings: RobotSettings, task: TaskSettings) -> None:
-    """Check that a batch can examine robots that are taught a task, and drive its policy. Raises BatchRefusedError.
+def require_known_exams(settings: RobotSettings, task: TaskSettings, *, policy: bool = True) -> None:
+    """Check that a batch can examine robots that are taught a task, and drive its policy unless `policy` is False.
 
-    Raises hal.settings.SettingsError if settings of the task do not fit each other.
+    Raises BatchRefusedError, and hal.settings.SettingsError if settings of the task do not fit each other.
     """
-    require_known_robot(settings, task)
-    require_known(task, [ExamSetup(task.teaching.world, 0)])
-    if not isinstance(task.policy.build(settings.infrared), TabledPolicy):
+    require_known(settings, task, [ExamSetup(task.teaching.world, 0)])
+    if policy and not isinstance(task.policy.build(settings.infrared), TabledPolicy):
         raise refused(task, f"policy {task.policy.kind}")
     definition = load_situation(task.situation, settings.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
@@ -134,9 +138,9 @@ def build_minds(
     simulations: Sequence[FollowedSimulation],
     settings: RobotSettings,
     task: TaskSettings,
-    exams: Sequence[tuple[Sequence[TeachingEvent], ExamSetup]],
+    setups: Sequence[ExamSetup],
 ) -> list[Mind]:
-    """Return the mind of each exam, given by its lessons and setup; equal knowledge makes one mind.
+    """Return the mind of each exam; equal knowledge makes one mind.
 
     Raises:
         BatchRefusedError: the batch does not know the policy or a feature.
@@ -146,7 +150,7 @@ def build_minds(
     policy = task.policy.build(settings.infrared)
     minds: list[Mind] = []
     taught: dict[tuple[int, int, int], TaughtMind] = {}
-    for simulation, (events, setup) in zip(simulations, exams, strict=True):
+    for simulation, setup in zip(simulations, setups, strict=True):
         if setup.teacher_policy:
             if not isinstance(policy, TabledPolicy):
                 raise refused(task, f"policy {task.policy.kind}")
@@ -157,9 +161,9 @@ def build_minds(
             features = feature_table(definition, settings, np.ones(definition.dimensions), task)
             minds.append(AskedMind(choice_of(setup.learners, task, taught=lambda: False), features))
             continue
-        key = id(events), id(setup.saved), id(setup.autonomous_values)
+        key = id(setup.events), id(setup.saved), id(setup.autonomous_values)
         if key not in taught:
-            runtime = build_exam_runtime(simulation, settings, task, events, setup, RuntimeOptions())
+            runtime = build_exam_runtime(simulation, settings, task, setup, RuntimeOptions())
             taught[key] = _taught_mind(runtime, settings, task)
         minds.append(taught[key])
     return minds

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from behaviors.metrics.route import RouteSettings
 from behaviors.metrics.task_metric import RouteMetric, TaskMetric
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
@@ -46,3 +47,28 @@ def route_of(metric: TaskMetric, task: TaskSettings) -> RouteMetric:
         where=f"task {task.name}",
         do="give the metric route, or leave mid out",
     )
+
+
+def route_of_task(task: TaskSettings) -> RouteSettings:
+    """Return the settings of a task's route. Raises hal.settings.SettingsError for a task without one."""
+    if isinstance(task.metric, RouteSettings):
+        return task.metric
+    raise SettingsError(f"its metric is {task.metric.kind}, and there is no route to teach", where=f"task {task.name}")
+
+
+def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
+    """Return the task with the route of this robot, unless it names one; `decisions`: None: the task's number.
+
+    Raises hal.settings.SettingsError for a task that teaches no route.
+    """
+    metric = route_of_task(task)
+    update: dict[str, object] = {"seed": seed if metric.seed is None else metric.seed}
+    if decisions is not None:
+        update["decisions"] = decisions
+    return task.model_copy(update={"metric": metric.model_copy(update=update)})
+
+
+def with_own_route(task: TaskSettings, seed: int) -> TaskSettings:
+    """Return the task, with the route of this robot if it teaches one and names none."""
+    own = isinstance(task.metric, RouteSettings) and task.metric.seed is None
+    return with_route(task, seed) if own else task

@@ -2,9 +2,9 @@
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
-from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Metrics, TaskMetric
+from behaviors.metrics.task_metric import TaskMetric
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
@@ -14,76 +14,17 @@ from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places
 from kurt2rt.experiments.lockstep.episode import Episode
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import SensorBreak
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
-
-
-@dataclass(frozen=True, slots=True)
-class ExamResult:
-    """Counters and measures of one drive."""
-
-    world: str
-    seed: int
-    duration_s: float
-    """Time until the end, or until the robot was stuck or stopped."""
-    progress: float
-    """Progress by the task's metric, in `unit`."""
-    unit: str
-    distance_travelled_m: float
-    collisions: int
-    stuck: bool
-    share_unknown: float
-    """Ratio of ticks in unknown situations, 0 to 1."""
-    action_changes_per_s: float
-    trail: tuple[Position, ...]
-    unknown_positions: tuple[Position, ...]
-    alarm: str = ""
-    """Reason of the guard's latched stop, which ends the exam; empty without one."""
-    findings: Metrics = field(default_factory=dict)
-    """Further measures of the metric."""
-    collision_positions: tuple[Position, ...] = ()
-    rescues: int = 0
-    """Number of rescues, if being stuck does not end the exam."""
-    least_progress: float = 0.0
-    """Progress up to which a drive gets nowhere and no other drive is measured by it."""
-
-    def verdict(self, teachers_progress: float, success: SuccessSettings) -> ExamVerdict:
-        """Return the verdict on this drive, measured by the progress of the teacher's own policy from the same start.
-
-        A drive passes with no more collisions than allowed, no alarm, not stuck, and with enough progress.
-        `teachers_progress`: in the unit of `progress`, such as laps or m.
-        """
-        if teachers_progress <= self.least_progress:
-            return ExamVerdict.NOT_JUDGED
-        enough = self.progress > 0.0 and self.progress >= success.progress_share * teachers_progress
-        right = self.right_share >= success.right_at_least
-        clean = self.collisions <= success.collisions_at_most and not self.stuck and not self.alarm
-        return ExamVerdict.PASSED if clean and enough and right else ExamVerdict.FAILED
-
-    @property
-    def failed(self) -> bool:
-        """True if the drive had a collision, got stuck or was stopped by a latch of the guard."""
-        return self.collisions > 0 or self.stuck or bool(self.alarm)
-
-    @property
-    def got_nowhere(self) -> bool:
-        """True if the progress is too small to measure another drive by."""
-        return self.progress <= self.least_progress
-
-    @property
-    def right_share(self) -> float:
-        """Ratio of the junctions that were left as required, 0 to 1; 0 without junctions."""
-        junctions = self.findings.get(JUNCTIONS, 0.0)
-        return self.findings.get(RIGHT, 0.0) / junctions if junctions else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +35,8 @@ class ExamSetup:
     seed: int
     teacher_policy: bool = False
     """True if the teacher's own policy drives instead of the RLAs."""
+    events: Sequence[TeachingEvent] = ()
+    """Lessons of the robot; the policy's own drive does without them."""
     saved: Statistics | None = None
     """Values and counters of the RLAs; None: initial ones."""
     autonomous_values: Statistics | None = None
@@ -119,11 +62,10 @@ async def examine(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    events: Sequence[TeachingEvent],
     setup: ExamSetup,
     on_progress: Callable[[float], None],
-) -> ExamResult:
-    """Drive for the exam's duration with the knowledge in `events`, or by the teacher's own policy.
+) -> DriveRow:
+    """Drive for the exam's duration with the knowledge of the setup, or by the teacher's own policy.
 
     The mid level chooses the behaviours; without one the task's metric does.
 
@@ -136,7 +78,7 @@ async def examine(
         UnknownBehaviourError: the knowledge names a behaviour that the task lacks.
         SettingsError: task and world do not fit.
     """
-    exam = ExamRun(simulation, settings, task, events, setup, on_progress)
+    exam = ExamRun(simulation, settings, task, setup, on_progress)
     await exam.drive()
     return exam.result()
 
@@ -149,7 +91,6 @@ class ExamRun(Episode):
         simulation: Simulation,
         settings: RobotSettings,
         task: TaskSettings,
-        events: Sequence[TeachingEvent],
         setup: ExamSetup,
         on_progress: Callable[[float], None],
     ) -> None:
@@ -167,7 +108,7 @@ class ExamRun(Episode):
         options = RuntimeOptions(
             level_override=level, active_behaviour=behaviour, learners=learners, appraises=setup.appraises
         )
-        runtime = build_exam_runtime(simulation, settings, task, events, setup, options)
+        runtime = build_exam_runtime(simulation, settings, task, setup, options)
         # Learner and teacher get the same random choices; their drives diverge at the first different action.
         chance = random.Random(setup.chance_seed)
         super().__init__(simulation, runtime, chance, stuck_after_s=task.exam.stuck_after_s, on_progress=on_progress)
@@ -176,7 +117,7 @@ class ExamRun(Episode):
         self._setup = setup
         self._collision_positions: list[Position] = []
         self._action: str | None = None
-        self._action_changes = self._stuck_times = 0
+        self._action_changes = self._stuck_times = self._first_question = self._first_collision = 0
         self._alarm = ""
 
     async def drive(self) -> None:
@@ -196,6 +137,9 @@ class ExamRun(Episode):
         require_carried_out(record, self.task)
         if self.simulation.collisions > len(self._collision_positions):
             self._collision_positions.append(self.simulation.position)
+            self._first_collision = self._first_collision or record.tick
+        if self.ask_positions:
+            self._first_question = self._first_question or record.tick
         self._action_changes += record.decision.action != self._action
         self._action = record.decision.action
         self.measure()
@@ -203,8 +147,11 @@ class ExamRun(Episode):
         if self.metric.needs_reset:
             self.reposition()
         self._command_behaviour(record.behaviour)
-        if record.guard_result.latched:  # an exam has no teacher who could resume
+        if record.guard_result.latched:
             self._alarm = record.guard_result.reasons[0]
+        elif stop := record.standing.stop:
+            self._alarm = f"{stop.reason.value} {stop.name}".strip()
+        if self._alarm:  # an exam has no teacher who could resume
             self.runtime.scheduler.end()
         elif self.is_stuck():
             self._stuck_times += 1
@@ -213,26 +160,29 @@ class ExamRun(Episode):
             else:
                 self.rescue()
 
-    def result(self) -> ExamResult:
+    def result(self) -> DriveRow:
         """Return the counters and measures of the drive so far."""
         simulation, metric, duration_s = self.simulation, self.metric, self.ticks * self.period_s
-        return ExamResult(
+        return DriveRow(
             world=self._setup.world,
             seed=self._setup.seed,
             duration_s=duration_s,
             progress=metric.progress,
             unit=metric.unit,
-            distance_travelled_m=self.distance_travelled_m,
+            way_m=self.distance_travelled_m,
             collisions=simulation.collisions,
             stuck=self._stuck_times > 0,
             rescues=0 if self._setup.stuck_ends else self._stuck_times,
             share_unknown=self.unknown_ticks / self.ticks,
+            questions=len(self.ask_positions),
+            first_question_s=self._first_question * self.period_s,
+            first_collision_s=self._first_collision * self.period_s,
             action_changes_per_s=self._action_changes / duration_s,
-            trail=tuple(self.trail),
-            unknown_positions=tuple(self.ask_positions),
+            trail=rounded_places(self.trail),
+            asked_at=rounded_places(self.ask_positions),
             alarm=self._alarm,
-            findings=metric.findings,
-            collision_positions=tuple(self._collision_positions),
+            findings={name: float(value) for name, value in metric.findings.items()},
+            collided_at=rounded_places(self._collision_positions),
             least_progress=self.task.metric.least_progress(simulation, self.task.exam.duration_s),
         )
 
@@ -245,7 +195,6 @@ def build_exam_runtime(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    events: Sequence[TeachingEvent],
     setup: ExamSetup,
     options: RuntimeOptions,
 ) -> Runtime:
@@ -260,7 +209,7 @@ def build_exam_runtime(
         robot if setup.broken is None else setup.broken.apply(robot, settings.infrared),
         settings,
         task,
-        events,
+        setup.events,
         NoTeachingAllowed(),
         LockstepClock(simulation.step),
         replace(options, checkpoint=setup.saved, teacher_available=False),

@@ -4,10 +4,14 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import accumulate
+from typing import NamedTuple
 
 from behaviors.metrics.task_metric import Metrics
 from hal.robot_settings import RobotSettings
+from hal.settings import Settings
 from hal.simulation import Position, Simulation
+from kurt2rt.core.learner.learner import Label
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID, Phase, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
@@ -31,9 +35,32 @@ from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 _AGREEMENT_EVERY_S = 10
 
 
+class LessonCounts(Settings):
+    """Counts of one training run, which studies store."""
+
+    seed: int
+    world: str
+    teacher: str
+    """Name of the scripted teacher."""
+    teaching_s: float
+    rlas: int
+    knowledge_hash: str
+    asks: int
+    corrections: int
+    presses: int
+    rescues: int
+    repositions: int
+    deletions: int
+    alarms: int
+    collisions: int
+
+
 @dataclass(frozen=True, slots=True)
 class TrainingResult:
-    """Counters and knowledge of one training run."""
+    """Counters and knowledge of a training run: a simulated session with a teacher.
+
+    The seed decides all of it, bit for bit.
+    """
 
     seed: int
     world: str
@@ -67,6 +94,8 @@ class TrainingResult:
     """Commands and manual acts of the teacher, minute by minute."""
     press_ticks: tuple[int, ...] = ()
     """Tick in which each press was sent."""
+    labels: tuple[tuple[Label, ...], ...] = field(default=(), compare=False, repr=False)
+    """Standing labels of the learners before each press, and at the end; empty if RLAs decide."""
     positive_rewards: int = 0
     negative_rewards: int = 0
     refused_signals: int = 0
@@ -98,6 +127,19 @@ class TrainingResult:
     def presses(self) -> int:
         """Number of the teacher's presses (`WorkloadMinute.presses`)."""
         return sum(minute.presses for minute in self.workload)
+
+    @property
+    def counts(self) -> LessonCounts:
+        """Counts of the run."""
+        counted = {name: getattr(self, name) for name in LessonCounts.model_fields if name != "rlas"}
+        return LessonCounts(rlas=len(self.rlas), **counted)
+
+
+class GivenLesson(NamedTuple):
+    """Result of a lesson, and what it taught."""
+
+    result: TrainingResult
+    events: list[TeachingEvent]
 
 
 async def teach(
@@ -174,6 +216,7 @@ class TrainingRun(Episode):
         self._phase_starts = _phase_starts(plan, period_s)
         self._workload = TeacherWorkload(self._planned_ticks, period_s)
         self._growth: list[int] = []
+        self._labels: list[tuple[Label, ...]] = []
         self._agreements: list[float | None] = []
         self._sensor_stop = SensorStopTimer(self.ticks_per_second)
         self._rescues = self._unknown_rescues = self._alarms = self._deletions = self._refused = 0
@@ -205,6 +248,7 @@ class TrainingRun(Episode):
         self.measure()
         self._look_after(record.tick)
         self._command_behaviour(record.behaviour)
+        self._note_labels()
         most = self._plan.most_presses
         if most is not None and self.presses > most:
             self.runtime.scheduler.end()  # the press waits in the inbox, which no further tick reads
@@ -241,6 +285,7 @@ class TrainingRun(Episode):
             findings=self.metric.findings,
             workload=self._workload.minutes,
             press_ticks=tuple(self._workload.press_ticks),
+            labels=() if runtime.learner is None else (*self._labels, runtime.learner.team.labels),
             positive_rewards=self._positive_rewards,
             negative_rewards=self._negative_rewards,
             refused_signals=self._refused,
@@ -257,6 +302,12 @@ class TrainingRun(Episode):
             autonomous_values=runtime.reinforcement.autonomous_values() if autonomous else None,
         )
 
+    def _note_labels(self) -> None:
+        """Note the labels that stand before each press of this tick, which a later tick applies."""
+        if self.runtime.learner is not None:
+            while len(self._labels) < self.presses:
+                self._labels.append(self.runtime.learner.team.labels)
+
     def _note_second(self, tick: int, rlas: int) -> None:
         """Record the number of RLAs after a tick at the end of a second, and the critic's agreement."""
         self._growth.append(rlas)
@@ -267,8 +318,6 @@ class TrainingRun(Episode):
         self.send(self._teacher.begin_phase(phase))
         if self._dispatcher is not None:
             self._dispatcher.phase = phase
-            if not self._plan.corrects_basic:
-                self._teacher.stop_correcting()
 
     def _send_lessons(self, record: TickRecord) -> None:
         """Send the teacher's and the dispatcher's commands, and resume a second after the guard latched."""

@@ -55,8 +55,6 @@ class LessonPlan:
     """True if the time of the stuck detector continues after a question."""
     most_presses: int | None = None
     """Number of presses after which the next one ends the run and teaches nothing; None: no limit."""
-    corrects_basic: bool = True
-    """True if the basic level is corrected under a mid level, too; questions are answered in any case."""
 
     @property
     def appraises(self) -> bool:

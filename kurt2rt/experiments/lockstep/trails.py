@@ -6,8 +6,12 @@ from typing import TypeVar
 
 from matplotlib.axes import Axes
 
+from hal.simulation import SimulationFactory
+
 TRAIL = "#1f6fb2"
 ASKED = "#d1495b"
+_CARRIED_M = 0.5
+"""A robot that is so far from where it was 0.2 s ago was set down elsewhere."""
 
 PlaceT = TypeVar("PlaceT", bound=tuple[float, float])
 
@@ -17,7 +21,6 @@ def draw_trail(
     trail: Sequence[tuple[float, float]],
     label: str,
     *,
-    carried_m: float,
     colour: str = TRAIL,
     width: float = 1.0,
     zorder: float = 3,
@@ -25,21 +28,20 @@ def draw_trail(
     """Draw a line with gaps at repositionings.
 
     Args:
-        trail: points in m.
-        carried_m: least distance between two points of a gap.
+        trail: points in m, 0.2 s apart.
         width: width of the line in points.
     """
     said: str | None = label
-    for way in ways(trail, carried_m):
+    for way in ways(trail):
         axes.plot(*columns(way), color=colour, linewidth=width, zorder=zorder, label=said)
         said = None
 
 
-def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
-    """Return a trail in pieces, split where two points are farther apart than `carried_m`, in m."""
+def ways(trail: Sequence[PlaceT]) -> list[list[PlaceT]]:
+    """Return a trail in pieces, split where the robot was set down elsewhere."""
     pieces: list[list[PlaceT]] = []
     for place in trail:
-        if not pieces or math.dist(pieces[-1][-1], place) > carried_m:
+        if not pieces or math.dist(pieces[-1][-1], place) > _CARRIED_M:
             pieces.append([])
         pieces[-1].append(place)
     return pieces
@@ -48,3 +50,29 @@ def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
 def columns(places: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
     """Return all x and all y of the places, in m, as two lists."""
     return [x for x, _ in places], [y for _, y in places]
+
+
+def draw_drive(
+    axes: Axes,
+    factory: SimulationFactory,
+    world: str,
+    trail: Sequence[tuple[float, float]],
+    asked: Sequence[tuple[float, float]],
+    *,
+    label: str = "the robot",
+    width: float = 1.0,
+) -> None:
+    """Draw a world with a trail and the places of unknown situations, in m; `width`: of the line in points.
+
+    Raises hal.settings.SettingsError for an unknown world.
+    """
+    factory.draw(axes, world)
+    draw_trail(axes, trail, label, width=width)
+    if asked:
+        told = f"situation unknown ({len(asked)})"
+        axes.plot(*columns(asked), "o", color=ASKED, markersize=4, zorder=4, label=told)
+
+
+def legend_below(axes: Axes, columns: int = 3) -> None:
+    """Draw the legend below the floor plan, in so many columns, where it hides no wall."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.1), ncols=columns, fontsize="small", frameon=False)

@@ -3,10 +3,6 @@
 import math
 import random
 from collections.abc import Callable, Sequence
-from typing import Literal
-
-import numpy as np
-from numpy.typing import NDArray
 
 from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import length_m
@@ -14,23 +10,15 @@ from hal.settings import Settings
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import NamedGoal
-from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen
-from kurt2rt.experiments.navigation.guided_tour import TRAIL_STRIDE
 from kurt2rt.experiments.navigation.tour_guide import HOME
-from kurt2rt.experiments.study.drive_row import Place, rounded_places
 from kurt2rt.runtime import Runtime
 
 _EXAMINER = "examiner"
-_ASTRAY = 2.0
-"""Distance at which a drive without a plan has failed, as a multiple of the shortest."""
-
-Strategy = Literal["planning", "chance", "first taught"]
-"""Strategy of the drive: a plan; as controls, random taught ways, or always the way taught first."""
 
 
 class ErrandDone(Settings):
@@ -62,50 +50,11 @@ class ErrandDone(Settings):
         return self.way_m / max(self.shortest_m, 0.1)
 
 
-class ErrandsRun(Settings):
-    """Outcome of all drives to goals by one strategy."""
-
-    how: Strategy
-    errands: tuple[ErrandDone, ...]
-    trail: tuple[Place, ...]
-
-    def good(self, detour_at_most: float) -> int:
-        """Return the number of goals reached at this ratio of distances or less."""
-        return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
-
-    @property
-    def reached(self) -> tuple[ErrandDone, ...]:
-        """Goals that were reached, however long the way."""
-        return tuple(each for each in self.errands if each.reached)
-
-
-class RandomChooser:
-    """Random choice among the ways that are possible at a place (kurt2rt.core.mid.mid_level.TieBreaker)."""
-
-    def __init__(self, chance: random.Random) -> None:
-        self._chance = chance
-        self._at: NDArray[np.float64] | None = None
-        self._way: Rla | None = None
-
-    def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """Return one RLA of the group, never None; the same until the next place.
-
-        Args:
-            group: RLAs that are possible at the place.
-            vector: features of the mid level, shape (features,); a new array at each place.
-        """
-        if vector is not self._at or self._way not in group:
-            self._at, self._way = vector, self._chance.choice(group)
-        return self._way
-
-
 class GoalsRun(Episode):
     """Episode in which the robot drives to goals, each from the end of the drive before.
 
-    A robot that misses a goal is placed there and localised. Without a plan, a goal is reached by driving through it.
+    A robot that misses a goal is placed there and localised.
     """
-
-    trail_stride = TRAIL_STRIDE
 
     def __init__(
         self,
@@ -113,7 +62,6 @@ class GoalsRun(Episode):
         runtime: Runtime,
         goals: Sequence[GoalChosen],
         *,
-        how: Strategy,
         seed: int,
         on_goal: Callable[[float], None],
     ) -> None:
@@ -128,18 +76,15 @@ class GoalsRun(Episode):
         )
         assert runtime.mid is not None
         assert isinstance(self.metric, Errands)
-        if how == "chance":
-            runtime.mid.tie_breaker = RandomChooser(random.Random(f"ways of robot {seed}"))
         self._tracker = self.metric
         self._goals = goals
-        self._how = how
         self._limit_ticks = round(task.exam.duration_s / self.period_s)
         self._done: list[ErrandDone] = []
         self._start = self._pose
         self._begun_tick = self._begun_collisions = self._surprises = 0
         self._failure: str | None = None
 
-    async def drive(self, home: Pose) -> ErrandsRun:
+    async def drive(self, home: Pose) -> tuple[ErrandDone, ...]:
         """Drive to all goals, from `home`, and return the outcome of each.
 
         Raises LessonLostError if the robot refused a command.
@@ -148,7 +93,7 @@ class GoalsRun(Episode):
         if self._goals:
             self._begin_goal()
             await self.run(self._limit_ticks * len(self._goals) + 1)
-        return ErrandsRun(how=self._how, errands=tuple(self._done), trail=rounded_places(self.trail))
+        return tuple(self._done)
 
     def on_tick(self, record: TickRecord) -> None:
         """Measure the drive and judge whether it is over.
@@ -187,15 +132,10 @@ class GoalsRun(Episode):
         ticks = self.ticks - self._begun_tick
         there = self._tracker.street == goal.street
         plan = decision.plan
-        if self._how == "planning":
-            if plan is not None and ticks > 1 and plan.course is GoalStatus.ARRIVED:
-                return "" if there else "it took another place for it"
-            if plan is not None and ticks > 1 and plan.course in (GoalStatus.NO_WAY, GoalStatus.LOST):
-                return plan.course.value
-        elif there:
-            return ""
-        elif self.distance_travelled_m > _ASTRAY * length_m(goal.shortest):
-            return "astray"
+        if plan is not None and ticks > 1 and plan.course is GoalStatus.ARRIVED:
+            return "" if there else "it took another place for it"
+        if plan is not None and ticks > 1 and plan.course in (GoalStatus.NO_WAY, GoalStatus.LOST):
+            return plan.course.value
         if record.guard_result.latched:
             return record.guard_result.reasons[0]
         if self.is_stuck():
@@ -220,9 +160,7 @@ class GoalsRun(Episode):
         self.restart_counting()
         self._start = self._pose
         self._begun_tick, self._begun_collisions, self._surprises = self.ticks, self.simulation.collisions, 0
-        if self._how == "planning":
-            goal = NamedGoal(self._goals[len(self._done)].name)
-            self.send(Seek(self.next_id("errands"), _EXAMINER, goal))
+        self.send(Seek(self.next_id("errands"), _EXAMINER, NamedGoal(self._goals[len(self._done)].name)))
 
     def _place_at(self, pose: Pose, name: str) -> None:
         self.place(pose)

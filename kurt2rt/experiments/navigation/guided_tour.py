@@ -14,17 +14,14 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
+from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.experiments.lockstep.sensor_stop import SensorStopAct, SensorStopTimer
 from kurt2rt.experiments.navigation.tour_guide import TourGuide
-from kurt2rt.experiments.study.drive_row import Place, rounded_places
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
-
-TRAIL_STRIDE = 20
-"""Ticks between two points of a trail."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,8 +100,6 @@ async def guided_tour(
 
 class TourRun(Episode):
     """Episode in which a scripted guide teaches the mid level, and a scripted teacher the basic one."""
-
-    trail_stride = TRAIL_STRIDE
 
     def __init__(
         self,

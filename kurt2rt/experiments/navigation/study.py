@@ -1,4 +1,4 @@
-"""Navigation study: a guided tour of each robot, then drives to goals by each strategy."""
+"""Navigation study: a guided tour of each robot, then drives to goals."""
 
 import random
 from collections.abc import Sequence
@@ -10,20 +10,18 @@ from behaviors.metrics.streets import ALONG
 from behaviors.metrics.town import Street
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
-from kurt2rt.experiments.navigation.exam import ErrandsRun, GoalsRun, Strategy
+from kurt2rt.experiments.navigation.exam import ErrandDone, GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
 from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
-from kurt2rt.experiments.study.drive_row import Place
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
 
-PLANNING: tuple[Strategy, ...] = ("planning",)
-CONTROLS: tuple[Strategy, ...] = ("chance", "first taught")
 _BESIDE_M = 0.15
 _COUNTED = (
     *("teaching_s", "ways", "mid_rlas", "basic_rlas", "mid_asks", "missed_junctions", "corrections", "rescues"),
@@ -50,20 +48,25 @@ class ErrandsOutcome(Outcome):
     led: tuple[Place, ...]
     """Trail of the tour."""
     knowledge_hash: str
-    runs: tuple[ErrandsRun, ...]
-    """Runs by planning, and controls."""
+    errands: tuple[ErrandDone, ...]
+    trail: tuple[Place, ...]
+    """Trail of the errands."""
 
-    def run_of(self, how: Strategy) -> ErrandsRun | None:
-        """Return the run of a strategy; None without one."""
-        return next((each for each in self.runs if each.how == how), None)
+    def good(self, detour_at_most: float) -> int:
+        """Return the number of goals reached at this ratio of distances or less."""
+        return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
+
+    @property
+    def reached(self) -> tuple[ErrandDone, ...]:
+        """Goals that were reached, however long the way."""
+        return tuple(each for each in self.errands if each.reached)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NavigationJob(StudyJob):
-    """Guided tour of one robot, and its drives to goals by each strategy."""
+    """Guided tour of one robot, and its drives to goals."""
 
     outcome = ErrandsOutcome
-    strategies: tuple[Strategy, ...]
     basic: Path
     """Knowledge of the streets; the job copies it."""
 
@@ -85,16 +88,15 @@ class NavigationJob(StudyJob):
         assert start is not None  # the tour began there
         chance = random.Random(f"errands of robot {seed}")
         goals = choose_goals(town, led.named, led.streets, start, navigation_settings(task), chance)
-        runs = []
-        for how in self.strategies:
-            with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
-                runtime = build_unattended_runtime(simulation, robot, task, events, led.saved)
+        whole_s = len(goals) * task.exam.duration_s
+        with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
+            runtime = build_unattended_runtime(simulation, robot, task, events, led.saved)
 
-                def on_goal(done: float, how: Strategy = how) -> None:
-                    report(f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s)
+            def on_goal(done: float) -> None:
+                report("errands", done * task.exam.duration_s, whole_s)
 
-                run = GoalsRun(simulation, runtime, goals, how=how, seed=seed, on_goal=on_goal)
-                runs.append(await run.drive(led.home))
+            run = GoalsRun(simulation, runtime, goals, seed=seed, on_goal=on_goal)
+            errands = await run.drive(led.home)
         return ErrandsOutcome(
             made_of=self.made_of,
             seed=seed,
@@ -102,7 +104,8 @@ class NavigationJob(StudyJob):
             ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
             named={name: _shown_at(street) for name, street in led.named.items()},
             led=led.trail,
-            runs=tuple(runs),
+            errands=errands,
+            trail=rounded_places(run.trail),
         )
 
 
@@ -118,7 +121,6 @@ def make_plan(
     parts: JobParts,
     *,
     basic_folder: Path | None = None,
-    controls: bool = False,
 ) -> StudyPlan[TaskSettings]:
     """Check task and worlds, and return the jobs.
 
@@ -127,7 +129,6 @@ def make_plan(
         seeds: one robot each.
         parts: factory, robot and results of the jobs.
         basic_folder: files of robots that were taught the streets; None: the streets are taught first.
-        controls: whether to drive also without a plan.
 
     Raises:
         hal.settings.SettingsError: a task and a world do not fit.
@@ -139,7 +140,6 @@ def make_plan(
     goals = navigation_settings(task).goals
     parts["factory"].require_worlds(basic.teaching.world)
     require_places(parts["factory"], task, worlds)
-    strategies = (*PLANNING, *(CONTROLS if controls else ()))
     fingerprints = Fingerprints(parts["factory"], parts["robot"])
     streets = streets_of(basic, seeds, parts, fingerprints, basic_folder)
     jobs = (
@@ -147,13 +147,12 @@ def make_plan(
             **parts,
             task=task,
             seed=seed,
-            made_of=fingerprints.of(task, worlds, streets.made_of[seed], " ".join(strategies)),
+            made_of=fingerprints.of(task, worlds, streets.made_of[seed]),
             name=f"{task.name}, seed {seed}",
             stem=f"{task.name}-{seed}",
             # of the goals, if each takes the whole time
-            robot_time_s=task.teaching.duration_s + len(strategies) * goals * task.exam.duration_s,
+            robot_time_s=task.teaching.duration_s + goals * task.exam.duration_s,
             wave=1,
-            strategies=strategies,
             basic=streets.files[seed],
         )
         for seed in seeds

@@ -9,22 +9,15 @@ from matplotlib.figure import Figure
 from behaviors.metrics.errands import ErrandsSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import SUPERHUMAN
-from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.lockstep.trails import draw_trail
-from kurt2rt.experiments.navigation.exam import ErrandDone, ErrandsRun, Strategy
-from kurt2rt.experiments.navigation.study import CONTROLS, PLANNING, ErrandsOutcome
+from kurt2rt.experiments.navigation.study import ErrandsOutcome
 from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.experiments.study.figures import START, save
-from kurt2rt.experiments.study.table import Table, collisions_text, of_text, table_of, to_text
+from kurt2rt.experiments.study.table import Table, collisions_text, of_text, share_text, table_of
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 
 SHARE = 18 / 20
 """Required ratio of goals reached by a way that is short enough, and of robots that reach this ratio."""
-_TITLES: dict[Strategy, str] = {
-    "planning": "by a plan",
-    "chance": "control: any way taught, by chance",
-    "first taught": "control: always the way taught first",
-}
 _LED = "#b0b0b0"
 _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
 
@@ -37,13 +30,13 @@ def all_tables(
     `metric`: settings of the errands. `teacher`: name of the scripted teacher.
     """
     reasons = list(reasons_against_judging([each.seed for each in outcomes]))
-    found = [((), verdict) for verdict in verdicts(_runs(outcomes, "planning"), metric)]
+    found = [((), verdict) for verdict in verdicts(outcomes, metric)]
     yield targets_table(found, reasons, title="Errands: what was asked")
     yield runs_table(outcomes, metric, teacher)
     yield robots_table(outcomes, metric)
 
 
-def verdicts(runs: Sequence[ErrandsRun], metric: ErrandsSettings) -> Iterator[Verdict]:
+def verdicts(runs: Sequence[ErrandsOutcome], metric: ErrandsSettings) -> Iterator[Verdict]:
     """Yield the verdicts on the drives of all robots by a plan. `metric`: settings of the errands."""
     most, goals = metric.detour_at_most, sum(len(run.errands) for run in runs)
     good, needed = sum(run.good(most) for run in runs), needed_of(SHARE, goals)
@@ -59,37 +52,28 @@ def verdicts(runs: Sequence[ErrandsRun], metric: ErrandsSettings) -> Iterator[Ve
 
 
 def runs_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings, teacher: str) -> Table:
-    """Return the table of the drives by planning and of the controls.
+    """Return the table of the drives of all robots.
 
     `metric`: settings of the errands. `teacher`: name of the scripted teacher.
     """
-
-    def errands(how: Strategy) -> list[ErrandDone]:
-        return [each for run in _runs(outcomes, how) for each in run.errands]
-
-    def good(how: Strategy) -> int:
-        return sum(run.good(metric.detour_at_most) for run in _runs(outcomes, how))
-
-    def detours(how: Strategy) -> list[float]:
-        return [each.detour for each in errands(how) if each.reached]
-
-    led = [each.demonstrated for each in errands("planning") if each.demonstrated is not None]
+    errands = [each for run in outcomes for each in run.errands]
+    good, detours = sum(run.good(metric.detour_at_most) for run in outcomes), [e.detour for e in errands if e.reached]
+    led = [each.demonstrated for each in errands if each.demonstrated is not None]
     shown = f"mean {_mean(led):.1f}, least {min(led):.2f} times the shortest" if led else "none"
     return table_of(
         "Goals that were never demonstrated as a whole",
-        [how for how in (*PLANNING, *CONTROLS) if errands(how)],
-        ("how", lambda how: _TITLES[how]),
-        ("reached in time", lambda how: of_text(good(how), len(errands(how)))),
-        ("95 %", lambda how: to_text(wilson_interval(good(how), len(errands(how))), ".0%")),
-        ("reached", lambda how: len(detours(how))),
-        ("way / shortest", lambda how: f"{_mean(detours(how)):.2f}" if detours(how) else ""),
-        ("most", lambda how: f"{max(detours(how)):.2f}" if detours(how) else ""),
-        ("surprises", lambda how: sum(each.surprises for each in errands(how))),
-        ("collisions", lambda how: sum(each.collisions for each in errands(how))),
+        [outcomes] if errands else [],
+        ("reached in time", lambda _: of_text(good, len(errands))),
+        ("95 %", lambda _: share_text(good, len(errands))),
+        ("reached", lambda _: len(detours)),
+        ("way / shortest", lambda _: f"{_mean(detours):.2f}" if detours else ""),
+        ("most", lambda _: f"{max(detours):.2f}" if detours else ""),
+        ("surprises", lambda _: sum(each.surprises for each in errands)),
+        ("collisions", lambda _: sum(each.collisions for each in errands)),
+        words=0,
         note=f"Reached in time: without touching anything, by a way of at most {metric.detour_at_most:g} times the "
         f"shortest. Who repeats the shortest piece of the lesson that leads from start to goal: {shown}; for "
-        f"{len(errands('planning')) - len(led)} goals there is no such piece. Taught by the scripted teacher "
-        f"{teacher}.",
+        f"{len(errands) - len(led)} goals there is no such piece. Taught by the scripted teacher {teacher}.",
     )
 
 
@@ -97,15 +81,10 @@ def robots_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings) ->
     """Return the table of single robots, a row for each. `metric`: settings of the errands."""
 
     def missed(each: ErrandsOutcome) -> str:
-        (run,) = _runs([each], "planning")
-        failed = (done for done in run.errands if not done.reached)
+        failed = (done for done in each.errands if not done.reached)
         return (
             ", ".join(f"{done.goal}: {done.why_not or collisions_text(done.collisions)}" for done in failed) or "none"
         )
-
-    def reached(each: ErrandsOutcome) -> str:
-        (run,) = _runs([each], "planning")
-        return of_text(run.good(metric.detour_at_most), len(run.errands))
 
     return table_of(
         "Each robot",
@@ -117,13 +96,9 @@ def robots_table(outcomes: Sequence[ErrandsOutcome], metric: ErrandsSettings) ->
         ("asks", lambda each: each.mid_asks),
         ("missed", lambda each: each.missed_junctions),
         ("rescues", lambda each: each.rescues),
-        ("reached", reached),
+        ("reached", lambda each: of_text(each.good(metric.detour_at_most), len(each.errands))),
         ("not reached", missed),
     )
-
-
-def _runs(outcomes: Sequence[ErrandsOutcome], how: Strategy) -> list[ErrandsRun]:
-    return [run for each in outcomes if (run := each.run_of(how)) is not None]
 
 
 def _mean(values: Iterable[float]) -> float:
@@ -139,10 +114,9 @@ def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome
     factory.draw(axes, world)
     label = f"led about, {outcome.teaching_s:.0f} s"
     axes.plot([x for x, _ in outcome.led], [y for _, y in outcome.led], color=_LED, lw=0.8, zorder=2, label=label)
-    run = outcome.run_of("planning")
-    assert run is not None
-    draw_trail(axes, run.trail, f"errands without a teacher, {len(run.errands)} goals", carried_m=0.8, width=0.9)
-    meant = {each.goal: each.reached for each in run.errands}
+    goals = len(outcome.errands)
+    draw_trail(axes, outcome.trail, f"errands without a teacher, {goals} goals", width=0.9)
+    meant = {each.goal: each.reached for each in outcome.errands}
     for name, (x_m, y_m) in outcome.named.items():
         if name == HOME:
             axes.plot([x_m], [y_m], "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label=HOME)
@@ -152,9 +126,8 @@ def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome
             axes.annotate(
                 number, (x_m, y_m), ha="center", va="center", fontsize="x-small", weight=weight, zorder=7, bbox=_BOX
             )
-    reached = len(run.reached)
     axes.set_title(
-        f"robot {outcome.seed}: {reached} of {len(run.errands)} goals reached\n"
+        f"robot {outcome.seed}: {len(outcome.reached)} of {goals} goals reached\n"
         f"{outcome.ways} of {outcome.ways_in_all} ways taught in {outcome.teaching_s:.0f} s",
         fontsize="medium",
     )

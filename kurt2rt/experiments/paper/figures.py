@@ -9,17 +9,16 @@ from matplotlib.figure import Figure
 
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import PaperResult
-from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
-from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
+from kurt2rt.experiments.lockstep.trails import legend_below
 from kurt2rt.experiments.paper.tables import GrowthStudy, PaperStudy
-from kurt2rt.experiments.study.drive_row import DriveRow
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 
 _COLUMNS = 3
 _MOST_UNSEEN = 1
 """Generated worlds in the picture of a task."""
-_VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
+_SUCCESS_WORDS = {ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
 
 
 def draw_eight(factory: SimulationFactory, drive: DriveRow, path: Path) -> None:
@@ -49,7 +48,7 @@ def draw_drives(factory: SimulationFactory, drives: Sequence[DriveRow], path: Pa
 def _format_drive(drive: DriveRow) -> str:
     end = f", {drive.early_end}" if drive.early_end else ""
     progress = f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions_text(drive.collisions)}"
-    return f"{progress}\n{_VERDICT_TEXTS[drive.verdict]}{end}"
+    return f"{progress}\n{_SUCCESS_WORDS.get(drive.verdict, drive.verdict.text)}{end}"
 
 
 _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}

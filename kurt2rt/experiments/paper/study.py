@@ -1,6 +1,5 @@
 """Paper study: each task in each reading, taught and examined with many seeds, and the curves of Fig. 2."""
 
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -11,11 +10,9 @@ from hal.settings_files import find_config
 from kurt2rt.core.phase_settings import PHASES
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_metric
-from kurt2rt.experiments.lockstep.curriculum import Report, run_exams
-from kurt2rt.experiments.lockstep.seed_result import counts_of
+from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.paper.settings import ExperimentSettings, Extent, PaperSettings
-from kurt2rt.experiments.study.drive_row import DriveRow, row_with_teacher
-from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, TaughtOutcome
+from kurt2rt.experiments.study.jobs import CurriculumJob, JobParts, Outcome, StudyJob, curriculum_time_s
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
@@ -23,14 +20,6 @@ from kurt2rt.experiments.study.targets import ROBOTS
 
 Reading = Literal["shipped", "plain"]
 """Reading of the paper's scheme: the settings of this project, or the literal ones."""
-
-
-class ExaminedOutcome(TaughtOutcome):
-    """One robot, taught and examined."""
-
-    rlas_of: dict[str, int]
-    """Number of RLAs by behaviour; empty for a single behaviour."""
-    drives: tuple[DriveRow, ...]
 
 
 class GrowthOutcome(Outcome):
@@ -41,31 +30,12 @@ class GrowthOutcome(Outcome):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TaughtJob(StudyJob):
-    """Robot of one task, one reading of the paper and one seed, taught and examined."""
+class TaughtJob(CurriculumJob):
+    """Robot of one task, one reading of the paper and one seed; also generated worlds of its own are in its exams."""
 
-    outcome = ExaminedOutcome
-    gives_lesson: ClassVar[bool] = True
-    gives_exams: ClassVar[bool] = True
+    keeps_places: ClassVar[bool] = True
     settings: ExperimentSettings
     reading: Reading
-
-    worlds: tuple[str, ...]
-    """Worlds of the exams: those of the task, and generated ones of the robot's own."""
-
-    async def measure(self, knowledge: Path, report: Report) -> ExaminedOutcome:
-        """Teach the task into the file `knowledge`, examine it in each world and return the outcome."""
-        factory, robot, task, seed, engine = self.factory, self.robot, self.task, self.seed, self.engines.exams
-        lesson, events = await self.teach(knowledge, report)
-        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, engine=engine)
-        counts, several = Counter(rla.behaviour for rla in lesson.rlas), len(task.behaviours) > 1
-        return ExaminedOutcome(
-            made_of=self.made_of,
-            seed=seed,
-            lesson=counts_of(lesson),
-            rlas_of={name: counts[name] for name in task.behaviours} if several else {},
-            drives=tuple(map(row_with_teacher, exams)),
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -138,7 +108,7 @@ def make_plan(
                 made_of=fingerprints.of(task, (task.teaching.world, *worlds)),
                 name=f"{task.name}, seed {seed}{end}",
                 stem=f"{reading}/{task.name}-{seed}",
-                robot_time_s=task.teaching.duration_s + 2 * len(worlds) * task.exam.duration_s,
+                robot_time_s=curriculum_time_s(task, len(worlds)),
                 settings=each,
                 reading=reading,
                 worlds=worlds,

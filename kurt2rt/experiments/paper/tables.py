@@ -7,22 +7,22 @@ from typing import NamedTuple
 
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
 from kurt2rt.core.task_settings import FeatureWeight, TaskSettings
-from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
-from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings
 from kurt2rt.experiments.paper.study import (
-    ExaminedOutcome,
     GrowthJob,
     GrowthOutcome,
     PaperExtent,
     Reading,
     TaughtJob,
 )
-from kurt2rt.experiments.study.drive_row import DriveRow, collisions_in_10_min, right_rate
+from kurt2rt.experiments.study.exam_tables import success_text
 from kurt2rt.experiments.study.figures import SavedFigure
+from kurt2rt.experiments.study.intervals import collisions_in_10_min, quartiles, right_rate
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
-from kurt2rt.experiments.study.table import Table, median, of_text, table_of, to_text
+from kurt2rt.experiments.study.table import Table, median, of_text, share_text, table_of, to_text
 from kurt2rt.experiments.study.targets import ROBOTS, Verdict, needed_of, reasons_against_judging, targets_table
 
 CHOSEN_ON_ROOMS = range(60)
@@ -33,7 +33,7 @@ SUCCESS = (
     "and at least the share that is asked of the junctions. Where that policy itself gets nowhere, the exam is not "
     "judged and counts neither way."
 )
-_SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
+_SUCCESS_WORDS = {ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
 _OF_RATES = (
     "Its interval is the wider at each end of Poisson's exact one and a bootstrap over robots; in generated worlds "
@@ -148,12 +148,6 @@ class InWorld(NamedTuple):
         """Number of drives that passed."""
         return sum(each.passed for each in self.drives)
 
-    @property
-    def success_text(self) -> str:
-        """Number of drives that passed: `18 of 20`, or `18 of 19, 1 not judged`."""
-        left_out = len(self.drives) - self.judged
-        return of_text(self.passed, self.judged) + (f", {left_out} not judged" if left_out else "")
-
 
 def worlds_of(group: Examined) -> list[InWorld]:
     """Return the drives of an experiment in each world and in all generated ones, where there are any."""
@@ -197,7 +191,7 @@ def verdicts(group: Examined) -> Iterator[Verdict]:
         if share is not None:
             needed, judged = needed_of(share, world.judged), world.judged > 0
             at_least, met = f"at least {of_text(needed, world.judged)}", judged and world.passed >= needed
-            yield Verdict(f"success in {world.label}", at_least, world.success_text, met, judged)
+            yield Verdict(f"success in {world.label}", at_least, success_text(world.drives), met, judged)
         if asked.right_at_least:
             right = right_rate(world.drives)
             yield Verdict(
@@ -269,17 +263,14 @@ def knowledge_table(groups: Sequence[Examined], title: str) -> Table:
 def exam_table(groups: Sequence[Examined], title: str) -> Table:
     """Return the table of success and collisions by world."""
 
-    def interval(world: InWorld) -> str:
-        return to_text(wilson_interval(world.passed, world.judged), ".0%") if world.judged else ""
-
     times = sorted({each.of.task.exam.duration_s for each in groups})
     return table_of(
         _sentence(title),
         _all_worlds(groups),
         ("task", lambda world: world.of.of.label),
         ("world", lambda world: world.label),
-        ("success", lambda world: world.success_text),
-        ("95 %", interval),
+        ("success", lambda world: success_text(world.drives)),
+        ("95 %", lambda world: share_text(world.passed, world.judged)),
         ("stuck", lambda world: sum(each.ended_early for each in world.drives)),
         ("collided", lambda world: sum(each.collisions > 0 for each in world.drives)),
         ("in 10 min", lambda world: f"{collisions_in_10_min(world.drives).value:.2f}"),
@@ -381,7 +372,7 @@ def unseen_table(group: Examined) -> Table:
         sorted(drives, key=lambda each: (names.index(each[1].world), each[0])),
         ("world", lambda each: each[1].world),
         ("robot", lambda each: each[0]),
-        ("success", lambda each: _SUCCESS_WORDS[each[1].verdict]),
+        ("success", lambda each: _SUCCESS_WORDS.get(each[1].verdict, each[1].verdict.text)),
         ("collisions", lambda each: each[1].collisions),
         ("progress (teacher's own)", lambda each: f"{each[1].progress:.1f} ({_of_teacher(each[1])}) {each[1].unit}"),
         ("ended early", lambda each: each[1].early_end),
@@ -392,8 +383,7 @@ def _of_teacher(drive: DriveRow) -> str:
     """His progress, and whether it is a measure."""
     teacher = drive.teacher
     assert teacher is not None
-    how = ", got nowhere" if teacher.got_nowhere else ", failed" if teacher.failed else ""
-    return f"{teacher.progress:.1f}{how}"
+    return ", ".join(filter(None, (f"{teacher.progress:.1f}", teacher.why_no_measure)))
 
 
 def _quartiles_text(values: Sequence[float]) -> str:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.experiments.lockstep.report import label_of, wilson_interval
+from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.lockstep.teacher_workload import SAID
 from kurt2rt.experiments.phases.steps import (
     BRANCHES,
@@ -22,8 +22,8 @@ from kurt2rt.experiments.phases.steps import (
     TITLES,
 )
 from kurt2rt.experiments.phases.tables import MEASURES, PhasesStudy, drives_of, passed_of
-from kurt2rt.experiments.study.drive_row import collisions_in_10_min
 from kurt2rt.experiments.study.figures import SavedFigure, save
+from kurt2rt.experiments.study.intervals import collisions_in_10_min, wilson_interval
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
 _TEACHING = (PHASE_2, PHASE_3, PHASE_4, PHASE_5)

@@ -23,11 +23,10 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
@@ -43,7 +42,6 @@ from kurt2rt.experiments.phases.steps import (
     phases_of,
     steps_of,
 )
-from kurt2rt.experiments.study.drive_row import DriveRow, row_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
 from kurt2rt.experiments.study.results import StudyError
@@ -205,8 +203,8 @@ class PhasesJob(StudyJob):
         Raises SettingsError if task and world do not fit.
         """
         setups = [ExamSetup(each, self.seed, teacher_policy=True, stuck_ends=False) for each in self.task.exam.worlds]
-        drives = await self._drive([BatchExam(each) for each in setups], report, self.engines.exams)
-        return tuple(row_of(each, ExamVerdict.FAILED if each.failed else ExamVerdict.PASSED) for each in drives)
+        drives = await self._drive(setups, report, self.engines.exams)
+        return tuple(each.stored().as_measure() for each in drives)
 
     async def examine(
         self,
@@ -232,7 +230,7 @@ class PhasesJob(StudyJob):
         exams = [self._exam(each.world, events, saved, autonomous_values) for each in teachers]
         drives = await self._drive(exams, report, self.engines.exams)
         return tuple(
-            row_of(drive, drive.verdict(teacher.progress, self.task.exam.success))
+            drive.stored().judged_by(teacher.progress, self.task.exam.success)
             for drive, teacher in zip(drives, teachers, strict=True)
         )
 
@@ -246,9 +244,9 @@ class PhasesJob(StudyJob):
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
         exam = self._exam(self.task.teaching.world, events, saved, None)
-        setup = replace(exam.setup, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
+        setup = replace(exam, appraises=True, on_tick=lambda record, _metric: scoring.on_tick(record))
         # A batch has no record of each tick.
-        await self._drive([replace(exam, setup=setup)], report, Engine.CAN)
+        await self._drive([setup], report, Engine.CAN)
         return tuple(scoring.judgements)
 
     def _exam(
@@ -257,12 +255,18 @@ class PhasesJob(StudyJob):
         events: Sequence[TeachingEvent],
         saved: Statistics | None,
         autonomous_values: Statistics | None,
-    ) -> BatchExam:
+    ) -> ExamSetup:
         # A robot without knowledge only stands: its exam need not last.
-        setup = ExamSetup(world, self.seed, saved=saved, autonomous_values=autonomous_values, stuck_ends=not events)
-        return BatchExam(setup, events)
+        return ExamSetup(
+            world,
+            self.seed,
+            events=events,
+            saved=saved,
+            autonomous_values=autonomous_values,
+            stuck_ends=not events,
+        )
 
-    async def _drive(self, exams: Sequence[BatchExam], report: Report, engine: Engine) -> list[ExamResult]:
+    async def _drive(self, exams: Sequence[ExamSetup], report: Report, engine: Engine) -> list[DriveRow]:
         return await run_drives(self.factory, self.robot, self.task, exams, report, engine)
 
 

@@ -10,7 +10,7 @@ from behaviors.metrics.task_metric import DISTANCE_ERROR
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.phase_settings import AskedShare
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.steps import (
     ASKS,
@@ -33,12 +33,20 @@ from kurt2rt.experiments.phases.steps import (
     phases_of,
 )
 from kurt2rt.experiments.phases.study import JobOutcome, Judgement, PhasesTask, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.study.drive_row import TEN_MIN_S, DriveRow, collisions_in_10_min
 from kurt2rt.experiments.study.figures import SavedFigure
-from kurt2rt.experiments.study.intervals import Rate, RateDifference, difference_of, fall_of, rate_of
+from kurt2rt.experiments.study.intervals import (
+    TEN_MIN_S,
+    Rate,
+    RateDifference,
+    collisions_in_10_min,
+    difference_of,
+    fall_of,
+    quartiles,
+    rate_of,
+)
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import StudyPlan
-from kurt2rt.experiments.study.table import Table, median, of_text, table_of, to_text
+from kurt2rt.experiments.study.table import Table, median, of_text, share_text, table_of, to_text
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 
 _HOUR_S = 3600.0
@@ -376,7 +384,7 @@ def exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str)
         ("world", lambda each: label_of(each.world)),
         ("RLAs", of_stage(lambda stage: stage.rlas)),
         ("success", lambda each: of_text(passed_of(each.drives), len(each.drives))),
-        ("95 %", lambda each: to_text(wilson_interval(passed_of(each.drives), len(each.drives)), ".0%")),
+        ("95 %", lambda each: share_text(passed_of(each.drives), len(each.drives))),
         *_collision_columns(lambda each: collisions_in_10_min(each.drives)),
         ("stuck", lambda each: sum(drive.ended_early for drive in each.drives)),
         ("progress", lambda each: f"{progress(each.drives)[1]:.1f} {each.drives[0].unit}"),

@@ -8,12 +8,12 @@ from pathlib import Path
 from matplotlib.axes import Axes
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.lockstep.trails import ASKED, columns
+from kurt2rt.experiments.lockstep.drive_row import Place
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, legend_below
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteOutcome
 from kurt2rt.experiments.route.tables import RouteStudy
-from kurt2rt.experiments.study.drive_row import Place
-from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, legend_below, panels_of, save
+from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
 
 _ROUTE = "#e8a33d"
@@ -24,13 +24,13 @@ _BESIDE_M = 0.13
 
 
 def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
-    """Draw each length and variant into the folder and yield it: route-<variant>-<decisions>.png. Raises OSError."""
-    for (variant, decisions), outcomes in study.routes:
-        path = folder / f"route-{variant.name}-{decisions}.png"
+    """Draw each length into the folder and yield it: route-<decisions>.png. Raises OSError."""
+    for decisions, outcomes in study.routes:
+        path = folder / f"route-{decisions}.png"
         draw_routes(factory, outcomes, path)
         yield SavedFigure(
             path,
-            f"Routes of {decisions} decisions: {variant.title}",
+            f"Routes of {decisions} decisions",
             "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive "
             "without a teacher; red: wrong decisions (triangle: symbols, square: mid level, circle: basic level); "
             "black: collisions.",

@@ -6,17 +6,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from behaviors.metrics.route import RouteSettings
 from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
+from kurt2rt.experiments.lockstep.compatibility import route_of_task, with_route
 from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, Place
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.seed_result import counts_of
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.route.route_monitor import RouteMonitor, Wrong
-from kurt2rt.experiments.route.variants import Variant
-from kurt2rt.experiments.study.drive_row import DriveRow, Place, row_of
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
@@ -49,7 +47,7 @@ class BasicJob(StudyJob):
     async def measure(self, knowledge: Path, report: Report) -> TaughtOutcome:
         """Teach the streets into the file `knowledge` and return the outcome."""
         lesson, _ = await self.teach(knowledge, report)
-        return TaughtOutcome(made_of=self.made_of, seed=self.seed, lesson=counts_of(lesson))
+        return TaughtOutcome(made_of=self.made_of, seed=self.seed, lesson=lesson.counts)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +55,6 @@ class RouteJob(StudyJob):
     """Training run and exam on one route; the task holds the robot's own route."""
 
     outcome = RouteOutcome
-    variant: Variant
     basic: Path
     """Knowledge of the streets; the job copies it."""
 
@@ -76,11 +73,11 @@ class RouteJob(StudyJob):
 
         Raises KnowledgeError, SettingsError, LessonLostError.
         """
-        task = self.variant.task(self.task)
+        task = self.task
         metric, world = route_of_task(task), task.exam.worlds[0]
         lessons = []
-        for plan in self.variant.plans(task, metric.starts):
-            lesson, events = await self.teach(knowledge, _named(report, plan), task, plan)
+        for plan in lesson_plans(task, metric.starts):
+            lesson, events = await self.teach(knowledge, _named(report, plan), plan=plan)
             lessons.append(lesson)
         watching = RouteMonitor()
         with closing(self.factory.open(world, self.seed, "exam of a route")) as simulation:
@@ -88,8 +85,7 @@ class RouteJob(StudyJob):
                 simulation,
                 self.robot,
                 task,
-                events,
-                ExamSetup(world, self.seed, on_tick=watching.on_tick),
+                ExamSetup(world, self.seed, events=events, on_tick=watching.on_tick),
                 lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
             )
         watching.end()
@@ -107,41 +103,45 @@ class RouteJob(StudyJob):
         return RouteOutcome(
             made_of=self.made_of,
             seed=self.seed,
-            lesson=counts_of(lessons[-1]).model_copy(update=counts),
+            lesson=lessons[-1].counts.model_copy(update=counts),
             route=tuple((leg.junction.x_m, leg.junction.y_m) for leg in legs),
             mid_rlas=len(lessons[-1].mid_rlas),
             mid_asks=of_all("mid_asks"),
             mid_corrections=of_all("mid_corrections"),
             missed_junctions=of_all("missed_junctions"),
-            drive=row_of(
-                exam, ExamVerdict.FAILED if watching.wrong or exam.failed else ExamVerdict.PASSED, trails=True
-            ),
+            drive=exam.with_verdict(ExamVerdict.FAILED) if watching.wrong else exam.as_measure(),
             wrong=tuple(watching.wrong),
         )
+
+
+def lesson_plans(task: TaskSettings, starts: int) -> tuple[LessonPlan, ...]:
+    """Return one plan for each start, in order: the task's whole lesson, cut into parts of equal length.
+
+    Each part continues the phases where the part before ended. `starts`: number of parts.
+    """
+    whole = plan_of(task)
+    part_s = whole.duration_s / starts
+    return tuple(
+        LessonPlan(_part(whole.phases, part * part_s, (part + 1) * part_s), purpose=f"route-{part + 1}")
+        for part in range(starts)
+    )
+
+
+def _part(phases: tuple[tuple[Phase, float], ...], from_s: float, to_s: float) -> tuple[tuple[Phase, float], ...]:
+    """Return the phases between two times in s."""
+    part, begins_s = [], 0.0
+    for phase, lasts_s in phases:
+        ends_s = begins_s + lasts_s
+        within_s = min(ends_s, to_s) - max(begins_s, from_s)
+        if within_s > 0:
+            part.append((phase, within_s))
+        begins_s = ends_s
+    return tuple(part)
 
 
 def _named(report: Report, plan: LessonPlan) -> Report:
     """Each part of a lesson has a bar of its own."""
     return lambda what, done_s, whole_s: report(f"{what}: {plan.purpose}", done_s, whole_s)
-
-
-def route_of_task(task: TaskSettings) -> RouteSettings:
-    """Return the settings of a task's route. Raises hal.settings.SettingsError for a task without one."""
-    if isinstance(task.metric, RouteSettings):
-        return task.metric
-    raise SettingsError(f"its metric is {task.metric.kind}, and there is no route to teach", where=f"task {task.name}")
-
-
-def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
-    """Return the task with the route of this robot, unless it names one; `decisions`: None: the task's number.
-
-    Raises hal.settings.SettingsError for a task that teaches no route.
-    """
-    metric = route_of_task(task)
-    update: dict[str, object] = {"seed": seed if metric.seed is None else metric.seed}
-    if decisions is not None:
-        update["decisions"] = decisions
-    return task.model_copy(update={"metric": metric.model_copy(update=update)})
 
 
 class RouteTasks(NamedTuple):
@@ -157,7 +157,6 @@ def make_plan(
     task: TaskSettings,
     seeds: Sequence[int],
     decisions: Sequence[int],
-    variants: Sequence[Variant],
     parts: JobParts,
     *,
     basic_folder: Path | None = None,
@@ -168,7 +167,6 @@ def make_plan(
         task: that teaches the route.
         seeds: one robot each.
         decisions: lengths of the routes; empty: the task's own.
-        variants: ways of teaching.
         parts: factory, robot and results of the jobs.
         basic_folder: knowledge files of the streets, by `kurt2rt train`; None: the streets are taught first.
 
@@ -191,15 +189,13 @@ def make_plan(
             **parts,
             task=routes[seed, count],
             seed=seed,
-            made_of=fingerprints.of(variant.task(routes[seed, count]), worlds, streets.made_of[seed], repr(variant)),
-            name=f"{task.name} of {count}, {variant.name}, seed {seed}",
-            stem=f"{variant.name}/{task.name}-{count}-{seed}",
+            made_of=fingerprints.of(routes[seed, count], worlds, streets.made_of[seed]),
+            name=f"{task.name} of {count}, seed {seed}",
+            stem=f"{task.name}-{count}-{seed}",
             robot_time_s=task.teaching.duration_s + task.exam.duration_s,
             wave=1,
-            variant=variant,
             basic=streets.files[seed],
         )
-        for variant in variants
         for count in lengths
         for seed in seeds
     )

@@ -5,16 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.core.task_settings import PaperResult, TaskSettings
-from kurt2rt.experiments.lockstep.report import quartiles, wilson_interval
 from kurt2rt.experiments.route.route_monitor import LAYERS
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, RouteTasks
-from kurt2rt.experiments.route.variants import TAUGHT, Variant
-from kurt2rt.experiments.study.drive_row import right_rate
 from kurt2rt.experiments.study.figures import SavedFigure
-from kurt2rt.experiments.study.intervals import Rate
+from kurt2rt.experiments.study.intervals import Rate, quartiles, right_rate
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
-from kurt2rt.experiments.study.table import Table, collisions_text, median, of_text, table_of, to_text
+from kurt2rt.experiments.study.table import Table, collisions_text, median, of_text, share_text, table_of, to_text
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 
 WITHOUT_ERROR = {8: 18 / 20, 12: 18 / 20, 16: 15 / 20}
@@ -25,8 +22,8 @@ _LAYERS = (
     "Which layer failed: symbols: what the robot had noticed of junctions was not what it had done there; mid: it had "
     "noticed everything, and wanted something else or asked; basic: it was told what is right, and did not do it."
 )
-Routes = Group[tuple[Variant, int], RouteOutcome]
-"""Robots that were taught routes of one number of decisions by one variant."""
+Routes = Group[int, RouteOutcome]
+"""Robots that were taught routes of one number of decisions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +36,7 @@ class RouteStudy:
 
 def read_study(plan: StudyPlan[RouteTasks]) -> RouteStudy:
     """Read the results of all jobs of the plan. Raises StudyError if a result is missing or damaged."""
-    return RouteStudy(plan, read_groups(plan.of(RouteJob), lambda job: (job.variant, job.decisions), RouteOutcome))
+    return RouteStudy(plan, read_groups(plan.of(RouteJob), lambda job: job.decisions, RouteOutcome))
 
 
 def right_of(routes: Routes) -> Rate:
@@ -48,10 +45,10 @@ def right_of(routes: Routes) -> Rate:
 
 
 def verdicts(routes: Routes, paper: PaperResult) -> Iterator[Verdict]:
-    """Yield the verdicts on routes of one length, by the paper's results; none for controls and other lengths."""
-    (variant, decisions), outcomes = routes
+    """Yield the verdicts on routes of one length, by the paper's results; none for other lengths."""
+    decisions, outcomes = routes
     share = WITHOUT_ERROR.get(decisions)
-    if variant != TAUGHT or share is None:
+    if share is None:
         return
     most = max(each.mid_rlas for each in outcomes)
     yield Verdict("mid-level RLAs, most", f"at most {paper.rlas}", str(most), most <= paper.rlas)
@@ -78,7 +75,7 @@ def all_tables(study: RouteStudy) -> Iterator[Table]:
 
 
 def taught_table(study: RouteStudy) -> Table:
-    """Return the table of the training runs, a row for each length and variant."""
+    """Return the table of the training runs, a row for each length."""
 
     def middle(of: Callable[[RouteOutcome], float]) -> Callable[[Routes], str]:
         return lambda each: f"{median(map(of, each.outcomes)):g}"
@@ -86,7 +83,6 @@ def taught_table(study: RouteStudy) -> Table:
     return table_of(
         "What was taught",
         study.routes,
-        ("taught how", _how),
         ("route", _length),
         ("mid-level RLAs", middle(lambda each: each.mid_rlas)),
         ("quartiles", lambda each: to_text(quartiles([robot.mid_rlas for robot in each.outcomes])[::2], "g")),
@@ -98,7 +94,6 @@ def taught_table(study: RouteStudy) -> Table:
         ("asks", middle(lambda each: each.lesson.asks)),
         ("corrections", middle(lambda each: each.lesson.corrections)),
         ("rescues", middle(lambda each: each.lesson.rescues)),
-        words=2,
         note=f"Medians of {len(study.plan.seeds)} robots. Asks and corrections first of the mid level, then of the "
         "basic one. Missed: junctions that the mid level did not notice, where the teacher commanded. Robot time, "
         "without the streets, which were taught before. Taught by the scripted teacher "
@@ -107,10 +102,10 @@ def taught_table(study: RouteStudy) -> Table:
 
 
 def exam_table(study: RouteStudy) -> Table:
-    """Return the table of the exams, a row for each length and variant."""
+    """Return the table of the exams, a row for each length."""
 
-    def interval(each: Routes) -> str:
-        return to_text(wilson_interval(sum(robot.drive.passed for robot in each.outcomes), len(each.outcomes)), ".0%")
+    def passed(each: Routes) -> int:
+        return sum(robot.drive.passed for robot in each.outcomes)
 
     def failed(layer: str) -> Callable[[Routes], int]:
         return lambda each: sum(wrong.layer == layer for robot in each.outcomes for wrong in robot.wrong)
@@ -118,10 +113,9 @@ def exam_table(study: RouteStudy) -> Table:
     return table_of(
         "Drives without a teacher",
         study.routes,
-        ("taught how", _how),
         ("route", _length),
-        ("without an error", lambda each: of_text(sum(r.drive.passed for r in each.outcomes), len(each.outcomes))),
-        ("95 %", interval),
+        ("without an error", lambda each: of_text(passed(each), len(each.outcomes))),
+        ("95 %", lambda each: share_text(passed(each), len(each.outcomes))),
         (
             "decisions right",
             lambda each: f"{right_of(each).value:.2%} of {sum(r.drive.junctions for r in each.outcomes)}",
@@ -130,7 +124,6 @@ def exam_table(study: RouteStudy) -> Table:
         *((layer, failed(layer)) for layer in LAYERS),
         ("collisions", lambda each: sum(robot.drive.collisions for robot in each.outcomes)),
         ("stuck", lambda each: sum(robot.drive.ended_early for robot in each.outcomes)),
-        words=2,
         note=f"{study.plan.about.task.exam.duration_s:g} s each. Without an error: every decision right, no "
         "collision, not stuck, not stopped by the guard. A robot that left its route is set down on it again, and "
         f"goes on; one that is stuck ends there. {_LAYERS}",
@@ -140,7 +133,7 @@ def exam_table(study: RouteStudy) -> Table:
 def robots_table(routes: Routes) -> Table:
     """Return the table of single robots."""
     return table_of(
-        f"Each robot: {_how(routes)}, {_length(routes)}",
+        f"Each robot: {_length(routes)}",
         routes.outcomes,
         ("robot", lambda each: each.seed),
         ("mid-level RLAs", lambda each: each.mid_rlas),
@@ -183,12 +176,8 @@ def errors_of(outcome: RouteOutcome) -> str:
     return ", ".join(filter(None, said))
 
 
-def _how(routes: Routes) -> str:
-    return routes.of[0].title
-
-
 def _length(routes: Routes) -> str:
-    return f"{routes.of[1]} decisions"
+    return f"{routes.of} decisions"
 
 
 def write_routes(study: RouteStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:

@@ -8,11 +8,11 @@ from optuna.trial import FrozenTrial
 from pydantic import ValidationError
 
 from hal.settings import Settings
-from kurt2rt.experiments.search.journal import TrialJournal, finished
 from kurt2rt.experiments.search.plan import SHIPPED, SearchJob, SearchPlan, label_of
 from kurt2rt.experiments.search.score import RobotScore, effort, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
+from kurt2rt.experiments.search.trials import SearchTrials, finished
 from kurt2rt.experiments.study.intervals import RateDifference, difference_of
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
@@ -67,12 +67,12 @@ class CheckResult:
         return max(better, key=lambda each: score_of(each.robots, self.objective), default=None)
 
 
-def begin_check(plan: SearchPlan, journal: TrialJournal, trials: int) -> CheckRecord:
+def begin_check(plan: SearchPlan, found: SearchTrials, trials: int) -> CheckRecord:
     """Write down which of the first `trials` trials are checked; they never change. Raises StudyError, OSError."""
     path = plan.folder / _FILE
     if path.exists():
         return read_record(path)
-    best = best_trials(journal.trials[:trials], plan.check.best, plan.space.shipped)
+    best = best_trials(found.all[:trials], plan.check.best, plan.space.shipped)
     record = CheckRecord(trials=trials, candidates=tuple(trial.number for trial in best), date=utc_now())
     write_durably(path, record.model_dump_json() + "\n")
     return record
@@ -111,7 +111,7 @@ def check_time_s(plan: SearchPlan) -> float:
 
 def run_check(
     plan: SearchPlan,
-    journal: TrialJournal,
+    found: SearchTrials,
     record: CheckRecord,
     executor: Executor,
     on_progress: Callable[[PoolProgress], None],
@@ -127,7 +127,7 @@ def run_check(
         Exception: any error of a job.
     """
     results = plan.parts["results"]
-    sets = {SHIPPED: plan.space.shipped, **{label_of(each): journal.values(each) for each in record.candidates}}
+    sets = {SHIPPED: plan.space.shipped, **{label_of(each): found.values(each) for each in record.candidates}}
     jobs = {label: plan.check_jobs(values, label) for label, values in sets.items()}
     checked_jobs = tuple(job for of_label in jobs.values() for job in of_label)
     whole_s = sum(job.robot_time_s for job in checked_jobs)

@@ -13,9 +13,14 @@ from kurt2rt.experiments.search.score import RobotScore, robot_score
 from kurt2rt.experiments.search.settings import CheckSettings, Robots, SearchSettings
 from kurt2rt.experiments.search.space import TaskSpace, Values
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
-from kurt2rt.experiments.study.jobs import JobParts, require_places
+from kurt2rt.experiments.study.jobs import (
+    CurriculumJob,
+    ExaminedOutcome,
+    JobParts,
+    curriculum_time_s,
+    require_places,
+)
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
-from kurt2rt.experiments.study.seeds import CurriculumJob, SeedOutcome, curriculum_time_s
 
 SHIPPED = "shipped"
 """Label of the shipped settings."""
@@ -31,7 +36,7 @@ class SearchJob(CurriculumJob):
 
     def score(self) -> RobotScore:
         """Return the score of the stored result. Raises StudyError if it is missing or damaged."""
-        return robot_score(self.results.read(self, SeedOutcome))
+        return robot_score(self.results.read(self, ExaminedOutcome))
 
 
 def label_of(trial: int) -> str:
@@ -98,8 +103,9 @@ class SearchPlan:
                 made_of=self.fingerprints.of(own, (task.teaching.world, *worlds)),
                 name=f"{part} {label}, seed {seed}",
                 stem=f"{part}/{label}/{task.name}-{seed}",
-                robot_time_s=curriculum_time_s(own),
+                robot_time_s=curriculum_time_s(own, len(worlds)),
                 engines=Engines(self.search.engine, self.search.engine),
+                worlds=worlds,
                 label=label,
             )
             jobs.append(job)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from statistics import fmean
 from typing import NamedTuple
 
-from kurt2rt.experiments.lockstep.seed_result import SeedResult
 from kurt2rt.experiments.search.settings import Objective
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
 
 PRESSES_OF_A_COLLISION = 10
 """Presses that a collision in a lesson counts as: it may hurt someone, and a press takes a second.
@@ -31,11 +31,11 @@ class RobotScore(NamedTuple):
         return self.passed / self.exams
 
 
-def robot_score(result: SeedResult) -> RobotScore:
+def robot_score(result: ExaminedOutcome) -> RobotScore:
     """Return the score of one robot's lesson and exams."""
-    passed = sum(exam.succeeded for exam in result.exams)
+    passed = sum(drive.passed for drive in result.drives)
     lesson = result.lesson
-    return RobotScore(passed, len(result.exams), lesson.presses, lesson.collisions, lesson.rlas)
+    return RobotScore(passed, len(result.drives), lesson.presses, lesson.collisions, lesson.rlas)
 
 
 def effort(robot: RobotScore, objective: Objective) -> int:

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from optuna.trial import FrozenTrial
 
 from kurt2rt.experiments.search.check import CheckedSettings, CheckResult, best_trials
-from kurt2rt.experiments.search.journal import TrialJournal, finished
 from kurt2rt.experiments.search.plan import SHIPPED, SearchPlan, label_of
 from kurt2rt.experiments.search.score import PRESSES_OF_A_COLLISION, RobotScore, effort
 from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.space import Values
+from kurt2rt.experiments.search.trials import SearchTrials, finished
 from kurt2rt.experiments.study.figures import SavedFigure, save
 from kurt2rt.experiments.study.intervals import RateDifference
 from kurt2rt.experiments.study.report import Section, spans, write_report
@@ -33,9 +33,9 @@ _EFFORT: Mapping[Objective, str] = {
 }
 
 
-def all_tables(plan: SearchPlan, journal: TrialJournal, check: CheckResult) -> list[Table]:
+def all_tables(plan: SearchPlan, found: SearchTrials, check: CheckResult) -> list[Table]:
     """Return the tables of a finished search."""
-    return [_trials_table(plan, journal, check.record.trials), _check_table(plan, check)]
+    return [_trials_table(plan, found, check.record.trials), _check_table(plan, check)]
 
 
 def verdict_text(plan: SearchPlan, check: CheckResult) -> str:
@@ -50,8 +50,8 @@ def verdict_text(plan: SearchPlan, check: CheckResult) -> str:
     )
 
 
-def _trials_table(plan: SearchPlan, journal: TrialJournal, count: int) -> Table:
-    search, trials = plan.search, journal.trials[:count]
+def _trials_table(plan: SearchPlan, found: SearchTrials, count: int) -> Table:
+    search, trials = plan.search, found.all[:count]
     keys = tuple(each.key for each in search.space)
     shown = [*best_trials(trials, _SHOWN, plan.space.shipped), trials[0]]
     rows = []

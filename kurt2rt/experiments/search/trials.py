@@ -1,14 +1,90 @@
-"""Runner of the trials: robots come one after the other, and a trial that cannot beat the median ends early."""
+"""Trials of a search: values by a model of the trials before, robots one after the other, early ends.
 
+All of it follows from the stored results of the robots, so an interrupted search makes the same trials again.
+"""
+
+import math
 from collections.abc import Callable, Sequence
+from statistics import median
 
-from optuna.trial import TrialState
+import optuna
+from optuna.distributions import BaseDistribution, FloatDistribution
+from optuna.study import Study
+from optuna.trial import FrozenTrial, Trial, TrialState, create_trial
 
-from kurt2rt.experiments.search.journal import TrialJournal
-from kurt2rt.experiments.search.plan import SearchJob, SearchPlan
+from kurt2rt.experiments.search.plan import SearchPlan
 from kurt2rt.experiments.search.score import RobotScore, highest_score, score_of
+from kurt2rt.experiments.search.settings import Dimension
+from kurt2rt.experiments.search.space import Values, rounded
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.runner import Executor, run_missing
+
+_STARTUP_TRIALS = 10
+"""Trials with random values, before a model of the earlier ones chooses."""
+_PRUNES_AFTER_TRIALS = 4
+
+
+class SearchTrials:
+    """Trials of a search. The same search gives the same next trial after the same trials."""
+
+    def __init__(self, plan: SearchPlan) -> None:
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        self._dimensions = {each.key: each for each in plan.search.space}
+        self._seed = plan.search.sampler_seed
+        self._shipped = plan.space.shipped
+        self._study: Study = optuna.create_study(direction="maximize")
+
+    @property
+    def all(self) -> list[FrozenTrial]:
+        """All trials in order."""
+        return self._study.get_trials(deepcopy=False)
+
+    def values(self, number: int) -> Values:
+        """Return the values of a trial by key."""
+        return self.all[number].params
+
+    def begin(self, number: int) -> None:
+        """Begin the trial of the next number; the first one has the shipped values."""
+        values = self._choose(number) if number else self._shipped
+        chosen = {key: rounded(each, values[key]) if number else values[key] for key, each in self._dimensions.items()}
+        distributions = {key: _distribution(each) for key, each in self._dimensions.items()}
+        self._study.add_trial(create_trial(state=TrialState.RUNNING, params=chosen, distributions=distributions))
+
+    def report(self, number: int, step: int, score: float) -> None:
+        """Note the score of a trial's first `step + 1` robots; `score` is dimensionless."""
+        Trial(self._study, self.all[number]._trial_id).report(score, step)
+
+    def median_score(self, first: int) -> float:
+        """Return the median score of the finished trials before number `first`; -inf if they are too few to prune by.
+
+        The score is dimensionless.
+        """
+        scores = [trial.value for trial in finished(self.all[:first]) if trial.value is not None]
+        return median(scores) if len(scores) >= _PRUNES_AFTER_TRIALS else -math.inf
+
+    def prune(self, number: int) -> None:
+        """End a trial without a score."""
+        self._study.tell(number, state=TrialState.PRUNED)
+
+    def finish(self, number: int, score: float) -> None:
+        """End a trial with the score of all its robots, dimensionless."""
+        self._study.tell(number, score)
+
+    def _choose(self, number: int) -> Values:
+        """Return the values that a model of all trials so far chooses, by a random stream of the trial's own."""
+        sampler = optuna.samplers.TPESampler(seed=self._seed * 100_000 + number, n_startup_trials=_STARTUP_TRIALS)
+        study: Study = optuna.create_study(sampler=sampler, direction="maximize")
+        study.add_trials(self.all)
+        return study.ask({key: _distribution(each) for key, each in self._dimensions.items()}).params
+
+
+def finished(trials: Sequence[FrozenTrial]) -> list[FrozenTrial]:
+    """Return the trials that have a score."""
+    return [trial for trial in trials if trial.state is TrialState.COMPLETE]
+
+
+def _distribution(dimension: Dimension) -> BaseDistribution:
+    return FloatDistribution(dimension.low, dimension.high, log=dimension.log)
 
 
 def trials_time_s(plan: SearchPlan, trials: int) -> float:
@@ -17,17 +93,15 @@ def trials_time_s(plan: SearchPlan, trials: int) -> float:
 
 
 def run_trials(
-    plan: SearchPlan,
-    journal: TrialJournal,
-    trials: int,
-    executor: Executor,
-    on_progress: Callable[[PoolProgress], None],
-) -> None:
-    """Run trials until there are `trials`; go on with those that an earlier run left.
+    plan: SearchPlan, trials: int, executor: Executor, on_progress: Callable[[PoolProgress], None]
+) -> SearchTrials:
+    """Run so many trials, and return them; robots that have a result are not taught again.
 
     Which values a trial has does not depend on the number of processes.
 
     Args:
+        plan: of the search.
+        trials: number of trials.
         executor: runs the jobs.
         on_progress: gets the robot time of all trials; a pruned one counts as whole.
 
@@ -35,38 +109,29 @@ def run_trials(
         StudyError: a process was killed, or results of other settings are in the folder.
         Exception: any error of a job.
     """
-    at_once = plan.search.at_once
-    trial_s = trials_time_s(plan, 1)
+    found, at_once, trial_s = SearchTrials(plan), plan.search.at_once, trials_time_s(plan, 1)
     for first in range(0, trials, at_once):
-        numbers = range(first, min(first + at_once, trials))
+        numbers = list(range(first, min(first + at_once, trials)))
         for number in numbers:
-            if number == len(journal.trials):
-                journal.begin(number)
+            found.begin(number)
 
         def update(progress: PoolProgress, before_s: float = first * trial_s) -> None:
-            on_progress(PoolProgress(before_s + progress.done_s, progress.running))
+            on_progress(progress._replace(done_s=before_s + progress.done_s))
 
-        # Of earlier trials only, so that it is the same if some of these ended before a restart.
-        to_beat = journal.median_score(first)
-        running = [number for number in numbers if journal.trials[number].state is TrialState.RUNNING]
-
-        def run(wave: Sequence[SearchJob], on_wave: Callable[[PoolProgress], None]) -> None:
-            whole = (*wave, *plan.witnesses_of_trials(wave))
-            run_missing([whole], plan.parts["results"], executor, on_wave)
-
-        _run_together(plan, journal, running, to_beat, run, update)
+        _run_together(plan, found, numbers, executor, update)
+    return found
 
 
 def _run_together(
     plan: SearchPlan,
-    journal: TrialJournal,
+    found: SearchTrials,
     numbers: list[int],
-    to_beat: float,
-    run: Callable[[Sequence[SearchJob], Callable[[PoolProgress], None]], None],
+    executor: Executor,
     on_progress: Callable[[PoolProgress], None],
 ) -> None:
-    """Run some trials, robot by robot, and prune those that cannot have a higher score than `to_beat`."""
-    jobs = {number: plan.trial_jobs(journal.values(number), number) for number in numbers}
+    """Run some trials, robot by robot, and prune those that cannot beat the median of the trials before them."""
+    to_beat = found.median_score(numbers[0])
+    jobs = {number: plan.trial_jobs(found.values(number), number) for number in numbers}
     robots, before_s = plan.search.search.seeds.count, 0.0
     exams = robots * len(plan.search.search.worlds)
 
@@ -75,20 +140,19 @@ def _run_together(
 
     for step in range(robots):
         wave = tuple(jobs[number][step] for number in numbers)
-
         wave_s = sum(job.robot_time_s for job in wave)
 
         def update(progress: PoolProgress, before_s: float = before_s, wave_s: float = wave_s) -> None:
-            on_progress(PoolProgress(before_s + min(progress.done_s, wave_s), progress.running))
+            on_progress(progress._replace(done_s=before_s + min(progress.done_s, wave_s)))
 
-        run(wave, update)
+        run_missing([(*wave, *plan.witnesses_of_trials(wave))], plan.parts["results"], executor, update)
         before_s += wave_s
         for number in numbers:
-            journal.report(number, step, score_of(scores(number, step + 1), plan.search.objective))
+            found.report(number, step, score_of(scores(number, step + 1), plan.search.objective))
         if step < robots - 1:
             hopeless = [number for number in numbers if highest_score(scores(number, step + 1), exams) <= to_beat]
             for number in hopeless:
-                journal.prune(number)
+                found.prune(number)
             numbers = [number for number in numbers if number not in hopeless]
     for number in numbers:
-        journal.finish(number, score_of(scores(number, robots), plan.search.objective))
+        found.finish(number, score_of(scores(number, robots), plan.search.objective))

@@ -9,14 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
-from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.lockstep import trails
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.trails import columns
 
 _COLLIDED = "#111111"
 START = "#2e8540"
 _DPI = 130
-_CARRIED_M = 0.5
-"""A robot that is so far from where it was 0.2 s ago was set down elsewhere."""
 
 
 class SavedFigure(NamedTuple):
@@ -49,18 +48,10 @@ def draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveRow, width: f
 
     `width`: of the trail's line, in points of 0.35 mm.
     """
-    factory.draw(axes, drive.world)
-    draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_CARRIED_M, width=width)
+    label = f"the robot, {drive.duration_s:.0f} s"
+    trails.draw_drive(axes, factory, drive.world, drive.trail, drive.asked_at, label=label, width=width)
     # The start is hollow, for a robot that knows nothing asks there.
     axes.plot(*columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
-    if drive.asked_at:
-        label = f"situation unknown ({len(drive.asked_at)})"
-        axes.plot(*columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
     if drive.collided_at:
         label = f"collided ({len(drive.collided_at)})"
         axes.plot(*columns(drive.collided_at), "X", color=_COLLIDED, markersize=8, zorder=5, label=label)
-
-
-def legend_below(axes: Axes, columns: int = 3) -> None:
-    """Draw the legend below the floor plan, in so many columns, where it hides no wall."""
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, fontsize="small", frameon=False)

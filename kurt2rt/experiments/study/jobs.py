@@ -1,6 +1,7 @@
 """Job of a study: drives of one robot in simulated time, with a stored result."""
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,14 +12,14 @@ import anyio
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from hal.simulation import SimulationFactory
-from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_metric
-from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.lockstep.curriculum import Report, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.lesson import GivenLesson, LessonCounts
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.seed_result import LessonCounts
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
@@ -43,6 +44,15 @@ class TaughtOutcome(Outcome):
     """Stored outcome of a robot that was taught."""
 
     lesson: LessonCounts
+
+
+class ExaminedOutcome(TaughtOutcome):
+    """Stored outcome of a robot that was taught and examined."""
+
+    rlas_of: dict[str, int]
+    """RLAs of each taught behaviour, where there are several."""
+    drives: tuple[DriveRow, ...]
+    """Exams, each with the teacher's own drive."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,14 +108,18 @@ class StudyJob(ABC):
         return self.results.folder / self.knowledge_name
 
     async def teach(
-        self, knowledge: Path, report: Report, task: TaskSettings | None = None, plan: LessonPlan | None = None
-    ) -> tuple[TrainingResult, list[TeachingEvent]]:
-        """Teach the robot into the file `knowledge`; return the result and all events that the file then holds.
+        self,
+        knowledge: Path,
+        report: Report,
+        task: TaskSettings | None = None,
+        plan: LessonPlan | None = None,
+        learners: LearnerTeam | None = None,
+    ) -> GivenLesson:
+        """Teach the robot into the file `knowledge`; return the result with all events that the file then holds.
 
-        `task`: None: the job's. `plan`: None: the task's own lesson, by the engine of lessons. Raises the errors of
-        `curriculum.run_lesson`.
+        `task`: None: the job's. `plan`: None: the task's own lesson, by the engine of lessons. `learners`: None: RLAs
+        decide. Raises the errors of `curriculum.run_lesson`.
         """
-        engine = self.engines.lesson if plan is None else Engine.CAN
         return await run_lesson(
             self.factory,
             self.robot,
@@ -114,7 +128,8 @@ class StudyJob(ABC):
             seed=self.seed,
             report=report,
             plan=plan,
-            engine=engine,
+            engine=self.engines.lesson if plan is None else Engine.CAN,
+            learners=learners,
         )
 
     def run(self, on_progress: Progress) -> None:
@@ -130,6 +145,38 @@ class StudyJob(ABC):
             if self.knowledge_name is not None:
                 self.results.keep(folder / "knowledge", self.knowledge_name)
         self.results.write(self, outcome)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurriculumJob(StudyJob):
+    """Training run and exams of one robot."""
+
+    outcome = ExaminedOutcome
+    gives_lesson: ClassVar[bool] = True
+    gives_exams: ClassVar[bool] = True
+    keeps_places: ClassVar[bool] = False
+    """True if the exams are stored with the places of pictures."""
+    worlds: tuple[str, ...]
+    """Worlds of the exams."""
+
+    async def measure(self, knowledge: Path, report: Report) -> ExaminedOutcome:
+        """Teach the robot into the file `knowledge`, examine it and return the outcome."""
+        factory, robot, task, seed, engine = self.factory, self.robot, self.task, self.seed, self.engines.exams
+        lesson, events = await self.teach(knowledge, report)
+        exams = await run_exams(factory, robot, task, events, self.worlds, seed=seed, report=report, engine=engine)
+        counts, several = Counter(rla.behaviour for rla in lesson.rlas), len(task.behaviours) > 1
+        return ExaminedOutcome(
+            made_of=self.made_of,
+            seed=seed,
+            lesson=lesson.counts,
+            rlas_of={name: counts[name] for name in task.behaviours} if several else {},
+            drives=tuple(each.stored(places=self.keeps_places) for each in exams),
+        )
+
+
+def curriculum_time_s(task: TaskSettings, worlds: int) -> float:
+    """Return the time of the lesson, and in so many worlds of the exam and of the teacher's own drive, in s."""
+    return task.teaching.duration_s + 2 * worlds * task.exam.duration_s
 
 
 class ProgressSum:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from multiprocessing import connection
 from multiprocessing.managers import SyncManager
 from multiprocessing.process import BaseProcess
-from typing import NamedTuple, Protocol, Self, TypeVar
+from typing import NamedTuple, Protocol, Self
 
 from threadpoolctl import threadpool_limits
 
@@ -22,9 +22,6 @@ from kurt2rt.platform.gc_control import freeze_survivors
 Progress = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
 
-ResultT = TypeVar("ResultT")
-ResultT_co = TypeVar("ResultT_co", covariant=True)
-
 _LOOK_EVERY_S = 0.5
 _TELL_EVERY_S = 5.0
 
@@ -33,8 +30,8 @@ class JobKilledError(UserError):
     """The process of a job was killed from outside; the message names the job."""
 
 
-class Job(Protocol[ResultT_co]):
-    """Job that can be sent to another process."""
+class Job(Protocol):
+    """Job that can be sent to another process, and keeps its result itself."""
 
     @property
     def name(self) -> str:
@@ -46,8 +43,8 @@ class Job(Protocol[ResultT_co]):
         """Simulated time of the whole job in s, for the progress."""
         ...
 
-    def run(self, tell: Progress) -> ResultT_co:
-        """Run the job and return its result; `tell` gets the simulated seconds so far."""
+    def run(self, tell: Progress, /) -> None:
+        """Run the job; `tell` gets the simulated seconds so far."""
         ...
 
 
@@ -60,57 +57,24 @@ class PoolProgress(NamedTuple):
     """Names of the running jobs."""
 
 
-def run_jobs(
-    jobs: Sequence[Job[ResultT]],
-    processes: int,
-    *,
-    on_done: Callable[[int], None] = lambda _: None,
-    on_progress: Callable[[PoolProgress], None] = lambda _: None,
-) -> list[ResultT]:
-    """Run all jobs, the longest first; return their results in the order of the jobs.
-
-    With one process it is this one. The first error of a job ends all other jobs, and so does Ctrl-C; the error's notes
-    name the job.
-
-    Args:
-        on_done: gets the index of each job that is through.
-        on_progress: gets the progress of all jobs twice a second.
-
-    Raises:
-        JobKilledError: a process was killed from outside.
-        Exception: any error of a job.
-    """
-    with JobProcesses(min(processes, max(1, len(jobs)))) as pool:
-        return pool.run(jobs, on_done, on_progress)
-
-
-def _run_here(
-    jobs: Sequence[Job[ResultT]],
-    order: Sequence[int],
-    on_done: Callable[[int], None],
-    on_progress: Callable[[PoolProgress], None],
-) -> list[ResultT]:
-    results: dict[int, ResultT] = {}
+def _run_here(jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None]) -> None:
     before_s = 0.0
     frozen_before = gc.get_freeze_count()
     try:
-        for place in order:
-            job = jobs[place]
+        for job in jobs:
             on_progress(PoolProgress(before_s, (job.name,)))
 
-            def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
+            def tell(done_s: float, job: Job = job, before_s: float = before_s) -> None:
                 on_progress(PoolProgress(before_s + done_s, (job.name,)))
 
             freeze_survivors()
             with threadpool_limits(limits=1), _named(job):
-                results[place] = job.run(_now_and_then(tell))
+                job.run(_now_and_then(tell))
             before_s += job.robot_time_s
-            on_done(place)
     finally:
         if frozen_before == 0:  # a caller keeps its frozen objects
             gc.unfreeze()
     on_progress(PoolProgress(before_s, ()))
-    return [results[place] for place in range(len(jobs))]
 
 
 class JobProcesses:
@@ -138,18 +102,22 @@ class JobProcesses:
         if self._manager is not None:
             self._manager.shutdown()
 
-    def run(
-        self,
-        jobs: Sequence[Job[ResultT]],
-        on_done: Callable[[int], None] = lambda _: None,
-        on_progress: Callable[[PoolProgress], None] = lambda _: None,
-    ) -> list[ResultT]:
-        """Run all jobs as `run_jobs` does; after an error no others can be run."""
+    def run(self, jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None] = lambda _: None) -> None:
+        """Run all jobs, the longest first; after an error no others can be run.
+
+        With one process it is this one. The first error of a job ends all other jobs, and so does Ctrl-C; the error's
+        notes name the job. `on_progress` gets the progress of all jobs twice a second.
+
+        Raises:
+            JobKilledError: a process was killed from outside.
+            Exception: any error of a job.
+        """
         # The longest last would leave the other processes idle at the end.
-        order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
+        ordered = sorted(jobs, key=lambda job: -job.robot_time_s)
         if self._processes == 1 or len(jobs) <= 1:
-            return _run_here(jobs, order, on_done, on_progress)
-        return self._run_apart(jobs, order, on_done, on_progress)
+            _run_here(ordered, on_progress)
+        else:
+            self._run_apart(ordered, on_progress)
 
     def _started(self) -> tuple[ProcessPoolExecutor, SyncManager]:
         if self._pool is None or self._manager is None:
@@ -161,32 +129,24 @@ class JobProcesses:
             )
         return self._pool, self._manager
 
-    def _run_apart(
-        self,
-        jobs: Sequence[Job[ResultT]],
-        order: Sequence[int],
-        on_done: Callable[[int], None],
-        on_progress: Callable[[PoolProgress], None],
-    ) -> list[ResultT]:
+    def _run_apart(self, jobs: Sequence[Job], on_progress: Callable[[PoolProgress], None]) -> None:
         pool, manager = self._started()
-        results: dict[int, ResultT] = {}
         clocks, workers = manager.dict(), manager.dict()
-        places: dict[Future[ResultT], int] = {}
+        places: dict[Future[None], int] = {}
+        """Indexes of the jobs that are not through."""
         try:
-            for place in order:
-                places[pool.submit(_run_in_worker, jobs[place], place, clocks, workers)] = place
+            for place, job in enumerate(jobs):
+                places[pool.submit(_run_in_worker, job, place, clocks, workers)] = place
                 self._begun.update(set(multiprocessing.active_children()) - self._others)
-            waiting = set(places)
-            while waiting:
-                done, waiting = wait(waiting, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
+            while places:
+                done, _ = wait(places, timeout=_LOOK_EVERY_S, return_when=FIRST_COMPLETED)
                 for future in done:
                     with _named(jobs[places[future]]):
-                        results[places[future]] = future.result()
-                    on_done(places[future])
-                left = [place for place in order if place not in results]
-                on_progress(_pool_progress(jobs, left, self._processes, clocks))
+                        future.result()
+                    del places[future]
+                on_progress(_pool_progress(jobs, list(places.values()), self._processes, clocks))
         except BrokenProcessPool as error:
-            left = [place for place in order if place not in results]
+            left = list(places.values())
             pool.shutdown()  # how each process ended is known once the pool has waited for all
             killed = _killed(left, dict(workers), self._begun) or left[: self._processes]
             names = " or ".join(jobs[place].name for place in killed)
@@ -197,7 +157,6 @@ class JobProcesses:
             for process in set(multiprocessing.active_children()) - self._others:
                 process.terminate()
             raise
-        return [results[place] for place in range(len(jobs))]
 
 
 def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable[BaseProcess]) -> list[int]:
@@ -207,7 +166,7 @@ def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable
 
 
 @contextmanager
-def _named(job: Job[object]) -> Iterator[None]:
+def _named(job: Job) -> Iterator[None]:
     """Add the name of the job to the notes of its errors."""
     try:
         yield
@@ -216,14 +175,12 @@ def _named(job: Job[object]) -> Iterator[None]:
         raise
 
 
-def _run_in_worker(
-    job: Job[ResultT], place: int, clocks: MutableMapping[int, float], workers: MutableMapping[int, int]
-) -> ResultT:
+def _run_in_worker(job: Job, place: int, clocks: MutableMapping[int, float], workers: MutableMapping[int, int]) -> None:
     workers[place] = os.getpid()
     # As on the command line: this process shares the machine with its siblings.
     freeze_survivors()
     with threadpool_limits(limits=1):
-        return job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))
+        job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))
 
 
 def _now_and_then(tell: Progress) -> Progress:
@@ -239,7 +196,7 @@ def _now_and_then(tell: Progress) -> Progress:
 
 
 def _pool_progress(
-    jobs: Sequence[Job[ResultT]], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
+    jobs: Sequence[Job], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
 ) -> PoolProgress:
     """`left`: places of the jobs that are not through, in the order in which they are begun."""
     clock_s = dict(clocks)

@@ -9,7 +9,7 @@ from kurt2rt.experiments.study.pool import Job, JobKilledError, JobProcesses, Po
 from kurt2rt.experiments.study.results import Results, StoredResult, StudyError
 
 
-class StoredJob(StoredResult, Job[None], Protocol):
+class StoredJob(StoredResult, Job, Protocol):
     """Job that leaves its result in a file."""
 
     @property
@@ -69,7 +69,7 @@ class LocalExecutor:
         on_progress: Callable[[PoolProgress], None],
     ) -> None:
         """Run all jobs (`Executor.run`). Raises JobKilledError, and any error of a job."""
-        self._processes.run(jobs, on_progress=on_progress)
+        self._processes.run(jobs, on_progress)
 
 
 Waves = Sequence[Sequence[StoredJob]]

@@ -6,41 +6,11 @@ from pathlib import Path
 from typing import ClassVar
 
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams
-from kurt2rt.experiments.lockstep.seed_result import SeedResult, seed_result
-from kurt2rt.experiments.study.jobs import JobParts, StudyJob
+from kurt2rt.experiments.study.jobs import CurriculumJob, ExaminedOutcome, JobParts, curriculum_time_s
 from kurt2rt.experiments.study.pool import Progress
-from kurt2rt.experiments.study.provenance import Fingerprints, Provenance
+from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
-
-
-class SeedOutcome(SeedResult):
-    """Numbers of one robot, with their provenance."""
-
-    made_of: Provenance
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CurriculumJob(StudyJob):
-    """Training run and exams of one robot."""
-
-    outcome = SeedOutcome
-    gives_lesson: ClassVar[bool] = True
-    gives_exams: ClassVar[bool] = True
-
-    async def measure(self, knowledge: Path, report: Report) -> SeedOutcome:
-        """Teach the robot into the file `knowledge`, examine it and return the outcome."""
-        factory, robot, task, seed, engine = self.factory, self.robot, self.task, self.seed, self.engines.exams
-        lesson, events = await self.teach(knowledge, report)
-        exams = await run_exams(factory, robot, task, events, task.exam.worlds, seed=seed, report=report, engine=engine)
-        result = seed_result(CurriculumResult(lesson, exams))
-        return SeedOutcome(made_of=self.made_of, lesson=result.lesson, exams=result.exams)
-
-
-def curriculum_time_s(task: TaskSettings) -> float:
-    """Return the time of the lesson, and in each world of the exam and of the teacher's own drive, in s."""
-    return task.teaching.duration_s + 2 * len(task.exam.worlds) * task.exam.duration_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +53,8 @@ def make_plan(
             made_of=made,
             name=f"{task.name}, seed {seed}",
             stem=f"{task.name}-{seed}",
-            robot_time_s=curriculum_time_s(task),
+            robot_time_s=curriculum_time_s(task, len(task.exam.worlds)),
+            worlds=task.exam.worlds,
         )
         for seed in seeds
     ]
@@ -102,6 +73,6 @@ def forget_result(folder: Path, task: str, seed: int) -> None:
     (folder / f"results/{task}-{seed}.json").unlink(missing_ok=True)
 
 
-def read_results(plan: StudyPlan[None]) -> list[SeedOutcome]:
+def read_results(plan: StudyPlan[None]) -> list[ExaminedOutcome]:
     """Return the outcomes, in the order of the seeds. Raises StudyError if one is missing or damaged."""
-    return [job.results.read(job, SeedOutcome) for job in plan.of(SeedJob)]
+    return [job.results.read(job, ExaminedOutcome) for job in plan.of(SeedJob)]

@@ -7,7 +7,7 @@ from typing import TypeVar
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from kurt2rt.experiments.lockstep.report import quartiles, wilson_interval
+from kurt2rt.experiments.study.intervals import quartiles, wilson_interval
 from kurt2rt.platform.text_table import TextTable
 
 RowT = TypeVar("RowT")
@@ -66,7 +66,12 @@ def of_text(count: int, whole: int, *, interval: bool = False) -> str:
     if not whole and interval:
         return "none judged"
     text = f"{count} of {whole}"
-    return f"{text} ({to_text(wilson_interval(count, whole), '.0%')})" if interval else text
+    return f"{text} ({share_text(count, whole)})" if interval else text
+
+
+def share_text(count: int, whole: int) -> str:
+    """Return the 95 % interval of a share, such as `44% to 100%`; empty of none."""
+    return to_text(wilson_interval(count, whole), ".0%") if whole else ""
 
 
 def to_text(ends: Iterable[float], form: str) -> str:

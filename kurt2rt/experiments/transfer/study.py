@@ -1,22 +1,22 @@
-"""Transfer study: each robot is taught at home, and then on in new worlds, by each variant of teaching."""
+"""Transfer study: each robot is taught at home, and then on in new worlds, and examined there and at home."""
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from hal.settings import Settings, SettingsError
+from hal.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.seed_result import counts_of
-from kurt2rt.experiments.study.drive_row import DriveRow, Examiner
+from kurt2rt.experiments.study.checkpoints import Checkpoint, run_checkpoints
+from kurt2rt.experiments.study.examiner import Examiner
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places, world_of
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
@@ -28,64 +28,16 @@ PURPOSE = "new-world"
 """Purpose of the simulation in which a robot is taught on: another start and other noise than at home."""
 
 
-@dataclass(frozen=True, slots=True)
-class Variant:
-    """Variant of teaching in a new world."""
+def task_in(world: str, task: TaskSettings, teacher: str | None = None) -> TaskSettings:
+    """Return the task to teach and examine in a new world, by its name; `teacher`: None: the teacher of home.
 
-    name: str
-    """Name in file names."""
-    title: str
-    teacher: str | None = None
-    """Name of another teacher in the new world; None: the teacher of home."""
-    knows_home: bool = True
-    """False: the robot begins in the new world without any knowledge."""
-
-    def task(self, task: TaskSettings, world: str) -> TaskSettings:
-        """Return the task to teach and examine in a new world, by its name.
-
-        Raises hal.settings.SettingsError if the teacher cannot be loaded.
-        """
-        if self.teacher is not None:
-            task = taught_by(task, load_teacher(self.teacher))
-        teaching = task.teaching.model_copy(update={"world": world})
-        exam = task.exam.model_copy(update={"worlds": (world,)})
-        return task.model_copy(update={"teaching": teaching, "exam": exam})
-
-    def plan(self, task: TaskSettings, seconds: float, most_presses: int) -> LessonPlan:
-        """Return the plan of the lesson in the new world, which ends at `seconds` s or before another press.
-
-        A robot with knowledge is corrected from the beginning; without knowledge it goes through phase 1 first.
-        """
-        supervised_s = 0.0 if self.knows_home else min(task.teaching.supervised_s, seconds)
-        phases = ((Phase.SUPERVISED, supervised_s), (Phase.CORRECTIONS, seconds - supervised_s))
-        return LessonPlan(tuple(each for each in phases if each[1]), purpose=PURPOSE, most_presses=most_presses)
-
-
-TAUGHT_ON = Variant("taught-on", "home knowledge, taught on")
-"""Variant that is studied."""
-CONTROLS = (
-    Variant("answers-only", "control: questions are answered, nothing is corrected", teacher="answers_only"),
-    Variant("from-nothing", "control: without the knowledge of home", knows_home=False),
-)
-
-
-def taught_on_by(teacher: str | None) -> Variant:
-    """Return the variant that is studied, with this teacher in the new world; None: the teacher of home."""
-    if teacher is None:
-        return TAUGHT_ON
-    return replace(TAUGHT_ON, title=f"{TAUGHT_ON.title} by {Path(teacher).stem}", teacher=teacher)
-
-
-class Checkpoint(Settings):
-    """Knowledge after a number of presses in the new world, and its exam there."""
-
-    presses: int
-    """Presses asked for; a robot that gave cause for fewer has all that it was taught."""
-    teaching_s: float
-    """Time of teaching up to the first press that does not count, or to the end."""
-    lessons: int
-    """Teaching events in the new world so far, undos included."""
-    drive: DriveRow
+    Raises hal.settings.SettingsError if the teacher cannot be loaded.
+    """
+    if teacher is not None:
+        task = taught_by(task, load_teacher(teacher))
+    teaching = task.teaching.model_copy(update={"world": world})
+    exam = task.exam.model_copy(update={"worlds": (world,)})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
 
 
 class HomeOutcome(TaughtOutcome):
@@ -114,17 +66,17 @@ class TransferOutcome(TaughtOutcome):
     @property
     def judged(self) -> bool:
         """True if the exams in the new world have verdicts."""
-        return self.checkpoints[0].drive.judged
+        return self.checkpoints[0].judged
 
     @property
     def presses_until_right(self) -> float:
         """Smallest count of presses after which an exam in the new world was passed; infinite if none was."""
-        return min((each.presses for each in self.checkpoints if each.drive.passed), default=inf)
+        return min((each.presses for each in self.checkpoints if each.passed), default=inf)
 
     @property
     def seconds_until_right(self) -> float:
         """Time of teaching up to that exam's knowledge, in s; infinite if no exam was passed, 0 without a press."""
-        first = next((each for each in self.checkpoints if each.drive.passed), None)
+        first = next((each for each in self.checkpoints if each.passed), None)
         return inf if first is None else first.teaching_s if first.presses else 0.0
 
 
@@ -144,7 +96,7 @@ class HomeJob(StudyJob):
         return HomeOutcome(
             made_of=self.made_of,
             seed=self.seed,
-            lesson=counts_of(lesson),
+            lesson=lesson.counts,
             lessons=len(events),
             drive=await at_home.examine(policy, events),
             policy=policy,
@@ -160,7 +112,8 @@ class TransferJob(StudyJob):
 
     outcome = TransferOutcome
     gives_exams: ClassVar[bool] = True
-    variant: Variant
+    teacher: str | None
+    """Name of another teacher in the new world; None: the teacher of home."""
     place: str
     """Name of the new world, with SEED where it is another world for each robot."""
     after: tuple[int, ...]
@@ -175,22 +128,27 @@ class TransferJob(StudyJob):
 
         Raises StudyError without the result of home, and the errors of all jobs.
         """
-        task, known = self.variant.task(self.task, world_of(self.place, self.seed)), 0
-        if self.variant.knows_home:
-            copy_knowledge(self.home.knowledge, knowledge)
-            known = len(read_lessons(knowledge, self.robot, task))
-        plan = self.variant.plan(task, self.seconds, max(self.after))
-        lesson, events = await self.teach(knowledge, report, task, plan)
+        task = task_in(world_of(self.place, self.seed), self.task, self.teacher)
+        copy_knowledge(self.home.knowledge, knowledge)
+        known = len(read_lessons(knowledge, self.robot, task))
+        # It ends before another press; a robot with knowledge is corrected from the beginning.
+        plan = LessonPlan(((Phase.CORRECTIONS, self.seconds),), purpose=PURPOSE, most_presses=max(self.after))
+        given = await self.teach(knowledge, report, task, plan)
+        lesson, events = given
         there = _examiner(self, task, report)
         policy = await there.drive_policy()
-        checkpoints = await self._checkpoints(there, policy, lesson, events, known)
+
+        async def examine(events: Sequence[TeachingEvent], _labels: object) -> tuple[DriveRow, ...]:
+            return (await there.examine(policy, events),)
+
+        checkpoints = await run_checkpoints(given, self.after, self.robot.cycle_s, examine, known=known)
         at_end = checkpoints[-1].lessons
-        when_right = next((each.lessons for each in checkpoints if each.drive.passed), at_end)
+        when_right = next((each.lessons for each in checkpoints if each.passed), at_end)
         home = await self._drive_at_home(events[: known + at_end], report)
         return TransferOutcome(
             made_of=self.made_of,
             seed=self.seed,
-            lesson=counts_of(lesson).model_copy(update={"presses": min(lesson.presses, max(self.after))}),
+            lesson=lesson.counts.model_copy(update={"presses": min(lesson.presses, max(self.after))}),
             checkpoints=tuple(checkpoints),
             policy=policy,
             home_when_right=home
@@ -199,26 +157,10 @@ class TransferJob(StudyJob):
             home=home,
         )
 
-    async def _checkpoints(
-        self, there: Examiner, policy: DriveRow, lesson: TrainingResult, events: Sequence[TeachingEvent], known: int
-    ) -> list[Checkpoint]:
-        """Examine the robot in the new world after each number of presses; `known`: number of events of home."""
-        checkpoints: list[Checkpoint] = []
-        ticks = lesson.press_ticks
-        for presses in self.after:
-            lessons = events_before_press(events[known:], ticks, presses)
-            if checkpoints and checkpoints[-1].lessons == lessons:  # the same knowledge drives the same exam
-                drive = checkpoints[-1].drive
-            else:
-                drive = await there.examine(policy, events[: known + lessons])
-            taught_s = ticks[presses] * self.robot.cycle_s if presses < len(ticks) else lesson.teaching_s
-            checkpoints.append(Checkpoint(presses=presses, teaching_s=taught_s, lessons=lessons, drive=drive))
-        return checkpoints
-
     async def _drive_at_home(self, events: Sequence[TeachingEvent], report: Report) -> DriveRow:
         """Examine the robot at home, unless it knows exactly what it knew when it was examined there."""
         before = self.results.read(self.home, HomeOutcome)
-        if self.variant.knows_home and len(events) == before.lessons:
+        if len(events) == before.lessons:
             return before.drive
         return await _examiner(self, self.task, report).examine(before.policy, events)
 
@@ -226,21 +168,6 @@ class TransferJob(StudyJob):
 def _examiner(job: StudyJob, task: TaskSettings, report: Report) -> Examiner:
     """Return the examiner of a robot in the world that a task is taught in."""
     return Examiner(job.factory, job.robot, task, task.teaching.world, job.seed, report, job.engines.exams)
-
-
-def events_before_press(events: Sequence[TeachingEvent], press_ticks: Sequence[int], presses: int) -> int:
-    """Return how many events of a lesson were applied before the press that follows `presses` others.
-
-    A hold teaches until its release, and so all lessons of a press come before the next press.
-
-    Args:
-        events: of the lesson alone, in order.
-        press_ticks: tick in which each press of the lesson was sent; the robot applies it in a later tick.
-        presses: number of presses that count.
-    """
-    if presses >= len(press_ticks):
-        return len(events)
-    return sum(event.origin.tick <= press_ticks[presses] for event in events)
 
 
 class NewWorlds(NamedTuple):
@@ -252,6 +179,8 @@ class NewWorlds(NamedTuple):
     """Numbers of presses after which a robot is examined, ascending."""
     seconds: float | None = None
     """Longest time of teaching in s; None: that of the lesson at home."""
+    teacher: str | None = None
+    """Name of another teacher there; None: the teacher of home."""
 
 
 class Transfer(NamedTuple):
@@ -266,7 +195,6 @@ def make_plan(
     task: TaskSettings,
     new: NewWorlds,
     seeds: Sequence[int],
-    variants: Sequence[Variant],
     parts: JobParts,
     *,
     engine: RequestedEngine = ALL_ON_BUS,
@@ -277,7 +205,6 @@ def make_plan(
         task: to teach, in its own world and in the new ones.
         new: new worlds.
         seeds: one robot each.
-        variants: ways of teaching in the new worlds.
         parts: factory, robot and results of the jobs.
         engine: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
 
@@ -304,26 +231,26 @@ def make_plan(
         for seed in seeds
     }
 
-    def job(place: str, variant: Variant, seed: int) -> TransferJob:
+    def job(place: str, seed: int) -> TransferJob:
         world = world_of(place, seed)
-        own = variant.task(task, world).teaching.model_dump_json(serialize_as_any=True)
+        own = task_in(world, task, new.teacher).teaching.model_dump_json(serialize_as_any=True)
         file_name = re.sub(r"[^A-Za-z0-9_-]+", "-", Path(place).with_suffix("").as_posix()).strip("-")
         return TransferJob(
             **parts,
             task=task,
             seed=seed,
-            made_of=fingerprints.of(task, (home, world), own, repr((variant, new.after, seconds))),
-            name=f"{task.name} in {world}, {variant.name}, seed {seed}",
-            stem=f"{variant.name}/{file_name}/{task.name}-{seed}",
+            made_of=fingerprints.of(task, (home, world), own, repr((new.after, seconds))),
+            name=f"{task.name} in {world}, seed {seed}",
+            stem=f"{file_name}/{task.name}-{seed}",
             robot_time_s=seconds + (len(new.after) + 3) * exam_s,
             wave=1,
-            variant=variant,
+            teacher=new.teacher,
             place=place,
             after=new.after,
             seconds=seconds,
             home=home_jobs[seed],
         )
 
-    there = (job(place, variant, seed) for place in dict.fromkeys(new.places) for variant in variants for seed in seeds)
+    there = (job(place, seed) for place in dict.fromkeys(new.places) for seed in seeds)
     plan = StudyPlan(Transfer(task, new.after), tuple(seeds), (*home_jobs.values(), *there))
     return plan.driven(engine, parts["robot"])

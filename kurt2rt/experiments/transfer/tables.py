@@ -8,32 +8,27 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kurt2rt.experiments.lockstep.report import wilson_interval
-from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.study.figures import save
+from kurt2rt.experiments.study.intervals import wilson_interval
 from kurt2rt.experiments.study.study_plan import Group, StudyPlan, read_groups
 from kurt2rt.experiments.study.table import Table, collisions_text, of_text, table_of
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 from kurt2rt.experiments.transfer.study import (
-    TAUGHT_ON,
     HomeJob,
     HomeOutcome,
     Transfer,
     TransferJob,
     TransferOutcome,
-    Variant,
 )
 
 RIGHT_SHARE = 18 / 20
 """Share of the robots that are to be right in the new world."""
 MOST_PRESSES = 10
 """Presses until right that half of the robots may need at most."""
-_COLOURS = ("#1f6fb2", "#d1495b", "#7a7a7a")
-"""Colours of the variants, in the order of the study."""
-_APART = 0.15
-"""Distance in presses between the intervals of two variants, so that they do not hide each other."""
-There = Group[tuple[str, Variant], TransferOutcome]
-"""Robots in one kind of new world, taught there by one variant."""
+_COLOUR = "#1f6fb2"
+There = Group[str, TransferOutcome]
+"""Robots in one kind of new world."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,24 +46,18 @@ def read_study(plan: StudyPlan[Transfer]) -> TransferStudy:
     return TransferStudy(
         plan,
         tuple(job.results.read(job, HomeOutcome) for job in plan.of(HomeJob)),
-        read_groups(plan.of(TransferJob), lambda job: (job.place, job.variant), TransferOutcome),
+        read_groups(plan.of(TransferJob), lambda job: job.place, TransferOutcome),
     )
 
 
 def all_tables(study: TransferStudy) -> Iterator[Table]:
     """Yield all tables: what was asked, the curve, the teaching, and each robot."""
-    found = [((each.of[0],), verdict) for each in study.there for verdict in verdicts(each, study)]
+    found = [((each.of,), verdict) for each in study.there for verdict in verdicts(each, study)]
     yield targets_table(found, list(reasons_against_judging(study.plan.seeds)), headings=("new world",))
     yield curve_table(study)
     yield teaching_table(study)
     for each in study.there:
-        if is_studied(each):
-            yield robots_table(each, study)
-
-
-def is_studied(group: There) -> bool:
-    """Return whether these robots are no control."""
-    return group.of[1].name == TAUGHT_ON.name
+        yield robots_table(each, study)
 
 
 def judged_of(group: There) -> tuple[TransferOutcome, ...]:
@@ -78,9 +67,7 @@ def judged_of(group: There) -> tuple[TransferOutcome, ...]:
 
 def right_after(group: There, presses: int) -> int:
     """Return the number of robots that pass the exam in the new world after so many presses."""
-    return sum(
-        point.drive.passed for each in judged_of(group) for point in each.checkpoints if point.presses == presses
-    )
+    return sum(point.passed for each in judged_of(group) for point in each.checkpoints if point.presses == presses)
 
 
 def right_by(group: There, presses: int) -> int:
@@ -89,9 +76,9 @@ def right_by(group: There, presses: int) -> int:
 
 
 def verdicts(group: There, study: TransferStudy) -> Iterator[Verdict]:
-    """Yield the verdicts on robots with the knowledge of home; none for controls, or if no exam has a verdict."""
+    """Yield the verdicts on robots with the knowledge of home; none if no exam has a verdict."""
     judged, robots = judged_of(group), len(group.outcomes)
-    if not is_studied(group) or not judged:
+    if not judged:
         return
     presses = study.plan.about.after[-1]
     right, needed = right_by(group, presses), needed_of(RIGHT_SHARE, len(judged))
@@ -115,12 +102,12 @@ def curve_table(study: TransferStudy) -> Table:
     after = study.plan.about.after
     rows = []
     for each in study.there:
-        judged, (place, variant) = len(judged_of(each)), each.of
+        judged, place = len(judged_of(each)), each.of
         policy = of_text(sum(robot.policy.passed for robot in each.outcomes), len(each.outcomes))
         shares = [of_text(right_after(each, n), judged, interval=True) for n in after]
         until_right = [of_text(right_by(each, n), judged, interval=True) for n in after]
-        rows.append((place, variant.title, policy, *shares))
-        rows.append((place, f"{variant.title}, until right", "", *until_right))
+        rows.append((place, "taught on", policy, *shares))
+        rows.append((place, "until right", "", *until_right))
     return Table(
         "Robots that are right in the new world, by presses there",
         ("new world", "taught how", "policy", *(f"after {presses}" for presses in after)),
@@ -148,8 +135,7 @@ def teaching_table(study: TransferStudy) -> Table:
     return table_of(
         "Presses until right, and home",
         study.there,
-        ("new world", lambda each: each.of[0]),
-        ("taught how", lambda each: each.of[1].title),
+        ("new world", lambda each: each.of),
         ("presses until right", lambda each: until(each, "presses_until_right", "g", f"more than {after[-1]}")),
         ("seconds until right", lambda each: until(each, "seconds_until_right", ".0f", "never")),
         ("presses", lambda each: median_text(each.outcomes, "presses")),
@@ -157,14 +143,13 @@ def teaching_table(study: TransferStudy) -> Table:
         ("collisions meanwhile", lambda each: sum(robot.lesson.collisions for robot in each.outcomes)),
         (
             f"right in {task.teaching.world} before",
-            lambda each: of_text(before, len(study.home)) if each.of[1].knows_home else "",
+            lambda _: of_text(before, len(study.home)),
         ),
         (
             "when right there",
             lambda each: of_text(sum(robot.home_when_right.passed for robot in each.outcomes), len(each.outcomes)),
         ),
         ("at the end", lambda each: of_text(sum(robot.home.passed for robot in each.outcomes), len(each.outcomes))),
-        words=2,
         note=f"Medians of {len(study.plan.seeds)} robots; collisions of all. Presses until right: the fewest of those "
         f"examined after which the exam was passed. Taught at home, in {task.teaching.world}, by the scripted teacher "
         f"{task.teaching.profile.name}, in {task.teaching.duration_s:.0f} s and {median_text(study.home, 'presses')} "
@@ -181,14 +166,14 @@ def robots_table(group: There, study: TransferStudy) -> Table:
             str(robot.lesson.presses),
             str(robot.lesson.asks),
             drive_text(robot.policy),
-            *(drive_text(point.drive) for point in robot.checkpoints),
+            *(drive_text(point.drives[0]) for point in robot.checkpoints),
             *map(drive_text, (before.drive, robot.home_when_right, robot.home)),
         )
         for robot, before in zip(group.outcomes, study.home, strict=True)
     ]
     after = (f"after {presses}" for presses in study.plan.about.after)
     return Table(
-        f"Each robot: {group.of[0]}",
+        f"Each robot: {group.of}",
         ("robot", "new world", "presses", "asks", "policy", *after, "home before", "when right there", "at the end"),
         tuple(rows),
         words=2,
@@ -218,43 +203,25 @@ def median_of(values: list[float]) -> float:
 
 
 def draw_curves(study: TransferStudy, path: Path) -> None:
-    """Draw the curves, a panel for each new world and a line for each variant, as a PNG to `path`. Raises OSError."""
-    places = list(dict.fromkeys(each.of[0] for each in study.there))
-    figure = Figure(figsize=(5.4 * len(places), 5.0), layout="constrained")
-    panels = figure.subplots(1, len(places), squeeze=False, sharey=True).flatten().tolist()
-    for axes, place in zip(panels, places, strict=True):
-        for number, group in enumerate(each for each in study.there if each.of[0] == place):
-            _draw(axes, study.plan.about.after, group, number)
-        axes.set_title(f"new world: {Path(place).stem}", fontsize="medium")
+    """Draw the curves, a panel for each new world, as a PNG to `path`. Raises OSError."""
+    figure = Figure(figsize=(5.4 * len(study.there), 5.0), layout="constrained")
+    panels = figure.subplots(1, len(study.there), squeeze=False, sharey=True).flatten().tolist()
+    for axes, group in zip(panels, study.there, strict=True):
+        if judged_of(group):
+            _draw(axes, study.plan.about.after, group)
+        axes.set_title(f"new world: {Path(group.of).stem}", fontsize="medium")
         axes.set_xlabel("presses in the new world (dotted: taught until right)")
         axes.set_ylim(-0.03, 1.03)
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)
     panels[0].set_ylabel("share of robots that are right there")
     save(figure, path)
 
 
-def _draw(axes: Axes, after: tuple[int, ...], group: There, number: int) -> None:
+def _draw(axes: Axes, after: tuple[int, ...], group: There) -> None:
     judged = len(judged_of(group))
-    if not judged:
-        return
-    colour = _COLOURS[number % len(_COLOURS)]
-    axes.plot(after, [right_by(group, n) / judged for n in after], color=colour, linestyle=":", linewidth=1.2)
+    axes.plot(after, [right_by(group, n) / judged for n in after], color=_COLOUR, linestyle=":", linewidth=1.2)
     counts = [right_after(group, presses) for presses in after]
-    shares = [count / judged for count in counts]
     low, high = zip(*(wilson_interval(count, judged) for count in counts), strict=True)
-    axes.errorbar(
-        [presses + _APART * number for presses in after],
-        shares,
-        yerr=(
-            [s - at for s, at in zip(shares, low, strict=True)],
-            [at - s for s, at in zip(shares, high, strict=True)],
-        ),
-        color=colour,
-        marker="o",
-        markersize=4,
-        capsize=2,
-        linewidth=1.4,
-        elinewidth=0.8,
-        label=f"{group.of[1].title} (n = {judged})",
-    )
+    axes.plot(after, [count / judged for count in counts], color=_COLOUR, marker="o", label=f"n = {judged}")
+    axes.fill_between(after, low, high, color=_COLOUR, alpha=0.15)
+    axes.legend(fontsize="small", loc="upper center", bbox_to_anchor=(0.5, -0.14), frameon=False)

@@ -154,12 +154,8 @@ class ScriptedAppraiser:
         self.phase = phase
         command = self._answering.begin_phase(phase)
         if phase is not Phase.CORRECTIONS:
-            self.stop_correcting()
+            self._answering.phase = Phase.SUPERVISED
         return command
-
-    def stop_correcting(self) -> None:
-        """Answer only, until the next phase begins."""
-        self._answering.phase = Phase.SUPERVISED
 
     def select_behaviour(self, behaviour: str) -> Command:
         """Return the command that selects a taught behaviour."""

@@ -77,6 +77,6 @@ def test_laps_of_the_policy_in_narrow_places_are_its_way() -> None:
     drive = teachers_drive(short_task(exam_s=8.0, worlds=(world,)))
     simulation = STAGE.open(world, 1, "test")
     try:
-        assert drive.progress * simulation.lap_m == pytest.approx(drive.distance_travelled_m, rel=0.15)
+        assert drive.progress * simulation.lap_m == pytest.approx(drive.way_m, rel=0.15)
     finally:
         simulation.close()

@@ -1,62 +1,63 @@
 """Runs of a certificate follow from their numbers; probabilities and rates, from outcomes by hand."""
 
+from typing import Any
+
 import pytest
 
-from kurt2rt.experiments.certify.run import BrokenShare, RunOutcome, draw_runs
+from kurt2rt.experiments.certify.study import BrokenShare, draw_runs
 from kurt2rt.experiments.certify.tables import summarise_runs, worst_runs
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind
-from kurt2rt.experiments.lockstep.report import wilson_interval
-from kurt2rt.experiments.study.intervals import poisson_interval
+from kurt2rt.experiments.study.intervals import poisson_interval, wilson_interval
+from tests.experiments.rows import row
 
 PLACES = ("a", "b", "rooms-SEED")
 
 
-def outcome(number: int, **more: object) -> RunOutcome:
+def run(seed: int, **more: Any) -> DriveRow:
     """Return a run of 60 s in world A without any event, but for `more`."""
-    counts = ("unknown_ticks", "questions", "first_question", "collisions", "first_collision")
-    fields = {"number": number, "world": "a", "ticks": 6000, **dict.fromkeys(counts, 0)}
-    ended = {"stuck": False, "travelled_m": 12.0, "end": (0.0, 0.0, 0.0)}
-    return RunOutcome.model_validate({**fields, **ended, **more})
+    fields: dict[str, Any] = {"duration_s": 60.0, "way_m": 12.0, "share_unknown": 0.0, **more}
+    return row(seed=seed, **fields)
 
 
-ASKS = outcome(3, questions=4, first_question=3000, unknown_ticks=600)
-STUCK = outcome(4, stuck=True, ticks=3000)
-COLLIDES = outcome(5, collisions=2, first_collision=100)
-RUNS = [outcome(1), outcome(2), ASKS, STUCK, COLLIDES]
+ASKS = run(3, questions=4, first_question_s=30.0, share_unknown=0.1)
+STUCK = run(4, stuck=True, duration_s=30.0)
+COLLIDES = run(5, collisions=2, first_collision_s=1.0)
+RUNS = [run(1), run(2), ASKS, STUCK, COLLIDES]
 
 
 def test_shares_are_of_runs_with_wilson_intervals() -> None:
-    summary = summarise_runs("a", RUNS, 0.01)
+    summary = summarise_runs("a", RUNS)
     assert summary.collided == (1, 0.2, *wilson_interval(1, 5))
     assert (summary.stuck.events, summary.asked.events, summary.stopped.events, summary.clean.events) == (1, 1, 0, 2)
 
 
 def test_rates_count_time_until_the_end_of_runs() -> None:
-    summary = summarise_runs("a", RUNS, 0.01)
+    summary = summarise_runs("a", RUNS)
     hours = 270 / 3600
     assert summary.hours == pytest.approx(hours)
     assert summary.collisions_per_hour.value == pytest.approx(2 / hours)
     assert summary.questions_per_hour.value == pytest.approx(4 / hours)
-    assert summary.unknown_share == pytest.approx(600 / 27000)
+    assert summary.unknown_share == pytest.approx(6 / 270)
     assert summary.m_per_minute == pytest.approx(60 / 4.5)
 
 
 def test_first_question_rate_ends_the_time_of_a_run_at_it() -> None:
-    first = summarise_runs("a", RUNS, 0.01).first_questions_per_hour
+    first = summarise_runs("a", RUNS).first_questions_per_hour
     hours = 240 / 3600
     assert first == pytest.approx((1 / hours, *(each / hours for each in poisson_interval(1))))
 
 
 def test_interval_of_many_runs_needs_no_bootstrap_over_each() -> None:
-    runs = [outcome(n, collisions=int(n % 10 == 0), first_collision=1) for n in range(2000)]
-    rate = summarise_runs("a", runs, 0.01).collisions_per_hour
+    runs = [run(n, collisions=int(n % 10 == 0)) for n in range(2000)]
+    rate = summarise_runs("a", runs).collisions_per_hour
     assert rate.value == pytest.approx(6.0)
     assert 5.0 < rate.low < 6.0 < rate.high < 7.0
 
 
 def test_worst_runs_are_ordered_and_leave_out_clean_ones() -> None:
-    worse = outcome(9, collisions=7, first_collision=5)
-    assert [each.number for each in worst_runs([*RUNS, worse], 10)] == [9, 5, 4, 3]
+    worse = run(9, collisions=7)
+    assert [each.seed for each in worst_runs([*RUNS, worse], 10)] == [9, 5, 4, 3]
     assert worst_runs(RUNS, 1) == [COLLIDES]
     assert worst_runs(RUNS[:2], 5) == []
 

@@ -1,5 +1,6 @@
 """A comparison on the simulated robot: the same robots, teacher and exams for all pupils."""
 
+from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -11,24 +12,27 @@ from numpy.typing import NDArray
 
 from hal.batch import AskedMind
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.learner.learner import Why
+from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.learner.learners import NoLearnerError
 from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.experiments.compare.lesson import LessonSetup, PupilLesson, teach_on_bus
 from kurt2rt.experiments.compare.pupil import PUPILS, SHIPPED, Pupil
 from kurt2rt.experiments.compare.study import Compared, PupilJob, PupilOutcome, make_plan
 from kurt2rt.experiments.compare.tables import Comparison, read_comparison
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, feature_table
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines
-from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.experiments.lockstep.lesson import GivenLesson, teach
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
+from kurt2rt.experiments.study.checkpoints import run_checkpoints
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from tests.experiments.helpers import ROBOT, STAGE, short_task
+from tests.experiments.rows import row
 from tests.experiments.study.here import carry_out, parts_in
 
 AFTER = (2, 5)
@@ -63,14 +67,14 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Comparison:
 
 
 def outcome_of(done: Comparison, name: str) -> PupilOutcome:
-    (row,) = (row for row in done.rows if row.of[1].name == name)
-    return row.outcomes[0]
+    (found,) = (each for each in done.rows if each.of[1].name == name)
+    return found.outcomes[0]
 
 
 def test_each_pupil_is_examined_after_presses_and_at_the_end(done: Comparison) -> None:
-    assert [row.of[1].name for row in done.rows][:2] == [SHIPPED, "rla-door"]
-    for row in done.rows:
-        (outcome,) = row.outcomes
+    assert [each.of[1].name for each in done.rows][:2] == [SHIPPED, "rla-door"]
+    for each_row in done.rows:
+        (outcome,) = each_row.outcomes
         assert [each.presses for each in outcome.checkpoints[:-1]] == list(AFTER)
         assert outcome.lesson.presses == outcome.checkpoints[-1].presses
         assert outcome.failure or outcome.lesson.presses > AFTER[-1]
@@ -99,13 +103,25 @@ def test_jobs_of_another_gate_have_another_provenance(tmp_path: Path) -> None:
     assert plan.jobs[2].knowledge_name is None
 
 
-def lesson_of(task: TaskSettings, team: LearnerTeam | None) -> PupilLesson:
-    async def lesson() -> PupilLesson:
-        with closing(STAGE.open(task.teaching.world, 3903, "lesson")) as simulation:
-            setup = LessonSetup(robot=ROBOT, task=task, seed=3903, team=team, after=AFTER)
-            return await teach_on_bus(simulation, setup, lambda _: None)
+Known = tuple[list[TeachingEvent], tuple[Label, ...]]
 
-    return anyio.run(lesson)
+
+def checkpoints_of(folder: Path, task: TaskSettings, team: LearnerTeam | None) -> tuple[GivenLesson, list[Known]]:
+    """Return a lesson, and the knowledge that is examined after its presses and at the end."""
+    examined: list[Known] = []
+
+    async def examine(events: Sequence[TeachingEvent], labels: Sequence[Label]) -> tuple[DriveRow, ...]:
+        examined.append((list(events), tuple(labels)))
+        return (row(),)
+
+    async def lesson() -> GivenLesson:
+        file = folder / "knowledge"
+        given = await run_lesson(STAGE, ROBOT, task, file, seed=3903, report=lambda *_: None, learners=team)
+        points = await run_checkpoints(given, (*AFTER, given.result.presses), ROBOT.cycle_s, examine)
+        assert [each.presses for each in points] == [*AFTER, given.result.presses]
+        return given
+
+    return anyio.run(lesson), examined
 
 
 def events_until_press(task: TaskSettings, most: int) -> list[TeachingEvent]:
@@ -122,24 +138,24 @@ def events_until_press(task: TaskSettings, most: int) -> list[TeachingEvent]:
     return store.events
 
 
-def test_mark_holds_what_a_lesson_of_so_many_presses_teaches() -> None:
+def test_checkpoint_knows_what_so_many_presses_teach(tmp_path: Path) -> None:
     task = taught_by_named(short_task(15.0, 15.0), "ordinary")
-    lesson = lesson_of(task, None)
-    assert [mark.presses for mark in lesson.marks[:-1]] == list(AFTER)
-    for mark in lesson.marks[:-1]:
-        assert list(mark.events) == events_until_press(task, mark.presses)
-        assert mark.labels == ()
-    assert len(lesson.marks[-1].events) > len(lesson.marks[-2].events)
+    _, (*examined, end) = checkpoints_of(tmp_path, task, None)
+    assert len(examined) == len(AFTER)
+    for (events, labels), presses in zip(examined, AFTER, strict=True):
+        assert events == events_until_press(task, presses)
+        assert labels == ()
+    assert len(end[0]) > len(examined[-1][0])
 
 
-def test_marks_that_are_not_reached_are_of_the_end() -> None:
+def test_checkpoints_that_are_not_reached_are_of_the_end(tmp_path: Path) -> None:
     task = taught_by_named(short_task(4.0, 1.0), "superhuman")
     team = Pupil("1-nn").new_team(task, ROBOT, 3903)
     assert team is not None
-    lesson = lesson_of(task, team)
-    assert lesson.result.presses < AFTER[-1]
-    assert lesson.marks[1].labels == lesson.marks[-1].labels == team.labels
-    assert lesson.marks[1].presses == AFTER[-1]
+    given, examined = checkpoints_of(tmp_path, task, team)
+    assert given.result.presses < AFTER[-1]
+    assert examined[-1][1] == team.labels
+    assert len(examined) == (2 if given.result.presses > AFTER[0] else 1)
 
 
 @pytest.mark.parametrize(
@@ -159,8 +175,8 @@ def require_equal(folder: Path, pupil: Pupil, task: TaskSettings, seed: int = 39
     """Require one outcome of the batch and the CAN bus, and return it."""
     job: PupilJob = make_plan([task], [pupil], (seed,), AFTER, parts_in(folder)).of(PupilJob)[-1]
     batch, bus = (
-        anyio.run(replace(job, engines=engines).measure, folder / "knowledge", lambda *_: None)
-        for engines in (IN_BATCH, ON_BUS)
+        anyio.run(replace(job, engines=loops).measure, folder / f"{place}.knowledge", lambda *_: None)
+        for place, loops in enumerate((IN_BATCH, ON_BUS))
     )
     assert batch == bus
     return batch

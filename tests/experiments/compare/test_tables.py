@@ -4,7 +4,7 @@ import pytest
 from matplotlib.image import imread
 
 from kurt2rt.experiments.compare.pupil import SHIPPED, Pupil
-from kurt2rt.experiments.compare.study import Checkpoint, PupilOutcome
+from kurt2rt.experiments.compare.study import PupilOutcome
 from kurt2rt.experiments.compare.tables import (
     Comparison,
     Row,
@@ -17,6 +17,7 @@ from kurt2rt.experiments.compare.tables import (
     pairs_of,
     success_table,
 )
+from kurt2rt.experiments.study.checkpoints import Checkpoint
 from tests.experiments.compare.test_compare import AFTER, plan_for
 from tests.experiments.rows import MADE_OF, lesson
 from tests.experiments.transfer.test_tables import DRIVES
@@ -30,7 +31,7 @@ def robot(seed: int, *there: str, failure: str = "", collisions: int = 0, presse
         lesson=lesson(seed, presses=presses, asks=5, corrections=3, collisions=collisions, rescues=0),
         failure=failure,
         checkpoints=tuple(
-            Checkpoint(presses=after, teaching_s=after, drives=(DRIVES[what],))
+            Checkpoint(presses=after, teaching_s=after, lessons=after, drives=(DRIVES[what],))
             for after, what in zip((*AFTER, presses)[-len(there) :], there, strict=True)
         ),
     )

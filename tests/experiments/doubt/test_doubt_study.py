@@ -8,8 +8,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, with_doubt
-from kurt2rt.experiments.doubt.jobs import DoubtJob, collision_table, score_table
+from kurt2rt.experiments.doubt.drive import DoubtResponse, with_doubt
 from kurt2rt.experiments.doubt.measures import (
     DriveLog,
     Scores,
@@ -19,7 +18,17 @@ from kurt2rt.experiments.doubt.measures import (
     threshold_for,
     wrong_ticks,
 )
-from tests.experiments.helpers import ROBOT, STAGE, teach
+from kurt2rt.experiments.doubt.study import (
+    DoubtDrives,
+    DoubtJob,
+    DoubtOutcome,
+    all_tables,
+    collision_table,
+    make_plan,
+    score_table,
+)
+from tests.experiments.helpers import teach
+from tests.experiments.study.here import carry_out, parts_in
 
 TICKS = 3000
 
@@ -35,7 +44,10 @@ def log(
     flags = np.zeros(TICKS, dtype=np.bool_)
     for each in missed:
         flags[each] = True
-    return DriveLog("a", doubt, doubt / 2, np.ones(TICKS, dtype=np.bool_), flags, collisions, seen)
+    driving = np.ones(TICKS, dtype=np.bool_)
+    return DriveLog(
+        world="a", doubt=doubt, distance=doubt / 2, driving=driving, missed=flags, collisions=collisions, seen=seen
+    )
 
 
 def pulses(*ticks: int) -> Scores:
@@ -88,7 +100,7 @@ def test_tables_have_doubt_and_its_control() -> None:
     first, second = score_table(told, 5.0).rows
     assert (first[0], first[2:]) == ("doubt", ("1 of 1", "1 of 1", "4.00", "0.00"))
     assert second[0] == "distance / R"
-    table = collision_table({"only told": told, "stands": [log(pulses())]}, 0.0)
+    table = collision_table({DoubtResponse.TELLS: told, DoubtResponse.STANDS: [log(pulses())]}, 0.0)
     rows = table.rows
     assert table.note == "A robot that asks stands for as long as its question lasts."
     assert [row[:3] for row in rows] == [("only told", "1", "1"), ("stands", "0", "0")]
@@ -100,15 +112,23 @@ def test_task_without_doubt_is_refused() -> None:
         with_doubt(load_task("fleeing"), DoubtResponse.STANDS)
 
 
+def test_log_is_stored_with_infinite_scores() -> None:
+    made = log(pulses(1000), collisions=(1100,))
+    made.doubt[5] = math.inf
+    read = DriveLog.model_validate_json(made.model_dump_json())
+    assert all((getattr(read, name) == getattr(made, name)).all() for name in ("doubt", "distance", "driving"))
+    assert read.collisions == (1100,)
+
+
 @pytest.mark.deep  # a lesson and two drives in the simulator
 def test_robot_that_stands_at_its_doubt_collides_no_more_often(tmp_path: Path) -> None:
     task = load_task("wall_following")
-    knowledge = teach(tmp_path / "taught.knowledge", task, seed=3).knowledge
-    told, stands = (
-        DoubtJob(STAGE, ROBOT, task, knowledge, DoubtSetup("maps/flat", 3, 60.0, response, 10.0)).run(lambda _: None)
-        for response in DoubtResponse
-    )
+    teach(tmp_path / "wall_following-3.knowledge", task, seed=3)
+    about = DoubtDrives(task, ("maps/flat",), tuple(DoubtResponse), 60.0, 10.0)
+    plan = carry_out(make_plan(about, (3,), tmp_path, parts_in(tmp_path)), tmp_path)
+    told, stands = (job.results.read(job, DoubtOutcome).log for job in plan.of(DoubtJob))
     assert len(told.doubt) == len(stands.doubt) == 6000
     assert told.doubt.max() > 1.0
     assert stands.driving.sum() <= told.driving.sum()
     assert len(stands.collisions) <= len(told.collisions)
+    assert [len(table.rows) for table in all_tables(plan)] == [2, 2]

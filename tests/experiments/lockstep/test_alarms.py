@@ -1,22 +1,21 @@
 """The robot stops for good in the middle of a lesson, or of an exam: by its guard, or for a broken sensor."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
 
 from hal.guard_reason import GuardReason
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.curriculum import run_exams, run_lesson
+from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict
 from kurt2rt.experiments.lockstep.faulty_sensor import FaultKind, FaultySensor
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
-from kurt2rt.experiments.lockstep.report import render_exams
+from kurt2rt.experiments.study.exam_tables import exam_tables
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT, short_task
-from tests.experiments.lockstep.test_report import printed
 
 TASK = short_task(exam_s=20.0)
 ALARM_CYCLE = 500
@@ -53,7 +52,7 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
 
     result = anyio.run(lesson)
     assert result.alarms == sum(minute.go for minute in result.workload) == 1
-    at_the_alarm, a_second_later, end = (result.trail[at] for at in (52, 59, -1))
+    at_the_alarm, a_second_later, end = (result.trail[at] for at in (26, 29, -1))
     assert at_the_alarm == a_second_later
     assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
 
@@ -94,21 +93,22 @@ def test_stop_for_a_broken_sensor_does_not_end_the_lesson(tmp_path: Path) -> Non
     result = anyio.run(lesson)
     (minute,) = result.workload
     assert (result.alarms, result.rescues) == (minute.go, minute.rescued) == (1, 1)
-    carried, end = result.trail[-30], result.trail[-1]
+    carried, end = result.trail[-15], result.trail[-1]
     assert abs(end.x_m - carried.x_m) + abs(end.y_m - carried.y_m) > 0.1
 
 
 def test_an_exam_ends_and_says_why() -> None:
-    async def exam() -> tuple[WorldResult, ...]:
+    async def exam() -> tuple[DriveRow, ...]:
         return await run_exams(STAGE, ROBOT, TASK, [], ("a",), seed=1, report=lambda *_: None)
 
     (result,) = anyio.run(exam)
     drive = result.teacher
+    assert drive is not None
     assert drive.alarm == GuardReason.BUS_LOST
     assert drive.duration_s == ALARM_CYCLE / 100
     assert not drive.stuck
     # The teacher was stopped after a quarter of the time: that is no measure.
     assert result.verdict is ExamVerdict.NOT_JUDGED
-    assert replace(drive, least_progress=0.0).verdict(drive.progress, TASK.exam.success) is ExamVerdict.FAILED
-    rows = printed(render_exams([WorldResult(drive, drive, ExamVerdict.FAILED)], TASK))
-    assert any(drive.alarm in cell for row in rows for cell in row)
+    far = drive.model_copy(update={"least_progress": 0.0, "teacher": drive})
+    assert far.judged_by(drive.progress, TASK.exam.success).verdict is ExamVerdict.FAILED
+    assert any(drive.alarm in cell for cell in next(exam_tables([far], TASK)).rows[0])

@@ -8,7 +8,8 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.tick_record import TickRecord
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, Signs
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
@@ -23,7 +24,7 @@ def appraisal() -> RlaCreated:
     )
 
 
-def drive(events: list[TeachingEvent], *, appraises: bool) -> tuple[ExamResult, list[TickRecord]]:
+def drive(events: list[TeachingEvent], *, appraises: bool) -> tuple[DriveRow, list[TickRecord]]:
     """Drive an exam of a second; return the result, and the records of its ticks."""
     task, records = short_task(exam_s=1.0), list[TickRecord]()
 
@@ -32,8 +33,8 @@ def drive(events: list[TeachingEvent], *, appraises: bool) -> tuple[ExamResult, 
 
     simulation = STAGE.open("a", 1, "exam")
     try:
-        setup = ExamSetup("a", 1, appraises=appraises, on_tick=note)
-        return anyio.run(examine, simulation, ROBOT, task, events, setup, lambda _: None), records
+        setup = ExamSetup("a", 1, events=events, appraises=appraises, on_tick=note)
+        return anyio.run(examine, simulation, ROBOT, task, setup, lambda _: None), records
     finally:
         simulation.close()
 

@@ -22,9 +22,7 @@ def drives_through(pose: Pose, **policy: float | None) -> bool:
     changed = task.policy.model_copy(update=policy)
     task = task.model_copy(update={**OFF, "policy": changed})
     with closing(STAGE.open("manhattan", 1, "exam")) as simulation:
-        exam = ExamRun(
-            simulation, ROBOT, task, [], ExamSetup("manhattan", 1, teacher_policy=True), lambda _done_s: None
-        )
+        exam = ExamRun(simulation, ROBOT, task, ExamSetup("manhattan", 1, teacher_policy=True), lambda _done_s: None)
         exam.place(pose)
         anyio.run(exam.drive)
         here = simulation.pose

@@ -10,7 +10,7 @@ import pytest
 from hal.batch import BatchRefusedError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
+from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
@@ -19,13 +19,10 @@ from tests.simbridge.batch.equal_lessons import batch_lesson
 EXAM_S = 15.0 if IS_COMPILED else 2.0
 
 
-def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequence[int]) -> list[BatchExam]:
+def exams_of(events: Sequence[TeachingEvent], worlds: Sequence[str], seeds: Sequence[int]) -> list[ExamSetup]:
     """Exams of a robot and of its teacher's policy."""
     return [
-        BatchExam(ExamSetup(world, seed, policy), events)
-        for world in worlds
-        for seed in seeds
-        for policy in (False, True)
+        ExamSetup(world, seed, policy, events=events) for world in worlds for seed in seeds for policy in (False, True)
     ]
 
 
@@ -46,7 +43,7 @@ def test_results_are_those_of_the_bus(tmp_path: Path) -> None:
 
 def test_robot_that_is_stuck_ends_its_exam_early() -> None:
     task = short_task(exam_s=3.0, stuck_after_s=1.0)
-    exam = BatchExam(ExamSetup("a", 1))
+    exam = ExamSetup("a", 1)
     (result,) = examine_in_batch(STAGE, ROBOT, task, [exam])
     assert result == exam_on_bus(task, exam)
     assert result is not None
@@ -55,7 +52,7 @@ def test_robot_that_is_stuck_ends_its_exam_early() -> None:
 
 def test_start_in_sight_is_that_of_the_bus() -> None:
     task = load_task("circle", changes={"exam.duration_s": "2", "exam.start": "in_sight"})
-    exam = BatchExam(ExamSetup("one_object", 4, teacher_policy=True))
+    exam = ExamSetup("one_object", 4, teacher_policy=True)
     assert examine_in_batch(STAGE, ROBOT, task, [exam]) == [exam_on_bus(task, exam)]
 
 
@@ -73,7 +70,7 @@ def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds:
     with batch_lesson(task, 2) as run:
         assert run.drive_stretches()
         events = run.given().events
-    exams = [BatchExam(ExamSetup(world, 2), events) for world in worlds]
+    exams = [ExamSetup(world, 2, events=events) for world in worlds]
     results = examine_in_batch(STAGE, ROBOT, task, exams)
     for exam, result in zip(exams, results, strict=True):
         assert result is None or result == exam_on_bus(task, exam)
@@ -82,11 +79,11 @@ def test_taught_robot_has_the_results_of_the_bus(name: str, plain: bool, worlds:
 def test_robot_without_a_way_on_is_put_elsewhere_as_on_the_bus() -> None:
     # A policy that never turns comes to junctions that lead to the sides only.
     task = load_task("straight_on", changes={"exam.duration_s": "40" if IS_COMPILED else "2"})
-    exam = BatchExam(ExamSetup("manhattan", 3, teacher_policy=True))
+    exam = ExamSetup("manhattan", 3, teacher_policy=True)
     (result,) = examine_in_batch(STAGE, ROBOT, task, [exam])
     assert result == exam_on_bus(task, exam)
     assert result is not None
-    steps_m = [math.hypot(b.x_m - a.x_m, b.y_m - a.y_m) for a, b in pairwise(result.trail)]
+    steps_m = [math.dist(a, b) for a, b in pairwise(result.trail)]
     assert not IS_COMPILED or max(steps_m) > 0.5
 
 
@@ -101,7 +98,7 @@ def test_robot_without_a_way_on_is_put_elsewhere_as_on_the_bus() -> None:
 def test_batch_refuses_tasks_that_it_does_not_know(name: str, changes: dict[str, str], policy: bool) -> None:
     task = load_task(name, changes=changes)
     with pytest.raises(BatchRefusedError, match="use the CAN bus"):
-        examine_in_batch(STAGE, ROBOT, task, [BatchExam(ExamSetup(task.exam.worlds[0], 1, policy))])
+        examine_in_batch(STAGE, ROBOT, task, [ExamSetup(task.exam.worlds[0], 1, policy)])
 
 
 @pytest.mark.deep

@@ -12,7 +12,7 @@ from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.engine import Engine
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
+from kurt2rt.experiments.lockstep.lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.journal.loading import read_knowledge
 from tests.experiments.helpers import ROBOT, STAGE, short_task

@@ -4,9 +4,14 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
+from hal.simulation import Position
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.experiments.lockstep.drawing import draw_curriculum
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.platform.ledger import TickTimer
 from tests.experiments.helpers import STAGE, short_task
-from tests.experiments.results import curriculum_result, exam_result
+from tests.experiments.rows import judged
 
 
 @pytest.mark.parametrize(("worlds", "panels"), [((), 2), (("a", "b", "c"), 5)], ids=["lesson", "three exams"])
@@ -15,8 +20,24 @@ def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
 ) -> None:
     drawn: list[Figure] = []
     monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
-    exams = [exam_result(world, stuck=world == "b") for world in worlds]
-    draw_curriculum(curriculum_result(1, 20, *exams), short_task(), STAGE, Path("never.png"))
+    exams = [judged(world=world, stuck=world == "b") for world in worlds]
+    origin, trail = Origin("c", "Ann", Phase.SUPERVISED, 1), (Position(0.5, 0.5), Position(0.6, 0.5))
+    lesson = TrainingResult(
+        seed=1,
+        world="a",
+        teaching_s=345.0,
+        rlas=tuple(Rla(number, (0.0,), "forward", None, origin) for number in range(1, 21)),
+        knowledge_hash="0" * 64,
+        asks=1,
+        corrections=52,
+        rescues=3,
+        statistics=StatisticsCounter(),
+        growth=tuple(range(20)),
+        trail=trail,
+        ask_positions=trail[1:],
+        ledger=TickTimer(),
+    )
+    draw_curriculum(lesson, exams, short_task(), STAGE, Path("never.png"))
     axes = [each for each in drawn[0].axes if each.axison]
     assert len(axes) == panels
     titles = [each.get_title() for each in axes]

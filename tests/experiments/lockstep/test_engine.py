@@ -5,10 +5,10 @@ import pytest
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep import curriculum
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam
-from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_drives, run_exams
+from kurt2rt.experiments.lockstep.curriculum import run_drives, run_exams
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine, choose_witnesses
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup
+from kurt2rt.experiments.lockstep.exam import ExamSetup
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 
@@ -24,10 +24,10 @@ def test_choose_witnesses_depends_on_the_drives_alone() -> None:
     assert choose_witnesses(range(100), "b") != few
 
 
-def examined(engine: Engine, reported: list[str] | None = None) -> tuple[WorldResult, ...]:
+def examined(engine: Engine, reported: list[str] | None = None) -> tuple[DriveRow, ...]:
     """Examine an untaught robot, which stands, and its teacher's policy."""
 
-    async def run() -> tuple[WorldResult, ...]:
+    async def run() -> tuple[DriveRow, ...]:
         def report(what: str, done_s: float, whole_s: float) -> None:
             if reported is not None and done_s == whole_s:
                 reported.append(what)
@@ -40,16 +40,16 @@ def examined(engine: Engine, reported: list[str] | None = None) -> tuple[WorldRe
 
 
 def test_robot_that_leaves_the_batch_is_examined_on_the_bus(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(curriculum, "examine_in_batch", lambda *_: [None] * 4)
+    monkeypatch.setattr(curriculum, "examine_in_batch", lambda *_, **__: [None] * 4)
     assert examined(Engine.COMPILED) == examined(Engine.CAN)
 
 
 def test_stuck_robot_that_is_rescued_is_examined_on_the_bus() -> None:
     task = load_task("wall_following", changes={"exam.duration_s": "3", "exam.stuck_after_s": "1"})
 
-    def drive(engine: Engine) -> ExamResult:
-        async def run() -> list[ExamResult]:
-            exam = BatchExam(ExamSetup("a", 1, stuck_ends=False))  # it knows nothing, and stands
+    def drive(engine: Engine) -> DriveRow:
+        async def run() -> list[DriveRow]:
+            exam = ExamSetup("a", 1, stuck_ends=False)  # it knows nothing, and stands
             return await run_drives(STAGE, ROBOT, task, [exam], lambda *_: None, engine)
 
         return anyio.run(run)[0]

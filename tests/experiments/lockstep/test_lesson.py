@@ -27,7 +27,7 @@ def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) ->
     assert result.growth[-1] == len(result.rlas) > 3
     first, last = result.trail[0], result.trail[-1]
     assert abs(last.x_m - first.x_m) + abs(last.y_m - first.y_m) > 0.5
-    assert len(result.trail) == 150
+    assert len(result.trail) == 75
     assert len(result.ask_positions) == result.asks
     assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 15.0, 0)
     assert taught.reported_s == [*map(float, range(1, 16)), 15.0]

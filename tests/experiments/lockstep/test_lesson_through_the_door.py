@@ -16,7 +16,8 @@ from kurt2rt.core.learner.rla_learner import RlaLearner
 from kurt2rt.core.rla.events import LessonUndone
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.learner_setting import learner_setting
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
@@ -28,7 +29,7 @@ class Robot:
     """Lesson and exam of one robot."""
 
     lesson: TrainingResult
-    exam: ExamResult
+    exam: DriveRow
     store: InMemoryEventStore
 
 
@@ -51,11 +52,11 @@ def drive(task: TaskSettings, seed: int, team: LearnerTeam | None) -> Robot:
             training = TrainingStore(store, learners=team)
             return await teach(simulation, ROBOT, task, training, seed=seed, on_progress=lambda _: None)
 
-    async def exam() -> ExamResult:
+    async def exam() -> DriveRow:
         world = task.exam.worlds[0]
         with closing(STAGE.open(world, seed, "exam")) as simulation:
-            setup = ExamSetup(world, seed, learners=team)
-            return await examine(simulation, ROBOT, task, store.events, setup, lambda _: None)
+            setup = ExamSetup(world, seed, events=store.events, learners=team)
+            return await examine(simulation, ROBOT, task, setup, lambda _: None)
 
     return Robot(anyio.run(lesson), anyio.run(exam), store)
 
@@ -80,7 +81,7 @@ def test_rla_learner_drives_as_the_rla_level(name: str, teacher: str, seconds: f
     assert own.lesson.presses > 5
     if name == "wall_following" and teacher == "ordinary":
         assert any(isinstance(event, LessonUndone) for event in own.store.events)
-    assert own.exam.distance_travelled_m > 1.0
+    assert own.exam.way_m > 1.0
     for behaviour in task.behaviours:
         mirror = RlaLearner(learner_setting(task, ROBOT, seed=seed))
         for rla in own.lesson.rlas:

@@ -43,7 +43,7 @@ def test_the_teacher_drives_what_he_teaches(name: str) -> None:
     drive = teachers_drive(lasting(name))
     assert drive.unit == UNITS.get(name, "junctions")
     assert (drive.collisions, drive.stuck, drive.alarm) == (0, False, "")
-    assert 1.0 < drive.distance_travelled_m < 4.0
+    assert 1.0 < drive.way_m < 4.0
     if name != "eight":  # of which the first half takes longer
         assert drive.progress > 0.0
 

@@ -110,11 +110,11 @@ def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bo
         # What a teacher had said of them does not count there.
         saved = Statistics(values={2: -0.05}, numbers={VALUES_INCLUDE: 2.0})
         try:
-            setup = ExamSetup("a", 1, saved=saved, autonomous_values=alone)
-            exam = await examine(simulation, ROBOT, task, events, setup, lambda _: None)
+            setup = ExamSetup("a", 1, events=events, saved=saved, autonomous_values=alone)
+            exam = await examine(simulation, ROBOT, task, setup, lambda _: None)
         finally:
             simulation.close()
-        return exam.distance_travelled_m
+        return exam.way_m
 
     assert (anyio.run(drive) > 0.3) is drives
 
@@ -126,8 +126,8 @@ def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool
     async def drive() -> tuple[bool, int, float]:
         simulation = STAGE.open("a", 1, "exam")
         try:
-            setup = ExamSetup("a", 1, stuck_ends=stuck_ends)
-            exam = await examine(simulation, ROBOT, task, [knows_only("stand")], setup, lambda _: None)
+            setup = ExamSetup("a", 1, events=[knows_only("stand")], stuck_ends=stuck_ends)
+            exam = await examine(simulation, ROBOT, task, setup, lambda _: None)
         finally:
             simulation.close()
         return exam.stuck, exam.rescues, exam.duration_s

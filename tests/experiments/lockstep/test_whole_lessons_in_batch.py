@@ -4,7 +4,7 @@ import pytest
 
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.batch_exam import BatchExam, examine_in_batch
+from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.batch.compiled import IS_COMPILED
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus
@@ -39,7 +39,7 @@ def assert_equal_on_the_bus(task: TaskSettings, seed: int) -> None:
     lesson = lesson_in_both(task, seed)
     if lesson is None:
         return
-    taught = [ExamSetup(world, seed, saved=lesson.result.saved) for world in task.exam.worlds]
-    exams = [BatchExam(setup, lesson.events) for setup in taught]
+    saved = lesson.result.saved
+    exams = [ExamSetup(world, seed, events=lesson.events, saved=saved) for world in task.exam.worlds]
     for exam, result in zip(exams, examine_in_batch(STAGE, ROBOT, task, exams), strict=True):
         assert result is None or result == exam_on_bus(task, exam)

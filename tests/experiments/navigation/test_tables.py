@@ -2,7 +2,7 @@
 
 import re
 
-from kurt2rt.experiments.navigation.exam import ErrandDone, ErrandsRun, Strategy
+from kurt2rt.experiments.navigation.exam import ErrandDone
 from kurt2rt.experiments.navigation.study import ErrandsOutcome
 from kurt2rt.experiments.navigation.tables import all_tables, robots_table, runs_table
 from tests.experiments.navigation.test_goals import settings
@@ -25,11 +25,7 @@ def errand(
     )
 
 
-def run(*errands: ErrandDone, how: Strategy = "planning") -> ErrandsRun:
-    return ErrandsRun(how=how, errands=errands, trail=())
-
-
-def robot(seed: int, *runs: ErrandsRun) -> ErrandsOutcome:
+def robot(seed: int, *errands: ErrandDone) -> ErrandsOutcome:
     return ErrandsOutcome(
         made_of=MADE_OF,
         seed=seed,
@@ -45,22 +41,23 @@ def robot(seed: int, *runs: ErrandsRun) -> ErrandsOutcome:
         named={"home": (0.4, 1.3)},
         led=(),
         knowledge_hash="",
-        runs=runs,
+        errands=errands,
+        trail=(),
     )
 
 
-GOOD = run(*[errand()] * 20)
+GOOD = [errand()] * 20
 
 
 def test_goal_counts_if_short_and_without_collision() -> None:
-    mixed = run(errand(), errand(1.4), errand(why_not="stuck"), errand(collisions=1))
+    mixed = robot(1, errand(), errand(1.4), errand(why_not="stuck"), errand(collisions=1))
     assert mixed.good(1.3) == 1
     assert len(mixed.reached) == 2
 
 
 def test_robots_that_nobody_has_seen_before_are_judged() -> None:
-    outcomes = [robot(seed, GOOD) for seed in range(100, 118)]
-    outcomes += [robot(seed, run(*[errand()] * 17, *[errand(why_not="no way")] * 3)) for seed in (118, 119)]
+    outcomes = [robot(seed, *GOOD) for seed in range(100, 118)]
+    outcomes += [robot(seed, *[errand()] * 17, *[errand(why_not="no way")] * 3) for seed in (118, 119)]
     table = next(all_tables(outcomes, settings()))
     assert [row[3] for row in table.rows] == ["met"] * 3
     assert [row[1:3] for row in table.rows[:2]] == [("360 of 400", "394 of 400"), ("18 of 20", "18 of 20")]
@@ -69,22 +66,20 @@ def test_robots_that_nobody_has_seen_before_are_judged() -> None:
 
 
 def test_robots_that_settings_were_chosen_on_are_not() -> None:
-    table = next(all_tables([robot(1, GOOD)], settings()))
+    table = next(all_tables([robot(1, *GOOD)], settings()))
     assert {row[3] for row in table.rows} == {"not judged"}
     assert "20" in table.note
 
 
-def test_runs_table_lists_controls_and_demonstrations() -> None:
-    by_chance = run(errand(why_not="astray"), errand(1.2), how="chance")
-    planned = run(errand(demonstrated=None), errand(demonstrated=2.0))
-    table = runs_table([robot(1, planned, by_chance)], settings(), "slow")
-    assert [row[1] for row in table.rows] == ["2 of 2", "1 of 2"]
+def test_runs_table_lists_goals_and_demonstrations() -> None:
+    table = runs_table([robot(1, errand(demonstrated=None), errand(demonstrated=2.0))], settings(), "slow")
+    assert [row[0] for row in table.rows] == ["2 of 2"]
     assert re.findall(r"\d[\d.]*", table.note.split(":")[-1]) == ["2.0", "2.00", "1"]
     assert "slow" in table.note
 
 
 def test_each_robot_tells_what_it_did_not_reach_and_why() -> None:
-    table = robots_table([robot(3, run(errand(), errand(why_not="time"), errand(collisions=2)))], settings())
+    table = robots_table([robot(3, errand(), errand(why_not="time"), errand(collisions=2))], settings())
     assert table.rows[0][0] == "3"
     failed = [each.removeprefix("place 7: ") for each in table.rows[0][-1].split(", ")]
     assert failed[0] == "time"

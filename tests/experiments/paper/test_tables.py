@@ -8,8 +8,8 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.paper.settings import load_paper
-from kurt2rt.experiments.paper.study import ExaminedOutcome
 from kurt2rt.experiments.paper.tables import (
     Examined,
     Experiment,
@@ -22,7 +22,7 @@ from kurt2rt.experiments.paper.tables import (
     paper_targets_table,
     unseen_table,
 )
-from kurt2rt.experiments.study.drive_row import DriveRow
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from kurt2rt.experiments.study.table import Table, as_rich
 from tests.experiments.rows import FAILED, MADE_OF, NOT_JUDGED, PASSED, lesson, row
 

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import Any
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.steps import CORRUPTED, JUDGED, PHASE_1, TITLES, UNTAUGHT
 from kurt2rt.experiments.phases.study import PhasesTask, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.phases.tables import PhasesStudy
-from kurt2rt.experiments.study.drive_row import DriveRow
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.study.table import Table
 from tests.experiments.rows import FAILED, PASSED, row

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.phases.steps import (
     ASKS,
     BRANCHES,
@@ -33,7 +34,6 @@ from kurt2rt.experiments.phases.tables import (
     words_of_controls,
     workload_table,
 )
-from kurt2rt.experiments.study.drive_row import DriveRow
 from kurt2rt.experiments.study.targets import Verdict
 from tests.experiments.phases.outcomes import TASK, cells, exam, stage, study, teaching
 

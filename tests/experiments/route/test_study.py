@@ -7,13 +7,20 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.route import study as module
 from kurt2rt.experiments.route.figures import draw_figures
-from kurt2rt.experiments.route.study import BasicJob, RouteJob, RouteTasks, basic_file, basic_task_of, make_plan
+from kurt2rt.experiments.route.study import (
+    BasicJob,
+    RouteJob,
+    RouteTasks,
+    basic_file,
+    basic_task_of,
+    lesson_plans,
+    make_plan,
+)
 from kurt2rt.experiments.route.tables import RouteStudy, all_tables, read_study, write_routes
-from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import Results, StudyError
@@ -24,8 +31,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.study.here import carry_out, parts_in
 from tests.experiments.study.page import Page
 
-COMMAND = "kurt2rt train --task route --seeds 1"
-VARIANTS = (TAUGHT, next(each for each in CONTROLS if each.name == "commanded"))
+COMMAND = "kurt2rt lesson route --seeds 1"
 
 
 def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
@@ -38,7 +44,7 @@ def plan_in(folder: Path, basic_folder: Path | None = None, teaching_s: float = 
     route = short(load_task("route"), teaching_s)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(module, "basic_task_of", lambda _task: short(load_task("streets"), 10.0))
-        return make_plan(route, (1,), (4,), VARIANTS, parts_in(folder), basic_folder=basic_folder)
+        return make_plan(route, (1,), (4,), parts_in(folder), basic_folder=basic_folder)
 
 
 @dataclass(frozen=True)
@@ -61,10 +67,10 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
 def test_route_run_teaches_the_streets_once(done: Done) -> None:
     (basic,) = done.study.plan.of(BasicJob)
     assert basic.knowledge.is_file()
-    taught, commanded = (each.outcomes[0] for each in done.study.routes)
-    assert (taught.lesson.teaching_s, commanded.lesson.teaching_s) == (8.0, 8.0)
-    assert taught.mid_rlas == taught.mid_asks > 0 == commanded.mid_rlas
-    assert done.progress[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
+    (taught,) = done.study.routes[0].outcomes
+    assert taught.lesson.teaching_s == 8.0
+    assert taught.mid_rlas == taught.mid_asks > 0
+    assert done.progress[-1].done_s == 10.0 + 8.0 + 3.0
 
 
 def test_route_run_stores_the_mid_level(done: Done) -> None:
@@ -84,11 +90,19 @@ def test_route_run_repeated_does_nothing(done: Done) -> None:
         results.missing(plan_in(done.folder, teaching_s=13.0).jobs)
 
 
+def test_lesson_begun_again_goes_on_with_its_phases() -> None:
+    times = {"teaching.supervised_s": "100", "teaching.corrections_s": "300"}
+    plans = lesson_plans(load_task("route", changes=times), 2)
+    assert plans[0].phases == ((Phase.SUPERVISED, 100.0), (Phase.CORRECTIONS, 100.0))
+    assert plans[1].phases == ((Phase.CORRECTIONS, 200.0),)
+    assert len({plan.purpose for plan in plans}) == 2
+
+
 def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
     folder = done.study.plan.of(BasicJob)[0].knowledge.parent
     plan = plan_in(tmp_path, folder)
     assert {each.basic for each in plan.of(RouteJob)} == {folder / "streets-1.knowledge"}
-    assert len(plan.jobs) == 2
+    assert len(plan.jobs) == 1
     basic = basic_task_of(load_task("route"))
     assert basic.name == "streets"
     assert basic_file(folder / "streets-1.knowledge", basic, 1) == folder / "streets-1.knowledge"
@@ -96,8 +110,8 @@ def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
         basic_file(folder, basic, 2)
 
 
-def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
-    assert [each.path.name for each in done.pictures] == ["route-taught-4.png", "route-commanded-4.png"]
+def test_pictures_and_report_show_each_length(done: Done) -> None:
+    assert [each.path.name for each in done.pictures] == ["route-4.png"]
     assert all(imread(each.path).std() > 0.01 for each in done.pictures)
     text = (done.folder / "report.html").read_text(encoding="utf-8")
     assert Page(text).images == [each.title for each in done.pictures]

@@ -5,7 +5,6 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.route.route_monitor import Layer, Wrong
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, make_plan
 from kurt2rt.experiments.route.tables import Routes, RouteStudy, all_tables, errors_of
-from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
 from kurt2rt.experiments.study.table import Table
 from tests.experiments.rows import FAILED, MADE_OF, PASSED, lesson, row
 from tests.experiments.study.here import parts_in
@@ -39,9 +38,9 @@ def outcome(seed: int, *layers: Layer, mid_rlas: int = 12, collisions: int = 0, 
     )
 
 
-def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> RouteStudy:
-    plan = make_plan(load_task("route"), [each.seed for each in outcomes], (8,), variants, parts_in())
-    return RouteStudy(plan, tuple(Routes((each, 8), tuple(outcomes)) for each in variants))
+def study(outcomes: Sequence[RouteOutcome]) -> RouteStudy:
+    plan = make_plan(load_task("route"), [each.seed for each in outcomes], (8,), parts_in())
+    return RouteStudy(plan, (Routes(8, tuple(outcomes)),))
 
 
 def table_titled(of: RouteStudy, title: str) -> Table:
@@ -75,12 +74,6 @@ def test_each_layers_errors_are_counted_apart() -> None:
     assert [column(exams, layer) for layer in ("symbols", "mid", "basic")] == [["1"], ["1"], ["2"]]
     assert column(exams, "without an error") == ["1 of 4"]
     assert (column(exams, "collisions"), column(exams, "stuck")) == (["2"], ["1"])
-
-
-def test_of_controls_nothing_is_asked_and_each_has_its_row() -> None:
-    compared = study([outcome(100)], (TAUGHT, *CONTROLS))
-    assert len(table_titled(compared, "What was asked").rows) == 4
-    assert len(table_titled(compared, "What was taught").rows) == 1 + len(CONTROLS)
 
 
 def test_errors_are_told_with_their_layer_time_and_place() -> None:

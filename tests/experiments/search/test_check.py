@@ -18,10 +18,10 @@ from kurt2rt.experiments.search.check import (
     read_record,
     require_unchecked,
 )
-from kurt2rt.experiments.search.journal import TrialJournal
 from kurt2rt.experiments.search.score import RobotScore
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.tables import write_found
+from kurt2rt.experiments.search.trials import SearchTrials
 from kurt2rt.experiments.study.intervals import RateDifference
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import StudyError
@@ -86,15 +86,15 @@ def test_found_settings_are_the_best_of_the_better_ones() -> None:
 def test_check_is_made_once(tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
     with plan.parts["results"].held():
-        journal = TrialJournal(plan)
+        trials = SearchTrials(plan)
         for number, score in enumerate((0.9, 0.5, 0.7)):
-            journal.begin(number)
-            journal.finish(number, score)
-        record = begin_check(plan, journal, 3)
+            trials.begin(number)
+            trials.finish(number, score)
+        record = begin_check(plan, trials, 3)
         assert (record.trials, record.candidates) == (3, (2,))
-        journal.begin(3)
-        journal.finish(3, 1.0)
-        assert begin_check(plan, journal, 4) == record
+        trials.begin(3)
+        trials.finish(3, 1.0)
+        assert begin_check(plan, trials, 4) == record
     require_unchecked(plan, 3)
     with pytest.raises(StudyError, match=r"checked after 3 trials \(got --trials 4, allowed 3\)"):
         require_unchecked(plan, 4)

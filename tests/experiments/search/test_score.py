@@ -1,15 +1,13 @@
 """Scores: one more exam outweighs any effort."""
 
-from dataclasses import replace
-
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.lockstep.seed_result import SeedResult
 from kurt2rt.experiments.search.score import RobotScore, highest_score, robot_score, score_of
 from kurt2rt.experiments.search.settings import Objective
+from kurt2rt.experiments.study.jobs import ExaminedOutcome
 from tests.examples import examples
-from tests.experiments.results import exam_result, robot_of_seed, world_result
+from tests.experiments.rows import MADE_OF, judged, lesson
 
 PRESSES: Objective = "passed_then_presses"
 COLLISIONS: Objective = "passed_then_presses_and_collisions"
@@ -21,9 +19,8 @@ def robot(passed: int, presses: int = 10, exams: int = 3, rlas: int = 50, collis
 
 
 def test_exam_without_a_verdict_counts_as_not_passed() -> None:
-    result = robot_of_seed(3, 80, exam_result("a"), exam_result("b", collisions=1), exam_result("c"))
-    unjudged = world_result(exam_result("c"), teachers_laps=0.0)
-    result = SeedResult(lesson=result.lesson, exams=(*result.exams[:2], replace(unjudged)))
+    drives = (judged(), judged(collisions=1), judged(teachers_laps=0.0))
+    result = ExaminedOutcome(made_of=MADE_OF, seed=3, lesson=lesson(3, rlas=80), rlas_of={}, drives=drives)
     assert robot_score(result) == RobotScore(1, 3, result.lesson.presses, result.lesson.collisions, rlas=80)
     assert robot_score(result).passed_share == 1 / 3
 

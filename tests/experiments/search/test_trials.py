@@ -1,8 +1,6 @@
 """Trials: the same at every run, in any number of processes, and after any interruption."""
 
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,9 +8,8 @@ import pytest
 from optuna.trial import TrialState
 
 from kurt2rt.experiments.search import trials as trials_module
-from kurt2rt.experiments.search.journal import FILE, TrialJournal
 from kurt2rt.experiments.search.plan import SearchPlan
-from kurt2rt.experiments.search.trials import run_trials
+from kurt2rt.experiments.search.trials import SearchTrials, run_trials
 from kurt2rt.experiments.study import provenance
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
@@ -23,20 +20,13 @@ from tests.experiments.study.here import HERE
 Trial = tuple[dict[str, Any], TrialState, float | None, dict[int, float]]
 
 
-@contextmanager
-def opened(plan: SearchPlan) -> Iterator[TrialJournal]:
-    with plan.parts["results"].held():
-        yield TrialJournal(plan)
-
-
-def trials_of(journal: TrialJournal) -> list[Trial]:
-    return [(each.params, each.state, each.value, each.intermediate_values) for each in journal.trials]
+def trials_of(found: SearchTrials) -> list[Trial]:
+    return [(each.params, each.state, each.value, each.intermediate_values) for each in found.all]
 
 
 def run(plan: SearchPlan, trials: int = 3, progress: list[PoolProgress] | None = None) -> list[Trial]:
-    with opened(plan) as journal:
-        run_trials(plan, journal, trials, HERE, (progress if progress is not None else []).append)
-        return trials_of(journal)
+    with plan.parts["results"].held():
+        return trials_of(run_trials(plan, trials, HERE, (progress if progress is not None else []).append))
 
 
 class Whole(NamedTuple):
@@ -87,17 +77,17 @@ def test_progress_is_in_robot_time_of_all_trials(finished: Whole) -> None:
 
 
 def test_finished_search_is_left_alone(whole: list[Trial], copied: SearchPlan) -> None:
-    content = (copied.folder / FILE).read_bytes()
+    files = sorted(path for path in copied.folder.rglob("*.json"))
+    before = [path.stat().st_mtime_ns for path in files]
     assert run(copied) == whole
-    assert (copied.folder / FILE).read_bytes() == content
+    assert [path.stat().st_mtime_ns for path in files] == before
 
 
 @pytest.mark.deep
 def test_search_in_two_processes_has_the_same_trials(whole: list[Trial], tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path)
-    with opened(plan) as journal, open_processes(2) as executor:
-        run_trials(plan, journal, 3, executor, lambda _: None)
-        assert trials_of(journal) == whole
+    with plan.parts["results"].held(), open_processes(2) as executor:
+        assert trials_of(run_trials(plan, 3, executor, lambda _: None)) == whole
 
 
 class _Stop:
@@ -124,61 +114,46 @@ def test_search_interrupted_between_robots_goes_on(
     assert run(tiny_plan(tmp_path)) == whole
 
 
-@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.deep)])
-def test_journal_cut_at_any_line_goes_on_to_the_same(step: int, whole: list[Trial], copied: SearchPlan) -> None:
-    journal = copied.folder / FILE
-    lines = journal.read_bytes().splitlines(keepends=True)
-    for count in range(0, len(lines), step):
-        journal.write_bytes(b"".join(lines[:count]) + lines[count][: len(lines[count]) // 2])
-        Path(f"{journal}.lock").symlink_to("gone")  # a killed process leaves it
-        assert run(copied) == whole
+def test_search_without_some_results_makes_them_again(whole: list[Trial], copied: SearchPlan) -> None:
+    lost = copied.folder / "results/trials/0001"
+    content = {path: path.read_bytes() for path in lost.iterdir()}
+    shutil.rmtree(lost)
+    assert run(copied) == whole
+    assert {path: path.read_bytes() for path in lost.iterdir()} == content
 
 
-def test_journal_of_another_make_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    with opened(tiny_plan(tmp_path)):
-        pass
-    plan = tiny_plan(tmp_path, sampler_seed=1)
-    with pytest.raises(StudyError, match=rf"{FILE}: .*what differs: task\)"), opened(plan):
-        pass
+def test_results_of_another_search_are_refused(copied: SearchPlan, monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(StudyError, match=r"what differs: task\)"):
+        run(tiny_plan(copied.folder.parent, sampler_seed=1))
     monkeypatch.setattr(provenance, "source_hash", lambda: "new")
-    plan = tiny_plan(tmp_path)
-    with pytest.raises(StudyError, match=rf"{FILE}: .*what differs: source\)"), opened(plan):
-        pass
-
-
-def test_damaged_journal_is_refused_in_one_line(tmp_path: Path) -> None:
-    plan = tiny_plan(tmp_path)
-    plan.folder.mkdir()
-    (plan.folder / FILE).write_text("no journal\nat all\n")
-    with pytest.raises(StudyError, match="is not a journal of trials"), opened(plan):
-        pass
+    with pytest.raises(StudyError, match=r"what differs: source\)"):
+        run(tiny_plan(copied.folder.parent))
 
 
 def test_other_sampler_seed_has_other_trials(whole: list[Trial], tmp_path: Path) -> None:
     plan = tiny_plan(tmp_path, sampler_seed=1)
-    with opened(plan) as journal:
-        for number in range(3):
-            journal.begin(number)
-        params = [each.params for each in journal.trials]
+    found = SearchTrials(plan)
+    for number in range(3):
+        found.begin(number)
+    params = [each.params for each in found.all]
     assert params[0] == whole[0][0]
     assert params[1] != whole[1][0]
 
 
 def test_trial_that_cannot_beat_the_median_is_pruned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plan = tiny_plan(tmp_path)
-    monkeypatch.setattr(TrialJournal, "median_score", lambda _self, first: 2.0 if first else -1.0)
-    with opened(plan) as journal:
-        run_trials(plan, journal, 3, HERE, lambda _: None)
-        assert [each.state for each in journal.trials] == [TrialState.COMPLETE] * 2 + [TrialState.PRUNED]
-        assert list(journal.trials[2].intermediate_values) == [0]
+    monkeypatch.setattr(SearchTrials, "median_score", lambda _self, first: 2.0 if first else -1.0)
+    found = run(plan)
+    assert [state for _, state, *_ in found] == [TrialState.COMPLETE] * 2 + [TrialState.PRUNED]
+    assert list(found[2][3]) == [0]
     assert len(list((plan.folder / "results/trials/0002").iterdir())) == 1
 
 
 def test_median_is_of_four_earlier_trials_at_least(tmp_path: Path) -> None:
-    with opened(tiny_plan(tmp_path)) as journal:
-        for number, score in enumerate((0.1, 0.4, 0.2, 0.3, 0.9)):
-            journal.begin(number)
-            journal.finish(number, score)
-        assert journal.median_score(3) == float("-inf")
-        assert journal.median_score(4) == pytest.approx(0.25)
-        assert journal.median_score(5) == pytest.approx(0.3)
+    found = SearchTrials(tiny_plan(tmp_path))
+    for number, score in enumerate((0.1, 0.4, 0.2, 0.3, 0.9)):
+        found.begin(number)
+        found.finish(number, score)
+    assert found.median_score(3) == float("-inf")
+    assert found.median_score(4) == pytest.approx(0.25)
+    assert found.median_score(5) == pytest.approx(0.3)

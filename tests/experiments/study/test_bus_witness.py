@@ -1,6 +1,5 @@
 """Witnesses of jobs in the batch."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,9 +7,9 @@ import pytest
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
+from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import BatchDiffersError
-from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
+from kurt2rt.experiments.lockstep.lesson import GivenLesson
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob, BusWitnessOutcome, require_no_difference
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
@@ -43,20 +42,20 @@ def test_batch_and_bus_come_to_the_same_result(tmp_path: Path) -> None:
     assert not list((tmp_path / "bus").rglob("witnesses"))
 
 
-def wrong_exams(*given: object) -> list[ExamResult | None]:
-    results = examine_in_batch(*given)  # type: ignore[arg-type]
-    return [None if each is None else replace(each, progress=each.progress + 1e-12) for each in results]
+def wrong_exams(*given: object, **named: object) -> list[DriveRow | None]:
+    results = examine_in_batch(*given, **named)  # type: ignore[arg-type]
+    return [None if each is None else each.model_copy(update={"progress": each.progress + 1e-12}) for each in results]
 
 
 def wrong_lesson(*given: object, **named: object) -> GivenLesson | None:
     true = teach_in_batch(*given, **named)  # type: ignore[arg-type]
-    return true and replace(true, events=true.events[:-1])
+    return true and true._replace(events=true.events[:-1])
 
 
 @pytest.mark.parametrize(
     ("name", "wrong", "said"),
     [
-        ("examine_in_batch", wrong_exams, r"wall_following, seed 5: .* differ in exams\.0\.learned\.progress"),
+        ("examine_in_batch", wrong_exams, r"wall_following, seed 5: .* differ in drives\.0\.progress"),
         ("teach_in_batch", wrong_lesson, r"wall_following, seed 5: .* lessons or statistics in the knowledge file"),
     ],
 )

@@ -5,12 +5,11 @@ import re
 import anyio
 import pytest
 
-from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.study import drive_row as module
-from kurt2rt.experiments.study.drive_row import Examiner, row_of
+from kurt2rt.experiments.lockstep.drive_row import ExamVerdict
+from kurt2rt.experiments.study import examiner as module
+from kurt2rt.experiments.study.examiner import Examiner
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
 from tests.experiments.helpers import ROBOT, STAGE, short_task
-from tests.experiments.results import exam_result
 from tests.experiments.rows import FAILED, NOT_JUDGED, PASSED, row
 
 
@@ -21,7 +20,7 @@ def test_policy_that_does_not_pass_judges_no_robot(
     policy: ExamVerdict, collisions: int, verdict: ExamVerdict, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     async def drives(*_: object) -> list[object]:
-        return [exam_result(laps=8.0, collisions=collisions)]
+        return [row(verdict=NOT_JUDGED, collisions=collisions)]
 
     monkeypatch.setattr(module, "run_drives", drives)
     examiner = Examiner(STAGE, ROBOT, short_task(), "a", 1, lambda *_: None)
@@ -35,9 +34,10 @@ def test_policy_and_pupil_start_from_one_place() -> None:
 
 
 def test_row_tells_how_a_drive_ended() -> None:
-    stuck = row_of(exam_result(stuck=True), FAILED, trails=True)
+    stuck = row(verdict=FAILED, stuck=True, duration_s=123.0, teacher=row())
     assert (stuck.early_end, stuck.ended_early, stuck.failed, stuck.judged) == ("stuck after 123 s", True, True, True)
-    assert (stuck.trail, row_of(exam_result(), PASSED).trail) == (((0.5, 0.5), (0.7, 0.6)), ())
+    assert [each.teacher and each.teacher.trail for each in (stuck, stuck.stored())] == [stuck.trail, ()]
+    assert (stuck.stored(places=True).trail, stuck.stored().trail) == (stuck.trail, ())
     assert row(rescues=2).ended_early
     assert row(progress=2.0, least_progress=2.0).got_nowhere
     assert row(findings={"junctions": 8.0, "junctions right": 6.0}).right_share == 0.75

@@ -1,10 +1,18 @@
 import math
+import statistics
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.experiments.study.intervals import difference_of, fall_of, poisson_interval, rate_of
+from kurt2rt.experiments.study.intervals import (
+    difference_of,
+    fall_of,
+    poisson_interval,
+    quartiles,
+    rate_of,
+    wilson_interval,
+)
 from tests.examples import examples
 
 
@@ -95,3 +103,32 @@ def test_a_fall_is_told_with_an_interval_over_pairs() -> None:
     assert unsure.value == 0.0
     assert -0.6 < unsure.low < -0.2 < 0.2 < unsure.high < 0.6
     assert fall_of([0.0, 0.0], [0.0, 0.0]) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("successes", "trials", "low", "high"),
+    [  # as published: Newcombe 1998, table I, method 3, and R's prop.test(correct = FALSE)
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+        (1, 1, 0.2065, 1.0),
+    ],
+)
+def test_the_interval_of_a_share_is_wilsons(successes: int, trials: int, low: float, high: float) -> None:
+    assert wilson_interval(successes, trials) == pytest.approx((low, high), abs=6e-5)
+
+
+@given(st.integers(1, 500).flatmap(lambda trials: st.tuples(st.integers(0, trials), st.just(trials))))
+def test_the_interval_holds_the_share_and_mirrors(counted: tuple[int, int]) -> None:
+    successes, trials = counted
+    low, high = wilson_interval(successes, trials)
+    share, rounding = successes / trials, 1e-12
+    assert 0.0 <= low <= share + rounding
+    assert share - rounding <= high <= 1.0
+    failures_low, failures_high = wilson_interval(trials - successes, trials)
+    assert (1 - high, 1 - low) == pytest.approx((failures_low, failures_high))
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=50))
+def test_quartiles_are_those_of_the_standard_library(values: list[float]) -> None:
+    assert quartiles(values) == pytest.approx(statistics.quantiles(values, n=4, method="inclusive"), abs=1e-6)

@@ -5,12 +5,14 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study.pool import JobKilledError, JobProcesses, PoolProgress, Progress, run_jobs
+from kurt2rt.experiments.study import pool
+from kurt2rt.experiments.study.pool import JobKilledError, JobProcesses, PoolProgress, Progress
 
 
 @dataclass(frozen=True)
@@ -19,25 +21,23 @@ class Job:
     robot_time_s: float
     fails: bool = False
 
-    def run(self, tell: Progress) -> str:
+    def run(self, tell: Progress) -> None:
         if self.fails:
             raise RuntimeError(f"{self.name} fails")
         tell(self.robot_time_s / 2)
-        return f"{self.name} done"
 
 
 JOBS = [Job("short", 10.0), Job("long", 40.0), Job("middle", 20.0)]
 
 
-def test_run_jobs_starts_the_longest_and_keeps_order() -> None:
-    done: list[int] = []
-    assert run_jobs(JOBS, 1, on_done=done.append) == ["short done", "long done", "middle done"]
-    assert done == [1, 2, 0]
+def run_jobs(jobs: Sequence[pool.Job], processes: int, told: list[PoolProgress] | None = None) -> None:
+    with JobProcesses(processes) as running:
+        running.run(jobs, (told if told is not None else []).append)
 
 
 def test_run_jobs_progress_is_in_robot_time() -> None:
     told: list[PoolProgress] = []
-    run_jobs(JOBS, 1, on_progress=told.append)
+    run_jobs(JOBS, 1, told)
     assert told == [
         (0.0, ("long",)),
         (20.0, ("long",)),
@@ -50,10 +50,10 @@ def test_run_jobs_progress_is_in_robot_time() -> None:
 
 
 def test_run_jobs_error_ends_other_jobs() -> None:
-    done: list[int] = []
+    told: list[PoolProgress] = []
     with pytest.raises(RuntimeError, match="middle fails") as caught:
-        run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, on_done=done.append)
-    assert done == [1]
+        run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, told)
+    assert told[-1] == (40.0, ("middle",))
     assert caught.value.__notes__ == ["middle"]
 
 
@@ -65,42 +65,45 @@ def test_run_jobs_unfreezes_only_what_it_froze() -> None:
 
 
 def test_no_jobs_are_no_work() -> None:
-    assert run_jobs([], 2) == []
+    told: list[PoolProgress] = []
+    run_jobs([], 2, told)
+    assert told == [(0.0, ())]
 
 
 @pytest.mark.deep
-def test_other_processes_come_to_the_same() -> None:
+def test_other_processes_tell_their_progress() -> None:
     told: list[PoolProgress] = []
-    done: list[int] = []
-    assert run_jobs(JOBS, 2, on_done=done.append, on_progress=told.append) == run_jobs(JOBS, 1)
-    assert sorted(done) == [0, 1, 2]
+    run_jobs(JOBS, 2, told)
     assert told[-1] == (70.0, ())
 
 
 @dataclass(frozen=True)
 class Asked:
-    """Tells the process that it runs in."""
+    """Writes down the process that it runs in."""
 
     name: str
+    folder: Path
     robot_time_s: float = 1.0
 
-    def run(self, tell: Progress) -> int:
+    def run(self, tell: Progress) -> None:
         del tell
-        return os.getpid()
+        (self.folder / f"{os.getpid()}").touch()
 
 
 @pytest.mark.deep
-def test_processes_are_kept_from_wave_to_wave() -> None:
+def test_processes_are_kept_from_wave_to_wave(tmp_path: Path) -> None:
     with JobProcesses(2) as processes:
-        waves = [set(processes.run([Asked(str(number)) for number in range(4)])) for _ in range(3)]
-    used = set.union(*waves)
-    assert os.getpid() not in used
+        for _ in range(3):
+            processes.run([Asked(str(number), tmp_path) for number in range(4)])
+    used = {path.name for path in tmp_path.iterdir()}
+    assert str(os.getpid()) not in used
     assert len(used) <= 2
 
 
-def test_a_single_job_of_a_wave_starts_no_process() -> None:
+def test_a_single_job_of_a_wave_starts_no_process(tmp_path: Path) -> None:
     with JobProcesses(2) as processes:
-        assert processes.run([Asked("alone")]) == [os.getpid()]
+        processes.run([Asked("alone", tmp_path)])
+    assert [path.name for path in tmp_path.iterdir()] == [str(os.getpid())]
 
 
 @pytest.mark.deep
@@ -117,10 +120,9 @@ class Killed:
     name: str = "greedy, seed 7"
     robot_time_s: float = 30.0
 
-    def run(self, tell: Progress) -> str:
+    def run(self, tell: Progress) -> None:
         del tell
         os.kill(os.getpid(), signal.SIGKILL)
-        return "never"
 
 
 @pytest.mark.deep
@@ -148,8 +150,7 @@ class Waiting:
 _WAITS = """
 import sys
 from pathlib import Path
-from kurt2rt.experiments.study.pool import run_jobs
-from tests.experiments.study.test_pool import Waiting
+from tests.experiments.study.test_pool import Waiting, run_jobs
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])

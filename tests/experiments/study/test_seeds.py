@@ -5,7 +5,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.pool import run_jobs
+from kurt2rt.experiments.study.pool import JobProcesses
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import open_processes, run_missing
 from kurt2rt.experiments.study.seeds import forget_lost_robots, make_plan, read_results
@@ -34,7 +34,7 @@ def test_robots_of_a_seed_study_are_taught_once(tmp_path: Path) -> None:
     assert results.missing(plan.waves[0]) == []
     with Journal.read_only(tmp_path / "wall_following-5.knowledge") as journal:
         assert journal.events()
-    assert (outcome.lesson.seed, outcome.lesson.world, outcome.exams[0].learned.trail) == (5, "a", ())
+    assert (outcome.lesson.seed, outcome.lesson.world, outcome.drives[0].trail) == (5, "a", ())
     assert outcome.lesson.rlas > 0
 
     forget_lost_robots(plan)
@@ -72,6 +72,6 @@ def test_seed_job_with_an_error_ends_all_others(tmp_path: Path) -> None:
     failing, *others = plan_in(tmp_path, 5, *range(10, 30)).waves[0]
     task = TASK.model_copy(update={"exam": TASK.exam.model_copy(update={"worlds": ("nowhere",)})})
     with Results(tmp_path).held(), pytest.raises(SettingsError, match=r"nowhere: .*worlds") as caught:
-        run_jobs([replace(failing, task=task), *others], 1)
+        JobProcesses(1).run([replace(failing, task=task), *others])
     assert caught.value.__notes__ == ["wall_following, seed 5"]
     assert not list(tmp_path.glob("*.knowledge"))

@@ -9,20 +9,18 @@ from matplotlib.image import imread
 from hal.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.experiments.study.checkpoints import events_before_press
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.experiments.study.runner import missing_time_s
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.experiments.transfer.study import (
-    CONTROLS,
-    TAUGHT_ON,
     HomeJob,
     NewWorlds,
     Transfer,
     TransferJob,
     TransferOutcome,
-    events_before_press,
     make_plan,
-    taught_on_by,
+    task_in,
 )
 from kurt2rt.experiments.transfer.tables import TransferStudy, all_tables, draw_curves, read_study
 from kurt2rt.knowledge.journal.journal import Journal
@@ -34,7 +32,7 @@ NEW = NewWorlds(("rooms-SEED",), AFTER, 15.0)
 
 
 def plan_in(folder: Path, new: NewWorlds = NEW) -> StudyPlan[Transfer]:
-    return make_plan(short_task(exam_s=4.0), new, (1,), (TAUGHT_ON, *CONTROLS), parts_in(folder))
+    return make_plan(short_task(exam_s=4.0), new, (1,), parts_in(folder))
 
 
 @dataclass(frozen=True)
@@ -43,12 +41,14 @@ class Done:
     plan: StudyPlan[Transfer]
     study: TransferStudy
 
-    def job(self, variant: str) -> TransferJob:
-        (job,) = (job for job in self.plan.of(TransferJob) if job.variant.name == variant)
+    @property
+    def job(self) -> TransferJob:
+        (job,) = self.plan.of(TransferJob)
         return job
 
-    def outcome(self, variant: str) -> TransferOutcome:
-        return self.results.read(self.job(variant), TransferOutcome)
+    @property
+    def outcome(self) -> TransferOutcome:
+        return self.results.read(self.job, TransferOutcome)
 
 
 @pytest.fixture(scope="module")
@@ -65,8 +65,8 @@ def events_of(file: Path) -> list[TeachingEvent]:
 
 def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
     (home,) = done.plan.of(HomeJob)
-    before, after = events_of(home.knowledge), events_of(done.job("taught-on").knowledge)
-    outcome = done.outcome("taught-on")
+    before, after = events_of(home.knowledge), events_of(done.job.knowledge)
+    outcome = done.outcome
     assert outcome.lesson.world == "rooms-1"
     assert after[: len(before)] == before
     assert len(after) - len(before) == outcome.checkpoints[-1].lessons >= 1
@@ -74,7 +74,7 @@ def test_robot_goes_on_from_what_it_was_taught_at_home(done: Done) -> None:
 
 
 def test_checkpoints_grow_by_presses_from_home_knowledge(done: Done) -> None:
-    outcome = done.outcome("taught-on")
+    outcome = done.outcome
     assert [each.presses for each in outcome.checkpoints] == list(AFTER)
     lessons = [each.lessons for each in outcome.checkpoints]
     assert lessons[0] == 0
@@ -83,25 +83,15 @@ def test_checkpoints_grow_by_presses_from_home_knowledge(done: Done) -> None:
 
 
 def test_checkpoint_is_what_a_shorter_lesson_teaches(done: Done) -> None:
-    job = done.job("from-nothing")
+    job = done.job
     shorter = replace(job, after=(0, 2), stem="shorter")
     shorter.run(lambda _: None)
     outcome = done.results.read(shorter, TransferOutcome)
-    _, point, _ = done.outcome("from-nothing").checkpoints
+    _, point, _ = done.outcome.checkpoints
     assert outcome.lesson.presses == 2
-    assert events_of(shorter.knowledge) == events_of(job.knowledge)[: point.lessons]
+    known = len(events_of(done.plan.of(HomeJob)[0].knowledge))
+    assert events_of(shorter.knowledge) == events_of(job.knowledge)[: known + point.lessons]
     assert outcome.checkpoints[-1] == point
-
-
-def test_control_without_home_knowledge_begins_with_nothing(done: Done) -> None:
-    outcome = done.outcome("from-nothing")
-    assert outcome.checkpoints[0].lessons == 0
-    assert outcome.checkpoints[0].drive.share_unknown == 1.0
-    assert events_of(done.job("from-nothing").knowledge)[0].origin.phase is Phase.SUPERVISED
-
-
-def test_answers_only_control_corrects_nothing(done: Done) -> None:
-    assert done.outcome("answers-only").lesson.corrections == 0
 
 
 def test_lessons_of_a_press_come_before_the_next_press() -> None:
@@ -115,18 +105,17 @@ def test_lessons_of_a_press_come_before_the_next_press() -> None:
 
 
 def test_robot_that_was_not_taught_on_drives_at_home_as_before(done: Done) -> None:
-    job = replace(done.job("taught-on"), after=(0,), stem="not-taught")
+    job = replace(done.job, after=(0,), stem="not-taught")
     job.run(lambda _: None)
     outcome, (before,) = done.results.read(job, TransferOutcome), done.study.home
     assert outcome.lesson.presses == outcome.checkpoints[0].lessons == 0
     assert outcome.home == outcome.home_when_right == before.drive
 
 
-def test_other_teacher_of_the_new_world_is_named() -> None:
-    variant = taught_on_by("slow")
-    assert variant.title != TAUGHT_ON.title
-    assert variant.task(short_task(), "rooms-1").teaching.profile.name == "slow"
-    assert taught_on_by(None) == TAUGHT_ON
+def test_other_teacher_of_the_new_world_teaches_there() -> None:
+    task = task_in("rooms-1", short_task(), "slow")
+    assert (task.teaching.profile.name, task.teaching.world, task.exam.worlds) == ("slow", "rooms-1", ("rooms-1",))
+    assert task_in("rooms-1", short_task()).teaching.profile == short_task().teaching.profile
 
 
 def test_study_goes_on_where_it_was(done: Done) -> None:
@@ -134,10 +123,10 @@ def test_study_goes_on_where_it_was(done: Done) -> None:
         missing_time_s(plan_in(done.results.folder, NEW._replace(seconds=14.0)).waves, done.results)
 
 
-def test_tables_and_figure_show_each_variant(done: Done, tmp_path: Path) -> None:
+def test_tables_and_figure_show_each_world(done: Done, tmp_path: Path) -> None:
     _, curve, teaching, robots = all_tables(done.study)
-    assert [row[1] for row in curve.rows[::2]] == [each.title for each in (TAUGHT_ON, *CONTROLS)]
-    assert len(teaching.rows) == 3
+    assert [row[:2] for row in curve.rows] == [("rooms-SEED", "taught on"), ("rooms-SEED", "until right")]
+    assert len(teaching.rows) == 1
     assert [row[:2] for row in robots.rows] == [("1", "rooms-1")]
     draw_curves(done.study, tmp_path / "curve.png")
     assert imread(tmp_path / "curve.png").shape[0] > 300
@@ -149,7 +138,7 @@ def test_home_is_no_new_world(tmp_path: Path) -> None:
 
 
 def test_job_tells_its_progress_up_to_its_robot_time(done: Done) -> None:
-    job = replace(done.job("taught-on"), stem="told")
+    job = replace(done.job, stem="told")
     told: list[float] = []
     job.run(told.append)
     assert told == sorted(told)

@@ -18,7 +18,7 @@ def laps_of_policy(policy_side: str, laps_side: str) -> float:
     task = load_task("school/wall_following", changes=changes)
     with closing(simulations_of(SCHOOL).open("school/a", 1, "exam")) as simulation:
         setup = ExamSetup("school/a", 1, teacher_policy=True)
-        result = anyio.run(examine, simulation, SCHOOL, task, (), setup, lambda _: None)
+        result = anyio.run(examine, simulation, SCHOOL, task, setup, lambda _: None)
     assert result.collisions == 0
     return float(result.progress)
 

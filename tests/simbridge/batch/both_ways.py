@@ -3,14 +3,13 @@
 import math
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import anyio
 
 from behaviors.metrics.task_metric import TaskMetric
 from hal.kurt2_settings import load_kurt2
 from hal.simulation import Pose
-from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds
@@ -40,7 +39,7 @@ class Drive:
     collisions: int = 0
 
 
-def drive_on_bus(task: TaskSettings, events: Sequence[TeachingEvent], setup: ExamSetup) -> Drive:
+def drive_on_bus(task: TaskSettings, setup: ExamSetup) -> Drive:
     """Return an exam's drive on the CAN bus."""
     steps: list[Step] = []
     with closing(FACTORY.open(setup.world, setup.seed, "exam")) as simulation:
@@ -50,16 +49,13 @@ def drive_on_bus(task: TaskSettings, events: Sequence[TeachingEvent], setup: Exa
             distance = math.inf if decision.match is None else decision.match.distance
             steps.append(Step(simulation.pose, decision.action, decision.rla_id, distance))
 
-        watched = ExamSetup(setup.world, setup.seed, setup.teacher_policy, on_tick=look)
-        anyio.run(examine, simulation, ROBOT, task, events, watched, lambda _: None)
+        anyio.run(examine, simulation, ROBOT, task, replace(setup, on_tick=look), lambda _: None)
         return Drive(steps, simulation.simulated_robot.state_hash())
 
 
-def drive_in_batch(
-    task: TaskSettings, exams: Sequence[tuple[Sequence[TeachingEvent], ExamSetup]], stretch: int = 70
-) -> list[Drive]:
+def drive_in_batch(task: TaskSettings, exams: Sequence[ExamSetup], stretch: int = 70) -> list[Drive]:
     """Return the drives of exams, all in one batch."""
-    simulations = [FACTORY.open(setup.world, setup.seed, "exam") for _, setup in exams]
+    simulations = [FACTORY.open(setup.world, setup.seed, "exam") for setup in exams]
     for simulation in simulations:
         simulation.close()
     minds = build_minds(simulations, ROBOT, task, exams)

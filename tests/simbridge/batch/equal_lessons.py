@@ -21,8 +21,7 @@ from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.batch_lesson import BatchTrainingRun, open_batch_lesson
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
-from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
+from kurt2rt.experiments.lockstep.lesson import GivenLesson, TrainingResult, teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from tests.simbridge.batch.both_ways import FACTORY, ROBOT
 

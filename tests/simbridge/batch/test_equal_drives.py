@@ -24,19 +24,19 @@ DRIVES = [
 def test_policy_drives_alike_in_the_batch(name: str, world: str) -> None:
     task = load_task(name, changes={"exam.duration_s": str(max(1.0, SECONDS))})
     setups = [ExamSetup(world, seed, teacher_policy=True) for seed in (1, 2)]
-    driven = drive_in_batch(task, [((), setup) for setup in setups])
+    driven = drive_in_batch(task, setups)
     for setup, batch in zip(setups, driven, strict=True):
-        assert first_difference(drive_on_bus(task, (), setup), batch) == ""
+        assert first_difference(drive_on_bus(task, setup), batch) == ""
 
 
 def test_taught_robots_and_policies_share_a_batch(tmp_path: Path) -> None:
     taught = teach(tmp_path / "k", short_task(exam_s=max(1.0, SECONDS)))
-    exams = [(taught.events, ExamSetup(world, 1)) for world in ("a", "b", "c")]
-    exams.append((taught.events, ExamSetup("a", 1, teacher_policy=True)))
+    exams = [ExamSetup(world, 1, events=taught.events) for world in ("a", "b", "c")]
+    exams.append(ExamSetup("a", 1, teacher_policy=True))
     driven = drive_in_batch(taught.task, exams)
     assert any(step.rla_id is not None for step in driven[0].steps)
-    for (events, setup), batch in zip(exams, driven, strict=True):
-        assert first_difference(drive_on_bus(taught.task, events, setup), batch) == ""
+    for setup, batch in zip(exams, driven, strict=True):
+        assert first_difference(drive_on_bus(taught.task, setup), batch) == ""
 
 
 def test_without_the_compiler_the_numbers_are_the_same() -> None:
@@ -44,14 +44,14 @@ def test_without_the_compiler_the_numbers_are_the_same() -> None:
         "from tests.simbridge.batch.test_equal_drives import *\n"
         "task = load_task('wall_following', changes={'exam.duration_s': '1'})\n"
         "setup = ExamSetup('a', 3, teacher_policy=True)\n"
-        "print(IS_COMPILED, drive_in_batch(task, [((), setup)])[0].state_hash)"
+        "print(IS_COMPILED, drive_in_batch(task, [setup])[0].state_hash)"
     )
     environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
     told = subprocess.run(
         [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True, timeout=120
     )
     task = load_task("wall_following", changes={"exam.duration_s": "1"})
-    bus = drive_on_bus(task, (), ExamSetup("a", 3, teacher_policy=True))
+    bus = drive_on_bus(task, ExamSetup("a", 3, teacher_policy=True))
     assert told.stdout.split() == ["False", bus.state_hash]
 
 
@@ -75,7 +75,7 @@ def collide(world: str, seed: int, seconds: float) -> int:
     changes = {"exam.duration_s": str(seconds), "exam.stuck_after_s": "100", **least}
     task = load_task("fleeing", changes=changes)
     setup = ExamSetup(world, seed, teacher_policy=True)
-    (batch,) = drive_in_batch(task, [((), setup)])
-    bus = drive_on_bus(task, (), setup)
+    (batch,) = drive_in_batch(task, [setup])
+    bus = drive_on_bus(task, setup)
     assert batch.left or first_difference(bus, batch) == ""
     return batch.collisions

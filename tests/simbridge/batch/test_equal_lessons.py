@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.given_lesson import GivenLesson
+from kurt2rt.experiments.lockstep.lesson import GivenLesson
 from simbridge.batch.compiled import IS_COMPILED
 from tests.simbridge.batch.equal_lessons import TASKS, batch_lesson, lesson_in_both
 

@@ -1,0 +1,165 @@
+"""Study of doubt: jobs of one robot in one world, which only tells its doubt, or stands; and their tables."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, NamedTuple
+
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.doubt.drive import DoubtResponse, DoubtSetup, drive, with_doubt
+from kurt2rt.experiments.doubt.measures import DriveLog, judge_score, threshold_for
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.study.intervals import rate_of
+from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places, world_of
+from kurt2rt.experiments.study.provenance import Fingerprints
+from kurt2rt.experiments.study.study_plan import StudyPlan, read_groups
+from kurt2rt.experiments.study.table import Table, of_text, table_of, to_text
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+TICKS_PER_MINUTE = 6000
+
+
+class DoubtOutcome(Outcome):
+    """Drive of one robot in one world."""
+
+    log: DriveLog
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoubtJob(StudyJob):
+    """Drive of one taught robot in one world, with one response to its doubt."""
+
+    outcome = DoubtOutcome
+    keeps_knowledge: ClassVar[bool] = False
+    taught: Path
+    """File with the lessons of the robot."""
+    setup: DoubtSetup
+
+    async def measure(self, knowledge: Path, report: Report) -> DoubtOutcome:  # noqa: ARG002 - nothing is taught
+        """Drive in the job's world and return the log."""
+
+        def on_progress(done_s: float) -> None:
+            report(self.name, done_s, self.robot_time_s)
+
+        events = read_lessons(self.taught, self.robot, self.task)
+        log = await drive(self.factory, self.robot, self.task, events, self.setup, on_progress)
+        return DoubtOutcome(made_of=self.made_of, seed=self.seed, log=log)
+
+
+class DoubtDrives(NamedTuple):
+    """Task whose doubt is studied, and its drives."""
+
+    task: TaskSettings
+    worlds: tuple[str, ...]
+    """SEED in a name stands for the robot's seed."""
+    responses: tuple[DoubtResponse, ...]
+    seconds: float
+    """Duration of each drive."""
+    set_down_after_s: float
+    """Time after which a robot that asks is set down at another start; 0: it is not."""
+
+
+def make_plan(about: DoubtDrives, seeds: Sequence[int], taught: Path, parts: JobParts) -> StudyPlan[DoubtDrives]:
+    """Check task and worlds, and return the jobs. `taught`: folder with one knowledge file per seed.
+
+    Raises:
+        KnowledgeError: a knowledge file cannot be read.
+        hal.settings.SettingsError: the task sets no doubt, or does not fit a world.
+    """
+    task = with_doubt(about.task, DoubtResponse.TELLS)
+    require_places(parts["factory"], task, (world_of(world, seed) for world in about.worlds for seed in seeds))
+    fingerprints = Fingerprints(parts["factory"], parts["robot"])
+    files = {seed: taught / f"{task.name}-{seed}.knowledge" for seed in seeds}
+    lessons = {seed: repr(read_lessons(file, parts["robot"], task)) for seed, file in files.items()}
+
+    def job(response: DoubtResponse, seed: int, place: str) -> DoubtJob:
+        world = world_of(place, seed)
+        setup = DoubtSetup(world, seed, about.seconds, response, about.set_down_after_s)
+        return DoubtJob(
+            **parts,
+            task=task,
+            seed=seed,
+            made_of=fingerprints.of(task, (world,), lessons[seed], repr(setup)),
+            name=f"{task.name}, {response}, seed {seed}, world {world}",
+            stem=f"{response.name.lower()}/{Path(world).stem}/{task.name}-{seed}",
+            robot_time_s=about.seconds,
+            taught=files[seed],
+            setup=setup,
+        )
+
+    jobs = (job(response, seed, world) for response in about.responses for seed in seeds for world in about.worlds)
+    return StudyPlan(about, tuple(seeds), tuple(jobs))
+
+
+def all_tables(plan: StudyPlan[DoubtDrives]) -> Iterator[Table]:
+    """Yield the quality of doubt that is only told, if it is driven, and the collisions by response.
+
+    Raises StudyError if a result is missing or damaged.
+    """
+    found = read_groups(plan.of(DoubtJob), lambda job: job.setup.response, DoubtOutcome)
+    groups = {each.of: [outcome.log for outcome in each.outcomes] for each in found}
+    doubt = plan.about.task.learning.doubt
+    if DoubtResponse.TELLS in groups and doubt is not None:
+        yield score_table(groups[DoubtResponse.TELLS], doubt.threshold)
+    yield collision_table(groups, plan.about.set_down_after_s)
+
+
+def score_table(logs: Sequence[DriveLog], threshold: float) -> Table:
+    """Return the quality of doubt at its threshold, and of distance / R with no more questions, of drives on end.
+
+    `threshold`: score of doubt, dimensionless.
+    """
+    doubt, distance = [log.doubt for log in logs], [log.distance for log in logs]
+    minutes = sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
+    collisions, seen = sum(len(log.collisions) for log in logs), sum(sum(log.seen) for log in logs)
+    found = judge_score(logs, doubt, threshold)
+    control = judge_score(logs, distance, threshold_for(logs, distance, found.questions))
+    return table_of(
+        f"Doubt that is only told, {len(logs)} drives, {minutes:.0f} minutes",
+        (("doubt", found), ("distance / R", control)),
+        ("score", lambda row: row[0]),
+        ("AUC", lambda row: f"{row[1].auc:.2f}"),
+        ("collisions caught", lambda row: of_text(row[1].caught, collisions)),
+        ("with things seen", lambda row: of_text(row[1].caught_seen, seen)),
+        ("questions in 2 min", lambda row: f"{2 * row[1].questions / max(minutes, 1e-9):.2f}"),
+        ("of them false", lambda row: f"{2 * row[1].false_questions / max(minutes, 1e-9):.2f}"),
+        note="Wrong: the policy turns away and the robot does not, for 0.3 s; or a collision follows within 2 s. "
+        "Seen: a sensor saw it before, where the robot touches it; a thin thing may stand between all beams.",
+    )
+
+
+def _in_100_minutes(logs: Sequence[DriveLog]) -> str:
+    """Return the collisions in 100 minutes with their 95 % interval, over the drives."""
+    rate = rate_of([len(log.collisions) for log in logs], [len(log.doubt) / TICKS_PER_MINUTE / 100 for log in logs])
+    return f"{rate.value:.1f} ({to_text(rate[1:], '.1f')})"
+
+
+def collision_table(logs_by_response: Mapping[DoubtResponse, Sequence[DriveLog]], set_down_after_s: float) -> Table:
+    """Return the collisions of drives by the robot's response to its doubt; all have as many drives.
+
+    `set_down_after_s`: time after which a robot that asks was set down at another start; 0: it was not.
+    """
+
+    def minutes(logs: Sequence[DriveLog]) -> float:
+        return max(sum(len(log.doubt) for log in logs) / TICKS_PER_MINUTE, 1e-9)
+
+    def driven(logs: Sequence[DriveLog]) -> float:
+        return sum(float(log.driving.sum()) for log in logs) / TICKS_PER_MINUTE
+
+    def collisions(logs: Sequence[DriveLog]) -> int:
+        return sum(len(log.collisions) for log in logs)
+
+    return table_of(
+        f"Collisions without a teacher, {max(map(len, logs_by_response.values()), default=0)} drives each",
+        logs_by_response.items(),
+        ("doubt", lambda row: row[0].value),
+        ("collisions", lambda row: collisions(row[1])),
+        ("with things seen", lambda row: sum(sum(log.seen) for log in row[1])),
+        ("in 100 min (95 % interval)", lambda row: _in_100_minutes(row[1])),
+        ("in 100 driven min", lambda row: f"{100 * collisions(row[1]) / max(driven(row[1]), 1e-9):.1f}"),
+        ("time driven", lambda row: f"{100 * driven(row[1]) / minutes(row[1]):.0f} %"),
+        ("m in a minute", lambda row: f"{sum(log.travelled_m for log in row[1]) / minutes(row[1]):.1f}"),
+        note=f"A question that is not answered for {set_down_after_s:g} s sets the robot down at another start."
+        if set_down_after_s
+        else "A robot that asks stands for as long as its question lasts.",
+    )
