@@ -90,7 +90,7 @@ Choose = Callable[[str, NDArray[np.float64]], str | None]
 
 
 @dataclass(frozen=True, slots=True)
-class AskedMind:
+class CallbackMind:
     """Robot whose action Python chooses in each tick; the robot stands where there is no answer."""
 
     choose: Choose
@@ -99,7 +99,7 @@ class AskedMind:
     """Features of the situation, with averages; each number counts by its weight."""
 
 
-Mind = PolicyMind | TaughtMind | CommandedMind | AskedMind
+Mind = PolicyMind | TaughtMind | CommandedMind | CallbackMind
 
 
 class FixedSpeeds(NamedTuple):

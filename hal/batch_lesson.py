@@ -161,7 +161,7 @@ class LessonRobot(Simulation, Protocol):
         """
         ...
 
-    def go_back(self, tick: int) -> None:
+    def restore_tick(self, tick: int) -> None:
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         ...
 

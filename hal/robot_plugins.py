@@ -90,7 +90,7 @@ class RobotTask(NamedTuple):
     path: Path
 
 
-def robots_tasks() -> list[RobotTask]:
+def plugin_tasks() -> list[RobotTask]:
     """Return the tasks in the folders of robots' plug-ins.
 
     A plug-in that cannot be imported offers none. Those of the project's own folder go by their names alone.
@@ -106,9 +106,9 @@ def robots_tasks() -> list[RobotTask]:
     return found
 
 
-def robots_task(name: str) -> str | None:
+def plugin_task(name: str) -> str | None:
     """Return the task of a robot's plug-in, such as `school/fleeing`, whose settings give it a name; or None."""
-    for task in robots_tasks():
+    for task in plugin_tasks():
         with suppress(SettingsError):
             content = content_of(task.path)
             if isinstance(content, dict) and content.get("name") == name:

@@ -57,9 +57,9 @@ class LessonSimulation(Kurt2Simulation):
         """Drive to the end of a tick and return the tick that was reached. Raises ValueError for too many ticks."""
         return self._lesson.run(until)
 
-    def go_back(self, tick: int) -> None:
+    def restore_tick(self, tick: int) -> None:
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
-        self._lesson.go_back(tick)
+        self._lesson.restore_tick(tick)
 
     def keep(self) -> list[Pose]:
         """Keep all ticks so far, and return their poses."""

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from hal.robot_plugins import robot_of_task, robots_task
+from hal.robot_plugins import plugin_task, robot_of_task
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
@@ -21,7 +21,7 @@ from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.platform.text_table import print_whole
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.runs.explain.from_run import ExplainedMoment, explain_run
+from kurt2rt.runs.explain.recorded import ExplainedMoment, explain_run
 from kurt2rt.runs.explain.terminal import render_timeline, render_why
 from kurt2rt.runs.explain.timeline import build_timeline
 from kurt2rt.runs.recording.entries import TickEntry
@@ -213,7 +213,7 @@ def _show_live(
     device = _device(service, name or ONLOOKER)
 
     def robot_of(task: str) -> RobotSettings:
-        noted, other = load_robot(service.robot), robot_of_task(robots_task(task) or "")
+        noted, other = load_robot(service.robot), robot_of_task(plugin_task(task) or "")
         return noted if other in (None, noted.kind) else load_robot(other)
 
     facts, found, robot = ask_why(device, host or device.host, port or device.port, robot_of)

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from hal.plugins import settings_from_elsewhere
-from hal.robot_plugins import robots_task
+from hal.robot_plugins import plugin_task
 from hal.settings import Settings, SettingsError, load_settings
 from hal.settings_files import find_config
 from kurt2rt.core.basic.doubt import DoubtSettings
@@ -312,7 +312,7 @@ def installed_task(named: str) -> str:
         with settings_from_elsewhere():
             load_task(named)
     except SettingsError:
-        of_robot = robots_task(named)
+        of_robot = plugin_task(named)
         if of_robot is None:
             raise
         return of_robot

@@ -26,7 +26,7 @@ from kurt2rt.platform.ledger import Stage
 
 
 @dataclass(slots=True)
-class View:
+class Perceived:
     """Result of the step perceive."""
 
     situation: Situation
@@ -36,7 +36,7 @@ class View:
 
 
 @dataclass(slots=True)
-class Choice:
+class Decided:
     """Result of the step decide."""
 
     commands: tuple[Input, ...]
@@ -49,7 +49,7 @@ class Choice:
 
 
 @dataclass(slots=True)
-class Motion:
+class Guarded:
     """Result of the step guard."""
 
     result: GuardResult
@@ -169,7 +169,7 @@ class Tick:
             return readings
         return readings._replace(infrared_counts=substitute(readings.infrared_counts, watch.places))
 
-    def _perceive(self, tick: int, readings: SensorReadings) -> View:
+    def _perceive(self, tick: int, readings: SensorReadings) -> Perceived:
         """Compute the situation, and the critic's opinion before this tick's commands can change it (step 2)."""
         # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from. In a slow
         # lesson they are those of the way at full speed.
@@ -182,9 +182,9 @@ class Tick:
             if not blind:
                 features, opinion = perceived, critic.appraise(tick, perceived)
         self._timer.lap(_PERCEIVE)
-        return View(situation, blind, features, opinion)
+        return Perceived(situation, blind, features, opinion)
 
-    def _decide(self, tick: int, readings: SensorReadings, view: View) -> Choice:
+    def _decide(self, tick: int, readings: SensorReadings, view: Perceived) -> Decided:
         """Handle the teacher's commands, then let the levels decide (step 3)."""
         commands = self._inbox.pop_all()
         results: list[CommandResult] = []
@@ -204,9 +204,11 @@ class Tick:
             events.extend(self._handler.teach_driven(tick))
         decision = self._decision(tick, view.situation, readings, blind=view.blind)
         self._timer.lap(_DECIDE)
-        return Choice(commands, results, events, self._saving_error, decision, self._handler.active_behaviour.behaviour)
+        return Decided(
+            commands, results, events, self._saving_error, decision, self._handler.active_behaviour.behaviour
+        )
 
-    def _guard(self, tick: int, now_s: float, decision: Decision) -> Motion:
+    def _guard(self, tick: int, now_s: float, decision: Decision) -> Guarded:
         """Send the decided speeds through the guard; note an emergency stop and a wait at a bumper (step 4)."""
         # A decision without an action never drives. The clock is read again, so that the guard sees a decision's
         # true age if the tick was held up.
@@ -226,9 +228,9 @@ class Tick:
         asks = self._options.asks_at_bumper and self._bumpers.update(decision, result) and handler.teacher_available
         # In phase 5 the robot does not wait: the critic can still punish the RLA that pushes, and replace its action.
         self._waits = asks and handler.phase is not AUTONOMOUS
-        return Motion(result, drove_at_s, asks, self._driving and not self._waits)
+        return Guarded(result, drove_at_s, asks, self._driving and not self._waits)
 
-    def _learn(self, tick: int, view: View, choice: Choice, motion: Motion) -> Surprise | None:
+    def _learn(self, tick: int, view: Perceived, choice: Decided, motion: Guarded) -> Surprise | None:
         """Count, remember and learn; return the surprise of an RLA that ended (step 5)."""
         handler, decision, turning = self._handler, choice.decision, motion.turning
         pace = handler.lesson_speed
@@ -269,7 +271,7 @@ class Tick:
         self._timer.lap(_LEARN)
         return surprise
 
-    def _is_teachable(self, decision: Decision, motion: Motion) -> bool:
+    def _is_teachable(self, decision: Decision, motion: Guarded) -> bool:
         """Return whether a held action may become a lesson about this tick; not while the active behaviour is open."""
         if motion.result.latched or (decision.mid is not None and decision.mid.asks):
             return False
@@ -282,9 +284,9 @@ class Tick:
         tick: int,
         now_s: float,
         readings: SensorReadings,
-        view: View,
-        choice: Choice,
-        motion: Motion,
+        view: Perceived,
+        choice: Decided,
+        motion: Guarded,
         surprise: Surprise | None,
     ) -> TickRecord:
         """Hand lessons to the journal and return the record of the tick (step 6)."""
@@ -349,7 +351,7 @@ class Tick:
                     self._appraisal_perception.forget_turns()
                 self._reset_transitions()
 
-    def _handle(self, command: Command, tick: int, view: View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
+    def _handle(self, command: Command, tick: int, view: Perceived) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
         """Carry out one command; refuse a first copy that needs the situation of a blind robot."""
         assert not isinstance(command, Stream)
         new = not self._handler.was_handled(command.command_id)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from hal.errors import UserError
 from kurt2rt.library.extras import extra_named
-from kurt2rt.runs.explain.from_run import explain_run
 from kurt2rt.runs.explain.reasons import format_decision
+from kurt2rt.runs.explain.recorded import explain_run
 from kurt2rt.runs.explain.timeline import Stretch, Timeline, build_timeline, format_summary
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.runs.replay.reader import read_run

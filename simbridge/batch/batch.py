@@ -10,8 +10,8 @@ from hal.areas import Borders
 from hal.batch import (
     STANDS,
     TRACED_TICKS,
-    AskedMind,
     BatchRefusedError,
+    CallbackMind,
     CommandedMind,
     DriveSettings,
     Mind,
@@ -169,7 +169,7 @@ class RobotBatch:
     def _decide(self, r: int) -> int:
         """Return the index of the action that the mind of a robot chooses, or STANDS."""
         mind = self._minds[r]
-        assert isinstance(mind, AskedMind)
+        assert isinstance(mind, CallbackMind)
         width = len(mind.features.kinds) + len(mind.features.average_weights)
         action = mind.choose(self._behaviours[self._wanted.item(r)], self._situations[r, :width].copy())
         return STANDS if action is None else self.actions.index(action)

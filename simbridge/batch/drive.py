@@ -6,8 +6,8 @@ from hal.numerics import cos_sin
 from simbridge.batch.borders import area_of, crosses
 from simbridge.batch.compiled import compiled
 from simbridge.batch.contacts import keep_box, meet_box
+from simbridge.batch.decisions import COMMANDED, decide
 from simbridge.batch.laws import Averages, BodyLaw, Integers, Knowledge, Laws, World
-from simbridge.batch.minds import COMMANDED, decide
 from simbridge.batch.record import BROKEN, CROWDED, FROZEN, STAYS, Robot, Robots, count_tick
 from simbridge.batch.safety import drive_guarded, is_frozen, looks_broken
 from simbridge.batch.sensing import measure, measure_all

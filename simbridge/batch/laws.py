@@ -119,7 +119,7 @@ class Features(NamedTuple):
     """Features of a situation as arrays, for the compiled loop."""
 
     kind: Integers
-    """Kind of each feature (simbridge.batch.minds)."""
+    """Kind of each feature (simbridge.batch.decisions)."""
     sensors: Integers
     """Sensors of each feature, (features, sensors)."""
     sensor_count: Integers
@@ -169,7 +169,7 @@ class Knowledge(NamedTuple):
     action: Integers
     features: Features
     mind: int
-    """Address of the PythonMind that decides for robots with an AskedMind; 0: there are none."""
+    """Address of the PythonMind that decides for robots with an CallbackMind; 0: there are none."""
 
 
 class StuckLaw(NamedTuple):

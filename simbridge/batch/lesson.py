@@ -167,7 +167,7 @@ class CompiledLesson(RobotBatch):
         self.tick = int(record["tick"]) - bool(record["waits"] or record["left"])
         return self.tick
 
-    def go_back(self, tick: int) -> None:
+    def restore_tick(self, tick: int) -> None:
         """Restore the state at the end of an earlier tick, at most back to the last `keep`."""
         if tick == self.tick and not self.waits and not self._robots[0]["left"]:
             return

@@ -181,7 +181,7 @@ class Robot:
 
     # Mind
     kind: int
-    """Kind of mind (simbridge.batch.minds)."""
+    """Kind of mind (simbridge.batch.decisions)."""
     behaviour: int
     """Taught behaviour that is wanted, by its index."""
     command: int

@@ -42,7 +42,7 @@ _LOOKS = (
     *RIGHT_FRONT_TO_BACK,
     *(REAR_LEFT_EDGE, REAR_RIGHT_EDGE),
 )
-"""Sensors that policies look at, in the order of `simbridge.batch.minds.policy_answer`."""
+"""Sensors that policies look at, in the order of `simbridge.batch.decisions.policy_answer`."""
 
 _ThresholdsT = TypeVar(
     "_ThresholdsT",

@@ -11,8 +11,8 @@ from behaviors.policies.fleeing import Fleeing
 from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
 from hal.batch import (
-    AskedMind,
     BatchRefusedError,
+    CallbackMind,
     CommandedMind,
     DriveSettings,
     FeatureTable,
@@ -22,9 +22,9 @@ from hal.batch import (
 )
 from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import HIGHEST_COUNTS
+from simbridge.batch.decisions import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
 from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
 from simbridge.batch.matching import LANES
-from simbridge.batch.minds import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
 from simbridge.batch.record import MOST_VALUES
 from simbridge.simulated_kurt2 import SimulatedKurt2
 
@@ -37,13 +37,13 @@ _NO_FEATURES = FeatureTable((), (), (), 1)
 
 
 def kind_of(mind: Mind) -> int:
-    """Return the kind of a mind (simbridge.batch.minds)."""
+    """Return the kind of a mind (simbridge.batch.decisions)."""
     match mind:
         case TaughtMind():
             return KNOWLEDGE
         case CommandedMind():
             return COMMANDED
-        case AskedMind():
+        case CallbackMind():
             return ASKED
     return _POLICIES[type(mind.policy)]
 
@@ -64,7 +64,7 @@ def require_known(
             raise BatchRefusedError(f"policy {type(policy).__name__}: the batch does not know it", do=ON_THE_BUS)
     if len({(type(policy), getattr(policy, "thresholds", None)) for policy in policies}) > 1:
         raise BatchRefusedError("two policies in one batch", do="give each task a batch of its own")
-    tables = {mind.features for mind in minds if isinstance(mind, TaughtMind | AskedMind)}
+    tables = {mind.features for mind in minds if isinstance(mind, TaughtMind | CallbackMind)}
     if len(tables) > 1:
         raise BatchRefusedError("two situations in one batch", do="give each task a batch of its own")
     for table in tables:
@@ -119,7 +119,7 @@ def build_knowledge(minds: Sequence[Mind], actions: Sequence[str], python_mind: 
         else:
             of.append(-1)
     known = [mind for _, mind in taught.values()]
-    perceiving = [mind.features for mind in minds if isinstance(mind, TaughtMind | AskedMind)]
+    perceiving = [mind.features for mind in minds if isinstance(mind, TaughtMind | CallbackMind)]
     features = perceiving[0] if perceiving else _NO_FEATURES
     values = len(features.kinds) + len(features.average_weights)
     sizes = [size for mind in known for size in mind.sizes]

@@ -8,10 +8,10 @@ from hal.slow_way import advance_way
 from simbridge.batch.borders import crosses
 from simbridge.batch.compiled import compiled
 from simbridge.batch.contacts import meet_box
+from simbridge.batch.decisions import ask_python, feature_of, hold_or_change, right_action, step_action
 from simbridge.batch.drive import begin_tick, sense_tick
 from simbridge.batch.laws import Features, Floats, Integers, Laws, World
 from simbridge.batch.matching import scan_nearest
-from simbridge.batch.minds import ask_python, feature_of, hold_or_change, right_action, step_action
 from simbridge.batch.record import STAYS, Robot, Robots
 from simbridge.batch.safety import drive_guarded
 

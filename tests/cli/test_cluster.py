@@ -26,10 +26,10 @@ from kurt2rt.experiments.study.cluster_file import (
     read_cluster_file,
     scheduler_command,
 )
-from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError
+from kurt2rt.experiments.study.remote_job import RemoteJob, WorkerDiffersError
 from kurt2rt.experiments.study.results import Results
 from tests.cli.helpers import ROOT, CommandLine
-from tests.experiments.study.test_parcel import Job
+from tests.experiments.study.test_remote_job import Job
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}
 ENVIRONMENT.pop("COLUMNS", None)  # many workers of pytest have one
@@ -183,8 +183,8 @@ OWN, OTHER = "tls://127.0.0.1:1", "tls://127.0.0.1:2"
 
 
 def witness(result: bytes, *workers: str) -> None:
-    parcel = Parcel(b"", "made", {}, {}, "program")
-    require_witness(TwoWorkers(result, *workers), OneFuture({}), JOB, parcel, {JOB.file: b"right"})
+    remote_job = RemoteJob(b"", "made", {}, {}, "program")
+    require_witness(TwoWorkers(result, *workers), OneFuture({}), JOB, remote_job, {JOB.file: b"right"})
 
 
 def test_workers_that_differ_in_one_bit_are_refused_by_name() -> None:

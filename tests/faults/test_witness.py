@@ -14,7 +14,7 @@ from kurt2rt.core.perception.perception import Situation
 from tests.faults.program import Program
 from tests.faults.rig import CORRIDOR, ROBOT, Rig
 from tests.faults.table import case_of
-from tests.faults.witness import Stand, Witness
+from tests.faults.witness import StandstillInterval, Witness
 
 AHEAD = WheelSpeeds(0.2, 0.2)
 
@@ -102,7 +102,7 @@ def test_standstills_cover_stop_and_silence(rig: Rig, witness: Witness) -> None:
     # Told so, silent for longer than its own watchdog waits, and silent in the end.
     stands = [(round(each.from_s, 6), each.to_s) for each in witness.standstills(0.0, 2.0)]
     assert stands == [(0.0, 0.1), (0.3, 0.4), (0.6, 0.9), (1.25, 2.0)]
-    assert witness.standstills(0.35, 0.5) == [Stand(0.35, 0.4)]
+    assert witness.standstills(0.35, 0.5) == [StandstillInterval(0.35, 0.4)]
     assert witness.standstills(0.1, 0.2) == []
 
 

@@ -15,7 +15,7 @@ from tests.faults.table import TABLE
 _ROUNDING_S = 1e-6
 
 
-class Stand(NamedTuple):
+class StandstillInterval(NamedTuple):
     """Time span in which the robot had to stand."""
 
     from_s: float
@@ -94,9 +94,9 @@ class Witness(RobotProxy):
             # A layer that wants to drive is not why the robot stands.
             self._causes.append((now_s, (*(() if record.decision.driving else (cause,)), *record.guard_result.reasons)))
 
-    def standstills(self, begin_s: float, end_s: float) -> list[Stand]:
+    def standstills(self, begin_s: float, end_s: float) -> list[StandstillInterval]:
         """Return the spans in which the robot had to stand: it was told to, or its own watchdog had expired."""
-        stands: list[Stand] = []
+        stands: list[StandstillInterval] = []
         state, since_s, heard_at_s = True, 0.0, 0.0
         heard = [(at_s, told.standing) for at_s, told in self._arrivals if at_s < end_s]
         for at_s, standing in (*heard, (end_s, True)):
@@ -106,12 +106,12 @@ class Witness(RobotProxy):
                 break
             if standing != state:
                 if state:
-                    stands.append(Stand(since_s, at_s))
+                    stands.append(StandstillInterval(since_s, at_s))
                 state, since_s = standing, at_s
             heard_at_s = at_s
         if state:
-            stands.append(Stand(since_s, end_s))
-        return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
+            stands.append(StandstillInterval(since_s, end_s))
+        return [StandstillInterval(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
 
     def causes_from(self, time_s: float) -> tuple[str, ...]:
         """Return the causes of the first standstill command from `time_s` on; empty without one."""

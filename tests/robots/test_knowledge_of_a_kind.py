@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.robot_plugins import find_task_of_robot, robots_task
+from hal.robot_plugins import find_task_of_robot, plugin_task
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from hal.settings_files import find_config
@@ -34,7 +34,7 @@ def test_first_task_of_a_robot_is_wall_following() -> None:
     assert find_task_of_robot("school") == "school/wall_following"
     assert find_task_of_robot("kurt2") is None
     assert find_task_of_robot("nope") is None
-    assert robots_task("nope") is None
+    assert plugin_task("nope") is None
 
 
 def test_file_that_a_robot_lacks_is_refused_with_those_it_has() -> None:

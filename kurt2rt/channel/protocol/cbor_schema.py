@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
-from kurt2rt.core.teaching.message_fields import Check, Flag, Float, Int, ManyOf, OrNone, Text, WireError
+from kurt2rt.core.teaching.message_fields import Check, Flag, Float, Int, ListOf, OrNone, Text, WireError
 
 COUNT: Final = Int(0, 2**53)
 NAME: Final = Text(128)
@@ -44,7 +44,7 @@ class OrNotFinite:
         return self.stands_for if value is None else self.check(what, value)
 
 
-class Form(Generic[ValueT]):
+class DataclassCodec(Generic[ValueT]):
     """Codec of a dataclass to plain values for JSON and CBOR; the keys are its fields."""
 
     def __init__(self, what: str, shape: MapOf) -> None:
@@ -68,9 +68,9 @@ def _plain(value: Any, check: Check) -> Any:
     match check:
         case MapOf(checks=checks):
             return {name: _plain(getattr(value, name), inner) for name, inner in checks.items()}
-        case ManyOf(check=Float() | Int() | Flag(), most=most):  # valid already; a condition has 72
+        case ListOf(check=Float() | Int() | Flag(), most=most):  # valid already; a condition has 72
             return list(value[:most])
-        case ManyOf(check=inner, most=most):
+        case ListOf(check=inner, most=most):
             return [_plain(each, inner) for each in value[:most]]
         case OrNone(check=inner) if value is not None:
             return _plain(value, inner)

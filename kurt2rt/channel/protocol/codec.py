@@ -25,7 +25,7 @@ from kurt2rt.core.teaching.message_fields import (
     Flag,
     Float,
     Int,
-    ManyOf,
+    ListOf,
     OneOf,
     OneWord,
     OrNone,
@@ -151,7 +151,7 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("b", "boot", Bytes(BOOT_BYTES)),
     ("t", "tick", _NUMBER),
     ("ph", "phase", Int(1, 5)),
-    ("ir", "infrared_counts", ManyOf(Int(0, 65_535), most=64)),
+    ("ir", "infrared_counts", ListOf(Int(0, 65_535), most=64)),
     ("ia", "infrared_age_s", _ANY_REAL),
     ("bp", "bumpers", Int(0, 2**32 - 1)),
     ("by", "cause", _NAME),
@@ -170,7 +170,7 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("un", "unsaved", _NUMBER),
     ("ses", "session", OrNone(_NAME)),
     ("clk", "clock_s", _FINITE),
-    ("g", "guard", ManyOf(_LINE, most=16)),
+    ("g", "guard", ListOf(_LINE, most=16)),
     ("tr", "trouble", _LINE),
     ("lp", "late_p99_ms", _ANY_REAL),
     ("ms", "missed_ticks", _NUMBER),
@@ -185,14 +185,14 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
     ("aa", "asks_at", OneWord((BASIC, MID))),
     ("go", "goal", _NAME),
-    ("pn", "plan", ManyOf(_NAME, most=_MOST_STEPS)),
+    ("pn", "plan", ListOf(_NAME, most=_MOST_STEPS)),
     ("ps", "plan_says", _LINE),
 )
 """Key on the wire, field of State, check."""
 
 _WHEELS = Row((_FINITE, _FINITE))
-_QUESTION = ManyOf(Row((_NAME, _FINITE, _FINITE)), most=32)
-_WORDS = ManyOf(_NAME, most=_MOST_SYMBOLS)
+_QUESTION = ListOf(Row((_NAME, _FINITE, _FINITE)), most=32)
+_WORDS = ListOf(_NAME, most=_MOST_SYMBOLS)
 _MID = (
     _NAME,
     OrNone(_NUMBER),
@@ -214,8 +214,8 @@ _PROGRESS = (Int(0, WINDOW_S), OrNone(Int(0, 100)), _NUMBER)
 """The fields of Progress."""
 _HOLD = (_NAME, _NAME, _NAME, _NUMBER, Flag())
 """The fields of HoldState."""
-_SEGMENTS = ManyOf(_NUMBER, most=MOST_SEGMENTS)
-_SHOWN = (_NAME, _NUMBER, ManyOf(_NAME, most=MOST_SEGMENTS), _SEGMENTS, _SEGMENTS)
+_SEGMENTS = ListOf(_NUMBER, most=MOST_SEGMENTS)
+_SHOWN = (_NAME, _NUMBER, ListOf(_NAME, most=MOST_SEGMENTS), _SEGMENTS, _SEGMENTS)
 """The fields of ShownState."""
 _STANDING = (OneWord(tuple(reason.value for reason in StandReason)), Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing but the stop."""
@@ -323,7 +323,7 @@ def _tidied(value: Any, check: Check) -> Any:
     match check:
         case Text():
             return check.cut(value)
-        case ManyOf(check=inner, most=most):
+        case ListOf(check=inner, most=most):
             return [_tidied(each, inner) for each in value[:most]]
         case OrNone(check=inner) if value is not None:
             return _tidied(value, inner)

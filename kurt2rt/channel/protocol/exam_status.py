@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
-from kurt2rt.core.teaching.message_fields import Flag, Float, ManyOf
+from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, DataclassCodec, MapOf
+from kurt2rt.core.teaching.message_fields import Flag, Float, ListOf
 
 _MOST_WORLDS = 32
 
@@ -39,14 +39,14 @@ class ExamStatus:
 
 NO_EXAM = ExamStatus(False, 0.0, "")
 
-EXAM = Form[ExamStatus](
+EXAM = DataclassCodec[ExamStatus](
     "the exam",
     MapOf(
         ExamStatus,
         running=Flag(),
         share=Float(1.0),
         text=LINE,
-        verdicts=ManyOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=Flag()), most=_MOST_WORLDS),
+        verdicts=ListOf(MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=Flag()), most=_MOST_WORLDS),
         picture=NAME,
         trouble=LINE,
     ),

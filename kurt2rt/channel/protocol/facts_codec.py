@@ -4,10 +4,10 @@ import math
 from typing import Any
 
 from hal.robot import WheelSpeeds
-from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, OrNotFinite
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, DataclassCodec, MapOf, OrNotFinite
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.teaching.message_fields import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
+from kurt2rt.core.teaching.message_fields import Flag, Float, Int, ListOf, OneWord, OrNone, Row
 from kurt2rt.runs.explain.facts import (
     MOST_OTHERS,
     ContactFacts,
@@ -24,16 +24,16 @@ _MOST_FEATURES = 512
 _REAL = Float(1e12)
 _DISTANCE = OrNotFinite(_REAL, math.inf)
 _SPEEDS = Row((_REAL, _REAL))
-_VECTOR = ManyOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
+_VECTOR = ListOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
 _RLA = MapOf(
     RlaFacts,
     rla_id=COUNT,
     title=NAME,
     action=NAME,
-    condition=ManyOf(_REAL, most=_MOST_FEATURES),
+    condition=ListOf(_REAL, most=_MOST_FEATURES),
     distance=_DISTANCE,
     radius=_REAL,
-    acts=ManyOf(
+    acts=ListOf(
         MapOf(
             LessonFact, text=LINE, teacher=NAME, phase=Int(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()
         ),
@@ -51,16 +51,16 @@ _LEVEL = MapOf(
     LevelFacts,
     level=NAME,
     behaviour=NAME,
-    names=ManyOf(NAME, most=_MOST_FEATURES),
+    names=ListOf(NAME, most=_MOST_FEATURES),
     vector=_VECTOR,
-    weights=ManyOf(_REAL, most=_MOST_FEATURES),
+    weights=ListOf(_REAL, most=_MOST_FEATURES),
     euclidean=Flag(),
     nearest=OrNone(_RLA),
     driver=OrNone(_RLA),
-    others=ManyOf(_RLA, most=MOST_OTHERS),
+    others=ListOf(_RLA, most=MOST_OTHERS),
     count=COUNT,
-    words=ManyOf(NAME, most=_MOST_FEATURES),
-    nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
+    words=ListOf(NAME, most=_MOST_FEATURES),
+    nearest_words=ListOf(NAME, most=_MOST_FEATURES),
     radius_share=Float(1.0),
     passed_over=OrNone(_RLA),
 )
@@ -97,12 +97,12 @@ _FACTS = MapOf(
     asks_at=NAME,
     decided=_SPEEDS,
     granted=_SPEEDS,
-    reasons=ManyOf(NAME, most=16),
+    reasons=ListOf(NAME, most=16),
     latched=Flag(),
     stopped=OrNone(MapOf(_stop, reason=OneWord(tuple(reason.value for reason in StopReason)), name=LINE)),
     trouble=LINE,
     teacher=NAME,
-    infrared_counts=ManyOf(COUNT, most=64),
+    infrared_counts=ListOf(COUNT, most=64),
     infrared_age_s=_DISTANCE,
     basic=_LEVEL,
     mid=OrNone(_LEVEL),
@@ -111,13 +111,13 @@ _FACTS = MapOf(
     kept=NAME,
     history_frozen=Flag(),
     taught_now=Flag(),
-    hindrances=ManyOf(NAME, most=8),
-    broken_sensors=ManyOf(NAME, most=64),
+    hindrances=ListOf(NAME, most=8),
+    broken_sensors=ListOf(NAME, most=64),
     lesson_speed=Float(1.0),
     doubt=OrNone(_DOUBT),
 )
 
-_FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)
+_FORM = DataclassCodec[DecisionFacts]("what the robot knows of its decision", _FACTS)
 plain_of_facts = _FORM.plain_of
 """Encode facts, with at most MOST_OTHERS RLAs after the nearest of each level."""
 facts_of_plain = _FORM.read

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, DataclassCodec, MapOf
 from kurt2rt.channel.protocol.health import (
     BusHealth,
     DiskSpace,
@@ -15,7 +15,7 @@ from kurt2rt.channel.protocol.health import (
     Trouble,
 )
 from kurt2rt.channel.protocol.trouble_code import TroubleCode, numbers_of
-from kurt2rt.core.teaching.message_fields import Flag, Float, ManyOf, OneWord, OrNone, WireError
+from kurt2rt.core.teaching.message_fields import Flag, Float, ListOf, OneWord, OrNone, WireError
 from kurt2rt.core.teaching.progress import Progress
 
 MOST_ROWS = 16
@@ -42,7 +42,7 @@ _TROUBLE = MapOf(
     urgent=Flag(),
     code=OneWord(tuple(code.value for code in TroubleCode)),
     name=NAME,
-    numbers=ManyOf(_TIME, most=4),
+    numbers=ListOf(_TIME, most=4),
     line=LINE,
 )
 
@@ -74,7 +74,7 @@ _REPORT = MapOf(
             receive_failures=COUNT,
         )
     ),
-    disks=ManyOf(MapOf(DiskSpace, of=NAME, free_bytes=OrNone(COUNT)), most=MOST_ROWS),
+    disks=ListOf(MapOf(DiskSpace, of=NAME, free_bytes=OrNone(COUNT)), most=MOST_ROWS),
     safety=MapOf(JournalHealth, unwritten=COUNT, last_write_ms=OrNone(_TIME)),
     machine=MapOf(
         MachineHealth,
@@ -85,12 +85,12 @@ _REPORT = MapOf(
         battery=OrNone(Float(1.0)),
         discharging=Flag(),
     ),
-    drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
-    troubles=ManyOf(_TROUBLE, most=MOST_ROWS),
+    drops=ListOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
+    troubles=ListOf(_TROUBLE, most=MOST_ROWS),
     progress=MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT),
-    plugins=ManyOf(LINE, most=MOST_ROWS),
+    plugins=ListOf(LINE, most=MOST_ROWS),
 )
 
-_FORM = Form[HealthReport]("the health report", _REPORT)
+_FORM = DataclassCodec[HealthReport]("the health report", _REPORT)
 plain_of = _FORM.plain_of
 report_of = _FORM.read

@@ -12,7 +12,7 @@ from kurt2rt.core.teaching.message_fields import (
     Flag,
     Float,
     Int,
-    ManyOf,
+    ListOf,
     OrNone,
     Row,
     Text,
@@ -23,8 +23,8 @@ _NAME = Text(64)
 _METRES = Float(1000.0, "m")
 _NUMBER = Int(0, LARGEST_NUMBER)
 _BOOT = Bytes(BOOT_BYTES)
-_SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Float(360.0, "degrees"))), most=64)
-_APPRAISALS = ManyOf(Row((_NAME, Int(-1, 1))), most=16)
+_SENSORS = ListOf(Row((_NAME, _NAME, _METRES, _METRES, Float(360.0, "degrees"))), most=64)
+_APPRAISALS = ListOf(Row((_NAME, Int(-1, 1))), most=16)
 _MID = OrNone(Row((_NAME, Int(0, 256), Float(1e9))))
 _OUTLINE = Row((_METRES, _METRES))
 _WHAT = Text(128)
@@ -122,13 +122,13 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             task=_NAME("task", body["task"]),
             radius=Float(1e9)("radius", body["radius"]),
             period_s=Float(10.0, "s")("period_s", body["period_s"]),
-            actions=ManyOf(_NAME, most=256)("actions", body["actions"]),
+            actions=ListOf(_NAME, most=256)("actions", body["actions"]),
             sensors=tuple(SensorPlace(*each) for each in _SENSORS("sensors", body["sensors"])),
             outline=_OUTLINE("outline", body["outline"]),
             max_m_s=Float(10.0, "m/s")("max_m_s", body["max_m_s"]),
             simulated=Flag()("simulated", body["simulated"]),
-            phases=ManyOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
-            behaviours=ManyOf(_NAME, most=64)("behaviours", body["behaviours"]),
+            phases=ListOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
+            behaviours=ListOf(_NAME, most=64)("behaviours", body["behaviours"]),
             appraisals=tuple(AppraisalName(*each) for each in _APPRAISALS("appraisals", body["appraisals"])),
             trusted_from=Float(1.0)("trusted_from", body["trusted_from"]),
             mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from kurt2rt.channel.protocol.limits import MOST_CONTRADICTIONS, MOST_LESSONS, MOST_SITUATIONS
-from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, LONGEST_TEXT, Flag, Int, ManyOf, Row, Text, WireError
+from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, LONGEST_TEXT, Flag, Int, ListOf, Row, Text, WireError
 
-_LINES = ManyOf(
+_LINES = ListOf(
     Row((Text(128), Text(512), Text(128), Int(1, 5), Int(0, LARGEST_NUMBER), Text(64), Flag())),
     most=MOST_LESSONS,
 )
 _MOST_ACTIONS = 8
-_AGAINST = ManyOf(
+_AGAINST = ListOf(
     Row(
         (
             Text(128),
@@ -19,12 +19,12 @@ _AGAINST = ManyOf(
             Int(1, LARGEST_NUMBER),
             Text(LONGEST_TEXT),
             Int(1, LARGEST_NUMBER),
-            ManyOf(Text(LONGEST_TEXT), most=_MOST_ACTIONS),
+            ListOf(Text(LONGEST_TEXT), most=_MOST_ACTIONS),
         )
     ),
     most=MOST_CONTRADICTIONS,
 )
-_SITUATIONS = ManyOf(Text(LONGEST_TEXT, least=1), most=MOST_SITUATIONS)
+_SITUATIONS = ListOf(Text(LONGEST_TEXT, least=1), most=MOST_SITUATIONS)
 
 
 class Contradicting(NamedTuple):

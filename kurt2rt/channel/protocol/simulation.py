@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
+from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, DataclassCodec, MapOf
 from kurt2rt.channel.protocol.limits import FASTEST
-from kurt2rt.core.teaching.message_fields import Float, Int, ManyOf
+from kurt2rt.core.teaching.message_fields import Float, Int, ListOf
 
 _MOST_NAMES = 64
 
@@ -38,14 +38,14 @@ class SimulationView:
     """Unit of `progress`: laps, rounds, eights, m; empty if progress is not measured."""
 
 
-SIMULATION = Form[SimulationView](
+SIMULATION = DataclassCodec[SimulationView](
     "the simulation",
     MapOf(
         SimulationView,
         world=NAME,
         task=NAME,
-        worlds=ManyOf(NAME, most=_MOST_NAMES),
-        tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
+        worlds=ListOf(NAME, most=_MOST_NAMES),
+        tasks=ListOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
         speed=Int(1, FASTEST),
         reached=Float(1000.0),
         progress=Float(1e9),

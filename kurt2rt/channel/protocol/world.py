@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from hal.simulation import SimulatedPost, Wall
-from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Float, Int, ManyOf, Row, Text, WireError
+from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Float, Int, ListOf, Row, Text, WireError
 
 _NAME = Text(64)
 _METRES = Float(1000.0, "m")
-_CORNERS = ManyOf(Row((_METRES, _METRES)), most=1000)
+_CORNERS = ListOf(Row((_METRES, _METRES)), most=1000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +28,8 @@ class WorldView:
 def world_of(body: Mapping[str, Any]) -> WorldView:
     """Return the world in a decoded body. Raises WireError."""
     try:
-        walls = ManyOf(Row((_NAME, _CORNERS)), most=1000)("walls", body["walls"])
-        posts = ManyOf(Row((_NAME, _METRES, _METRES, _METRES)), most=1000)("round", body["round"])
+        walls = ListOf(Row((_NAME, _CORNERS)), most=1000)("walls", body["walls"])
+        posts = ListOf(Row((_NAME, _METRES, _METRES, _METRES)), most=1000)("round", body["round"])
         return WorldView(
             version=Int(0, LARGEST_NUMBER)("version", body["version"]),
             name=_NAME("name", body["name"]),

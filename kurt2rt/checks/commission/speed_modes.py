@@ -7,7 +7,9 @@ from hal.kurt2_settings import Kurt2Settings, SpeedMode
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode, SkippedError, StepFault
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.moving import (
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
+from kurt2rt.checks.commission.wheel_steps import (
     DRIVE_S,
     TEST_SPEED_M_S,
     confirm_motion,
@@ -15,8 +17,6 @@ from kurt2rt.checks.commission.moving import (
     standstill_cause,
     steady_speeds,
 )
-from kurt2rt.checks.commission.step import StepResult
-from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
 
 PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
 """Order of preference: closed loops before the open one, the finer SPEED_CM first."""

@@ -5,7 +5,9 @@ import statistics
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.moving import (
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
+from kurt2rt.checks.commission.wheel_steps import (
     DRIVE_S,
     TEST_SPEED_M_S,
     confirm_motion,
@@ -14,8 +16,6 @@ from kurt2rt.checks.commission.moving import (
     standstill_cause,
     steady_speeds,
 )
-from kurt2rt.checks.commission.step import StepResult
-from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
 
 BRAKED_WITHIN_S = 0.5
 SILENT_S = 1.5

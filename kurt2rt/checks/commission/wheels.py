@@ -4,7 +4,10 @@ from hal.kurt2_settings import Kurt2Settings
 from hal.robot import WheelSpeeds
 from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.moving import (
+from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
+from kurt2rt.checks.commission.wheel_steps import (
     DRIVE_S,
     TEST_SPEED_M_S,
     confirm_motion,
@@ -13,9 +16,6 @@ from kurt2rt.checks.commission.moving import (
     standstill_cause,
     steady_speeds,
 )
-from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
-from kurt2rt.checks.commission.step import StepResult
-from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
 from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, parse_seen, single_side, wiring_faults
 
 _UNEQUAL_SHARE = 0.25

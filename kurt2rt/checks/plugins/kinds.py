@@ -7,7 +7,7 @@ from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
 from hal.errors import UserError
 from hal.plugins import Plugin, PluginKind
-from hal.robot_plugins import ROBOTS, robots_tasks
+from hal.robot_plugins import ROBOTS, plugin_tasks
 from hal.settings_files import TASKS, WORLDS
 from kurt2rt.core.learner.learners import LEARNERS
 
@@ -35,7 +35,7 @@ class NoPluginError(UserError):
     """Name or folder that stands for no plug-in."""
 
 
-class Listed(NamedTuple):
+class ListedPart(NamedTuple):
     """Part of a kind in a list."""
 
     kind: str
@@ -46,14 +46,15 @@ class Listed(NamedTuple):
     """Reason why the name does not lead to it; empty if it does."""
 
 
-def list_parts(kind: PluginKind) -> list[Listed]:
+def list_parts(kind: PluginKind) -> list[ListedPart]:
     """Return the shipped and the installed parts of a kind; nothing is imported, except robots for their tasks."""
     shipped, installed = sorted(kind.shipped()), kind.installed()
     names = [each.name for each in installed]
-    listed = [Listed(kind.group, name, "kurt2rt", "") for name in shipped]
+    listed = [ListedPart(kind.group, name, "kurt2rt", "") for name in shipped]
     if kind is TASKS:
-        listed += [Listed(kind.group, each.name, each.source, "") for each in robots_tasks()]
-    return [*listed, *(Listed(kind.group, each.name, each.source, _note(each, shipped, names)) for each in installed)]
+        listed += [ListedPart(kind.group, each.name, each.source, "") for each in plugin_tasks()]
+    noted = (ListedPart(kind.group, each.name, each.source, _note(each, shipped, names)) for each in installed)
+    return [*listed, *noted]
 
 
 def _note(plugin: Plugin, shipped: list[str], names: list[str]) -> str:

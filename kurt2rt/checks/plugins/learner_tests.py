@@ -19,7 +19,7 @@ _TOO_LONG_MS = 20.0
 """Two ticks: the guard refuses a decision that is older, and the robot stands."""
 
 
-class MadeUp(NamedTuple):
+class ExampleLessons(NamedTuple):
     """Made-up lessons of a setting, as a robot would give them, and situations to try decisions in."""
 
     situations: NDArray[np.float64]
@@ -39,7 +39,7 @@ class MadeUp(NamedTuple):
         return [learner.decide(probe, taught=taught) for probe in self.probes[:probes] for taught in (True, False)]
 
 
-def made_up(setting: LearnerSetting) -> MadeUp:
+def made_up(setting: LearnerSetting) -> ExampleLessons:
     """Return made-up lessons, drawn by the setting's seed."""
     rng = np.random.default_rng(setting.seed)
     # Groups, because lessons of a robot lie together; with noise, so that no two situations are equal.
@@ -48,7 +48,7 @@ def made_up(setting: LearnerSetting) -> MadeUp:
     situations = centres[groups] + rng.normal(0.0, 5.0, (len(groups), setting.dimensions))
     situations.flags.writeable = False
     actions = [setting.actions[group % len(setting.actions)] for group in groups[:_LESSONS]]
-    return MadeUp(situations[:_LESSONS], actions, situations[_LESSONS:])
+    return ExampleLessons(situations[:_LESSONS], actions, situations[_LESSONS:])
 
 
 class LearnerTests(ABC):
@@ -120,7 +120,7 @@ class LearnerTests(ABC):
         return learner
 
 
-def decision_time_ms(learner: Learner, made: MadeUp, now_ns: Callable[[], int] = time.thread_time_ns) -> float:
+def decision_time_ms(learner: Learner, made: ExampleLessons, now_ns: Callable[[], int] = time.thread_time_ns) -> float:
     """Return the median processor time of a learner's decisions, but for the first, which may fit it to its lessons.
 
     `now_ns`: processor time of this thread, in ns.

@@ -19,7 +19,7 @@ from kurt2rt.core.teaching.message_fields import (
     GoalField,
     Int,
     Level,
-    ManyOf,
+    ListOf,
     Name,
     NameOrNone,
     Number,
@@ -152,7 +152,7 @@ class TeachShown(SingleCommand):
     path: ClassVar[str] = "/shown"
     press_id: Number
     """Press of the demonstration."""
-    segments: Annotated[tuple[int, ...], ManyOf(Int(0, LARGEST_NUMBER), most=MOST_SEGMENTS)]
+    segments: Annotated[tuple[int, ...], ListOf(Int(0, LARGEST_NUMBER), most=MOST_SEGMENTS)]
     """Indexes of the published segments that are right."""
 
 

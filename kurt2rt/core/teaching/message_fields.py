@@ -155,7 +155,7 @@ class OrNone:
 
 
 @dataclass(frozen=True, slots=True)
-class ManyOf:
+class ListOf:
     """List of up to `most` values that another check accepts."""
 
     check: Check
@@ -190,7 +190,7 @@ NameOrNone = Annotated[str | None, OrNone(_NAME)]
 Level = Annotated[str, OneWord((BASIC, MID))]
 Truth = Annotated[bool, Flag()]
 PhaseNumber = Annotated[Phase, OneOf(tuple(each.value for each in Phase), Phase)]
-_FEATURES = ManyOf(Row((_NAME, Float(1e6))), most=MOST_GOAL_FEATURES)
+_FEATURES = ListOf(Row((_NAME, Float(1e6))), most=MOST_GOAL_FEATURES)
 
 
 @dataclass(frozen=True, slots=True)

@@ -170,7 +170,7 @@ class BatchTrainingRun(TrainingRun):
                 stuck = self._stuck_tick(begin, reached)
                 seen = self._ask_teacher(seen, reached if stuck is None else stuck)
                 if seen < reached or seen == stuck or self._repositions_at(seen):
-                    robot.go_back(seen)
+                    robot.restore_tick(seen)
                     return seen
             if robot.reason_to_leave:
                 return None

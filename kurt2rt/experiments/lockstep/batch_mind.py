@@ -12,8 +12,8 @@ from behaviors.turn_by_angle import TurnByAngle
 from hal.batch import (
     MOST_KEPT,
     Action,
-    AskedMind,
     BatchRefusedError,
+    CallbackMind,
     Choose,
     DriveSettings,
     FeatureKind,
@@ -159,7 +159,7 @@ def build_minds(
         if setup.learners is not None:
             definition = load_situation(task.situation, settings.infrared.names)
             features = feature_table(definition, settings, np.ones(definition.dimensions), task)
-            minds.append(AskedMind(choice_of(setup.learners, task, taught=lambda: False), features))
+            minds.append(CallbackMind(choice_of(setup.learners, task, taught=lambda: False), features))
             continue
         key = id(setup.events), id(setup.saved), id(setup.autonomous_values)
         if key not in taught:

@@ -21,7 +21,7 @@ from kurt2rt.runtime import Runtime
 _EXAMINER = "examiner"
 
 
-class ErrandDone(Settings):
+class GoalOutcome(Settings):
     """Outcome of one drive to a goal."""
 
     goal: str
@@ -79,12 +79,12 @@ class GoalsRun(Episode):
         self._tracker = self.metric
         self._goals = goals
         self._limit_ticks = round(task.exam.duration_s / self.period_s)
-        self._done: list[ErrandDone] = []
+        self._done: list[GoalOutcome] = []
         self._start = self._pose
         self._begun_tick = self._begun_collisions = self._surprises = 0
         self._failure: str | None = None
 
-    async def drive(self, home: Pose) -> tuple[ErrandDone, ...]:
+    async def drive(self, home: Pose) -> tuple[GoalOutcome, ...]:
         """Drive to all goals, from `home`, and return the outcome of each.
 
         Raises LessonLostError if the robot refused a command.
@@ -142,9 +142,9 @@ class GoalsRun(Episode):
             return "stuck: " + (decision.cause.value if not decision.driving else "driving")
         return "time" if ticks >= self._limit_ticks else None
 
-    def _result(self, failure: str) -> ErrandDone:
+    def _result(self, failure: str) -> GoalOutcome:
         goal = self._goals[len(self._done)]
-        return ErrandDone(
+        return GoalOutcome(
             goal=goal.name,
             why_not=failure,
             seconds=(self.ticks - self._begun_tick) * self.period_s,

@@ -13,7 +13,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
-from kurt2rt.experiments.navigation.exam import ErrandDone, GoalsRun
+from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
 from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
@@ -48,7 +48,7 @@ class ErrandsOutcome(Outcome):
     led: tuple[Place, ...]
     """Trail of the tour."""
     knowledge_hash: str
-    errands: tuple[ErrandDone, ...]
+    errands: tuple[GoalOutcome, ...]
     trail: tuple[Place, ...]
     """Trail of the errands."""
 
@@ -57,7 +57,7 @@ class ErrandsOutcome(Outcome):
         return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
 
     @property
-    def reached(self) -> tuple[ErrandDone, ...]:
+    def reached(self) -> tuple[GoalOutcome, ...]:
         """Goals that were reached, however long the way."""
         return tuple(each for each in self.errands if each.reached)
 

@@ -25,7 +25,7 @@ def corrupt(
         yield ActionReplaced(rla.rla_id, action, rla.action, origin)
 
 
-def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
+def critic_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
     """Yield those of the events that are lessons of the critic, or appraisals of its agreement."""
     ids: set[int] = set()
     for event in events:

@@ -31,7 +31,7 @@ from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
-from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.corruption import corrupt, critic_lessons, shuffled
 from kurt2rt.experiments.phases.steps import (
     PHASE_1,
     PHASE_2,
@@ -320,7 +320,7 @@ class StepJob(PhasesJob):
             teaching, autonomous_values = teaching_outcome(lesson, events[before:]), lesson.autonomous_values
             if step.aside:
                 self._copy_knowledge(knowledge)
-                self._add(knowledge, list(critics_lessons(events[before:])))
+                self._add(knowledge, list(critic_lessons(events[before:])))
         with Journal.read_only(knowledge) as journal:
             events, saved = [entry.event for entry in journal.entries()], journal.statistics()
             system = fold_journal(journal, radius=self.task.learning.radius)
@@ -387,7 +387,7 @@ class StepJob(PhasesJob):
     def _critics(self) -> Iterator[TeachingEvent]:
         taught = self._left_by(PHASE_4)
         if self.of.critic == "taught":
-            yield from critics_lessons(read_lessons(taught, self.robot, self.task))
+            yield from critic_lessons(read_lessons(taught, self.robot, self.task))
             return
         with Journal.read_only(taught) as journal:
             appraisals = fold_journal(journal, radius=1.0).rlas_at(CRITIC)

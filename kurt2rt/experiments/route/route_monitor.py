@@ -18,7 +18,7 @@ _HISTORY = 12
 """So many junctions back what was noticed is compared with what was; older ones are in no history (VI.B.2)."""
 
 
-class Wrong(Settings):
+class RouteMistake(Settings):
     """One junction at which the robot did not do what is right."""
 
     at_s: float
@@ -33,7 +33,7 @@ class RouteMonitor:
     """Compares what the robot noticed of junctions with what it really did there."""
 
     def __init__(self) -> None:
-        self.wrong: list[Wrong] = []
+        self.wrong: list[RouteMistake] = []
         self._judged = 0
         self._noticed: deque[int] = deque(maxlen=_HISTORY)
         self._true: deque[int] = deque(maxlen=_HISTORY)
@@ -78,7 +78,7 @@ class RouteMonitor:
             if passage.taken != passage.right:
                 layer = self._who_failed(passage, record)
                 self.wrong.append(
-                    Wrong(
+                    RouteMistake(
                         at_s=round(record.now_s, 2),
                         leg=passage.leg,
                         layer=layer,

@@ -14,7 +14,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, Place
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
-from kurt2rt.experiments.route.route_monitor import RouteMonitor, Wrong
+from kurt2rt.experiments.route.route_monitor import RouteMistake, RouteMonitor
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.results import StudyError
@@ -34,7 +34,7 @@ class RouteOutcome(TaughtOutcome):
     """Junctions that the mid level missed in training; the teacher commanded there."""
     drive: DriveRow
     """Exam; passed if every decision was right, without a collision, to the end."""
-    wrong: tuple[Wrong, ...]
+    wrong: tuple[RouteMistake, ...]
     """Decisions that were not right."""
 
 

@@ -1,4 +1,4 @@
-"""Executor of jobs on other machines: Dask workers run parcels, and only the executor's machine writes results."""
+"""Executor of jobs on other machines: Dask workers run remote jobs, and only the executor's machine writes results."""
 
 import logging
 import time
@@ -11,13 +11,13 @@ from distributed.scheduler import KilledWorker
 
 from kurt2rt.experiments.lockstep.engine import choose_witnesses
 from kurt2rt.experiments.study.cluster_file import ClusterError, no_scheduler, read_cluster_file
-from kurt2rt.experiments.study.parcel import Parcel, WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress
+from kurt2rt.experiments.study.remote_job import RemoteJob, WorkerDiffersError, pack, run_remote_job, unpack
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import StoredJob
 
 _AHEAD = 2
-"""Parcels on their way for each worker, so that none waits for its next one."""
+"""Remote jobs on their way for each worker, so that none waits for its next one."""
 _TIMEOUT_S = 10.0
 _LOOK_EVERY_S = 0.2
 
@@ -71,8 +71,8 @@ class ClusterExecutor:
 
         def submit() -> None:
             job = waiting.pop(0)
-            parcel = pack(job, results, earlier.get(job.seed, ()))
-            future = self._client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-{id(parcel)}")
+            remote_job = pack(job, results, earlier.get(job.seed, ()))
+            future = self._client.submit(run_remote_job, remote_job, pure=False, key=f"{job.name}-{id(remote_job)}")
             running[future] = job
             finished.add(future)
 
@@ -83,8 +83,8 @@ class ClusterExecutor:
                 job = running.pop(future)
                 files = _files_of(future, job)
                 if job.file in witnessed:
-                    parcel = pack(job, results, earlier.get(job.seed, ()))
-                    require_witness(self._client, future, job, parcel, files)
+                    remote_job = pack(job, results, earlier.get(job.seed, ()))
+                    require_witness(self._client, future, job, remote_job, files)
                 unpack(job, results, files)
                 future.release()  # else it is computed again if its worker dies
                 done_s += job.robot_time_s
@@ -106,14 +106,16 @@ class ClusterExecutor:
             ) from error
 
 
-def require_witness(client: Client, future: Future, job: StoredJob, parcel: Parcel, files: Mapping[str, bytes]) -> None:
+def require_witness(
+    client: Client, future: Future, job: StoredJob, remote_job: RemoteJob, files: Mapping[str, bytes]
+) -> None:
     """Run a job on another worker too, if there is one, and compare the results.
 
     Args:
         client: of the cluster.
         future: finished future of the job; not released.
         job: the job.
-        parcel: its parcel.
+        remote_job: its remote job.
         files: files that it gave.
 
     Raises:
@@ -124,7 +126,7 @@ def require_witness(client: Client, future: Future, job: StoredJob, parcel: Parc
     others = sorted(set(client.scheduler_info()["workers"]) - own)
     if not own or not others:
         return
-    again = client.submit(run_parcel, parcel, pure=False, key=f"{job.name}-again", workers=others)
+    again = client.submit(run_remote_job, remote_job, pure=False, key=f"{job.name}-again", workers=others)
     while not again.done():
         time.sleep(_LOOK_EVERY_S)
         if not set(others) & set(client.scheduler_info()["workers"]):

@@ -79,7 +79,7 @@ def no_scheduler(file: Path, address: str) -> ClusterError:
 
 
 def _require_tls(address: str, where: Path) -> None:
-    """Refuse any other address, because parcels are pickles: who may send one runs any program."""
+    """Refuse any other address, because remote jobs are pickles: who may send one runs any program."""
     try:
         parts = urlsplit(address)
         is_tls = parts.scheme == "tls" and bool(parts.hostname) and parts.port is not None

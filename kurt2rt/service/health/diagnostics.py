@@ -46,7 +46,7 @@ class _Found(NamedTuple):
         return self.code.about, self.name or self.code
 
 
-class Counted:
+class CounterGrowth:
     """Growth of counters in the last minute."""
 
     def __init__(self) -> None:
@@ -101,7 +101,7 @@ class Diagnostics:
         punctuality: TickLateness,
         disks: tuple[DiskSpace, ...],
         machine: MachineHealth,
-        counted: Counted,
+        counted: CounterGrowth,
     ) -> tuple[Trouble, ...]:
         """Return the troubles of one report: urgent ones first, then by the time that they have lasted."""
         self._writes.update(snapshot.now_s, snapshot.last_write_s)
@@ -156,7 +156,7 @@ _COUNTERS: Final = {
 }
 
 
-def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
+def _of_bus(snapshot: Snapshot, counted: CounterGrowth) -> Iterator[_Found]:
     bus = snapshot.bus
     if bus is None:
         return
@@ -189,7 +189,7 @@ def _of_machine(machine: MachineHealth) -> Iterator[_Found]:
         yield _Found(TroubleCode.LITTLE_MEMORY, numbers=(available / 10**6,))
 
 
-def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
+def _of_drops(snapshot: Snapshot, counted: CounterGrowth) -> Iterator[_Found]:
     for queue in snapshot.drops:
         lately = counted.growth(f"drops {queue}")
         if lately:

@@ -27,7 +27,7 @@ from kurt2rt.channel.protocol.health import (
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.durable_files import free_bytes
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.diagnostics import Counted, Diagnostics
+from kurt2rt.service.health.diagnostics import CounterGrowth, Diagnostics
 from kurt2rt.service.health.probes import JournalStats, Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
@@ -86,7 +86,7 @@ class HealthMonitor:
         # Used by the thread only, or by a test that calls `report`.
         self._disks = DiskMonitor(self._instruments.folders)
         self._machine = MachineMonitor()
-        self._counted = Counted()
+        self._counted = CounterGrowth()
         self._troubles = Diagnostics(runtime.robot, tolerates_stalls=tolerates_stalls)
         self._waiting: queue.SimpleQueue[Snapshot | None] = queue.SimpleQueue()
         self._made: HealthReport | None = None

@@ -15,7 +15,7 @@ from kurt2rt.core.teaching.message_fields import (
     Flag,
     Float,
     Int,
-    ManyOf,
+    ListOf,
     OneOf,
     OneWord,
     OrNone,
@@ -91,7 +91,7 @@ COMMANDS: Mapping[str, CommandKind] = {
     ),
     "teach_shown": CommandKind(
         lambda robot, given, _: robot.teach_shown(given["segments"], press_id=given["press_id"]),
-        {"press_id": Int(0, 2**53), "segments": ManyOf(Int(0, MOST_SEGMENTS - 1), most=MOST_SEGMENTS)},
+        {"press_id": Int(0, 2**53), "segments": ListOf(Int(0, MOST_SEGMENTS - 1), most=MOST_SEGMENTS)},
     ),
     "reward": CommandKind(lambda robot, given, tick: robot.reward(given["value"], of=tick), {"value": OneOf((1, -1))}),
     "appraise": CommandKind(

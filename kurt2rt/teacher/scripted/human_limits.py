@@ -24,7 +24,7 @@ class DelaySampler:
         return round(self._delay.draw_s(self._chance) * tired / self._period_s)
 
 
-class Attention:
+class AttentionLapses:
     """Lapses of attention: a Poisson process of their begins, each with a drawn duration."""
 
     def __init__(self, settings: LapseSettings, period_s: float, seed: str) -> None:

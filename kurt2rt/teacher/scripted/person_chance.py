@@ -3,7 +3,7 @@
 import random
 
 from kurt2rt.core.teacher_settings import Delay, PersonSettings
-from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler
+from kurt2rt.teacher.scripted.human_limits import AttentionLapses, DelaySampler
 from kurt2rt.teacher.scripted.look_back import LookBack, Mistake
 
 
@@ -19,7 +19,7 @@ class PersonChance:
         self.question_delay = delays(person.question_delay, "question delays")
         self.mistake_delay = delays(person.mistake_delay, "mistake delays")
         self._look_back_delay = delays(person.look_back.takes, "looks back")
-        self.attention = Attention(person.lapses, period_s, "lapses" + of)
+        self.attention = AttentionLapses(person.lapses, period_s, "lapses" + of)
         self.errors = random.Random("errors" + of)
         self.slips = random.Random("slips that are noticed" + of)
         self._moments = random.Random("moments of mistakes" + of)

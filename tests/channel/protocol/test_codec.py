@@ -51,7 +51,7 @@ from kurt2rt.core.teaching.message_fields import (
     Float,
     GoalField,
     Int,
-    ManyOf,
+    ListOf,
     OneOf,
     OneWord,
     OrNone,
@@ -96,7 +96,7 @@ def values(check: Check) -> st.SearchStrategy[Any]:
             return st.text(PRINTABLE, min_size=least, max_size=most)
         case OrNone(check=inner):
             return st.none() | values(inner)
-        case ManyOf(check=inner, most=most):
+        case ListOf(check=inner, most=most):
             return st.lists(values(inner), max_size=min(most, 6)).map(tuple)
         case Row(checks=checks):
             return st.tuples(*map(values, checks))

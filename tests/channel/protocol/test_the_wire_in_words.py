@@ -19,7 +19,7 @@ from kurt2rt.core.teaching.message_fields import (
     Float,
     GoalField,
     Int,
-    ManyOf,
+    ListOf,
     OneOf,
     OneWord,
     OrNone,
@@ -98,7 +98,7 @@ def in_words(check: object) -> str:
         case GoalField():
             features = "`[features, tolerance]`: up to 16 `[name, value]`, and a number; numbers -1e+06 to 1e+06"
             return f"`name`; `rla`; or {features}"
-        case ManyOf(inner, most):
+        case ListOf(inner, most):
             return f"list of up to {most}: {in_words(inner)}"
     raise AssertionError(check)
 

@@ -31,7 +31,7 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import BatchDiffersError, Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
-from kurt2rt.experiments.study.parcel import pack, run_parcel
+from kurt2rt.experiments.study.remote_job import pack, run_remote_job
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -119,10 +119,10 @@ def test_worker_on_another_machine_gives_the_same_files(made: tuple[Path, Certif
     moved_witness = replace(witness, of=replace(witness.of, taught=own), results=Results(tmp_path))
     for job, moved in ((block, moved_block), (witness, moved_witness)):
         own.write_bytes(content)  # also knowledge within the folder of results travels
-        assert run_parcel(pack(moved, moved.results, ())) == {job.file: (folder / job.file).read_bytes()}
+        assert run_remote_job(pack(moved, moved.results, ())) == {job.file: (folder / job.file).read_bytes()}
         own.unlink()
         with pytest.raises(KnowledgeError):
-            run_parcel(pack(moved, moved.results, ()))
+            run_remote_job(pack(moved, moved.results, ()))
 
 
 def test_worst_runs_are_driven_again_and_drawn(made: tuple[Path, Certificate], tmp_path: Path) -> None:

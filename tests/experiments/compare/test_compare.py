@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hal.batch import AskedMind
+from hal.batch import CallbackMind
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
@@ -210,7 +210,7 @@ def test_error_of_a_python_mind_ends_the_drive() -> None:
     features = feature_table(definition, ROBOT, np.ones(definition.dimensions), task)
     simulation = STAGE.open("a", 3903, "exam")
     try:
-        batch = STAGE.open_batch([simulation], [AskedMind(choose, features)], build_drive_settings(ROBOT, task))
+        batch = STAGE.open_batch([simulation], [CallbackMind(choose, features)], build_drive_settings(ROBOT, task))
         with pytest.raises(ZeroDivisionError, match=f"{definition.dimensions} numbers"):
             batch.drive([0], 10)
         assert batch.reason_to_leave(0)

@@ -2,7 +2,7 @@
 
 import re
 
-from kurt2rt.experiments.navigation.exam import ErrandDone
+from kurt2rt.experiments.navigation.exam import GoalOutcome
 from kurt2rt.experiments.navigation.study import ErrandsOutcome
 from kurt2rt.experiments.navigation.tables import all_tables, robots_table, runs_table
 from tests.experiments.navigation.test_goals import settings
@@ -11,8 +11,8 @@ from tests.experiments.rows import MADE_OF
 
 def errand(
     detour: float = 0.9, why_not: str = "", *, collisions: int = 0, demonstrated: float | None = 3.0
-) -> ErrandDone:
-    return ErrandDone(
+) -> GoalOutcome:
+    return GoalOutcome(
         goal="place 7",
         why_not=why_not,
         seconds=30.0,
@@ -25,7 +25,7 @@ def errand(
     )
 
 
-def robot(seed: int, *errands: ErrandDone) -> ErrandsOutcome:
+def robot(seed: int, *errands: GoalOutcome) -> ErrandsOutcome:
     return ErrandsOutcome(
         made_of=MADE_OF,
         seed=seed,

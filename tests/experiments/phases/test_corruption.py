@@ -12,7 +12,7 @@ from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, Teach
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.corruption import corrupt, critic_lessons, shuffled
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
 
 PERIOD_S = 0.01
@@ -86,7 +86,7 @@ def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
     assert len(primitive_speeds("basic")) == 14
 
 
-def test_critics_lessons_carry_its_agreement() -> None:
+def test_critic_lessons_carry_its_agreement() -> None:
     corrected = ActionReplaced(60, "good", "bad", origin("c"))
     agreed = Appraised("good", 1, 5, origin("a"))
     history: list[TeachingEvent] = [
@@ -96,7 +96,7 @@ def test_critics_lessons_carry_its_agreement() -> None:
         ActionReplaced(1, "back", "forward", origin("r")),
         agreed,
     ]
-    lessons = list(critics_lessons(history))
+    lessons = list(critic_lessons(history))
     assert lessons == [*CRITICS, corrected, agreed]
     there = system(*SET, *lessons)
     assert [rla.action for rla in there.rlas_at(CRITIC)] == ["good", *["bad"] * 9, *["good"] * 30]

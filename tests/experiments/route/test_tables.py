@@ -2,7 +2,7 @@ import re
 from collections.abc import Sequence
 
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.route.route_monitor import Layer, Wrong
+from kurt2rt.experiments.route.route_monitor import Layer, RouteMistake
 from kurt2rt.experiments.route.study import RouteJob, RouteOutcome, make_plan
 from kurt2rt.experiments.route.tables import Routes, RouteStudy, all_tables, errors_of
 from kurt2rt.experiments.study.table import Table
@@ -32,7 +32,7 @@ def outcome(seed: int, *layers: Layer, mid_rlas: int = 12, collisions: int = 0, 
             stuck=stuck,
         ),
         wrong=tuple(
-            Wrong(at_s=10.0 * number, leg=number, layer=layer, x_m=2.2, y_m=3.1)
+            RouteMistake(at_s=10.0 * number, leg=number, layer=layer, x_m=2.2, y_m=3.1)
             for number, layer in enumerate(layers, 1)
         ),
     )

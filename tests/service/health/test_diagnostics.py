@@ -13,7 +13,7 @@ from hal.sensor_signs import SensorFault
 from hal.sensor_watch import BrokenSensor
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.service.health.diagnostics import LATELY_S, Counted, Diagnostics
+from kurt2rt.service.health.diagnostics import LATELY_S, CounterGrowth, Diagnostics
 from kurt2rt.service.health.snapshot import Snapshot
 from tests.service.health.reports import WELL
 
@@ -43,7 +43,7 @@ class Ward:
 
     def __init__(self, *, tolerates_stalls: bool = False) -> None:
         self.book = Diagnostics(load_kurt2(), tolerates_stalls=tolerates_stalls)
-        self.counted = Counted()
+        self.counted = CounterGrowth()
         self.now_s = 50.0
         self.counters = {"missed": 0, "junk": 0, "drops lines": 0}
 

@@ -77,7 +77,7 @@ def test_ticks_that_are_taken_back_leave_no_trace() -> None:
         with batch_lesson(task, 3) as run:
             robot = run.robot
             robot.drive(60 + detour)
-            robot.go_back(60)
+            robot.restore_tick(60)
             robot.keep()
             hashes.append(robot.state_hash())
     assert hashes[0] == hashes[1]

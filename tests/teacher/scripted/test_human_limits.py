@@ -4,7 +4,7 @@ import statistics
 from itertools import groupby
 
 from kurt2rt.core.teacher_settings import LapseSettings, LogNormalDelay
-from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler
+from kurt2rt.teacher.scripted.human_limits import AttentionLapses, DelaySampler
 
 DELAY = LogNormalDelay(kind="log_normal", median_s=1.25, spread=0.42, longest_s=4.0)
 
@@ -25,7 +25,7 @@ def test_draw_delay_grows_with_the_minutes() -> None:
 
 def test_is_on_lapses_have_the_set_rate_and_duration() -> None:
     duration = LogNormalDelay(kind="log_normal", median_s=2.0, spread=0.0, longest_s=9.0)
-    attention = Attention(LapseSettings(per_minute=2.0, duration=duration), 0.01, "x")
+    attention = AttentionLapses(LapseSettings(per_minute=2.0, duration=duration), 0.01, "x")
     looks = [attention.is_on(tick) for tick in range(6000 * 60)]
     lapses = [len(list(ticks)) for on, ticks in groupby(looks) if not on]
     assert set(lapses[:-1]) == {200}

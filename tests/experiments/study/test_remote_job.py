@@ -1,4 +1,4 @@
-"""Parcels: a job runs in another folder, with the files that it needs, and gives the same files."""
+"""Remote jobs: a job runs in another folder, with the files that it needs, and gives the same files."""
 
 import pickle
 from collections.abc import Callable, Mapping, Sequence
@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.experiments.study.jobs import TaughtOutcome
-from kurt2rt.experiments.study.parcel import WorkerDiffersError, pack, run_parcel, unpack
 from kurt2rt.experiments.study.pool import PoolProgress, Progress
 from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.remote_job import WorkerDiffersError, pack, run_remote_job, unpack
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import StoredJob, run_missing
 from tests.experiments.rows import MADE_OF, lesson
@@ -73,7 +73,7 @@ def files(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
+def test_remote_jobs_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
     plans = [waves_in(tmp_path / name, given) for name in ("here", "there")]
     here, there = Results(tmp_path / "here"), Results(tmp_path / "there")
     with here.held(), there.held():
@@ -81,31 +81,31 @@ def test_parcels_give_what_jobs_leave_here(tmp_path: Path, given: Path) -> None:
         done: list[Job] = []
         for wave in plans[1]:
             for job in wave:
-                parcel = pack(job, there, [each for each in done if each.seed == job.seed])
+                remote_job = pack(job, there, [each for each in done if each.seed == job.seed])
                 before = files(tmp_path / "there")
-                given_files = run_parcel(pickle.loads(pickle.dumps(parcel)))
+                given_files = run_remote_job(pickle.loads(pickle.dumps(remote_job)))
                 assert files(tmp_path / "there") == before  # only the sender writes its folder
                 unpack(job, there, given_files)
             done += wave
     assert files(tmp_path / "there") == files(tmp_path / "here")
 
 
-def test_parcel_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None:
+def test_remote_job_needs_no_file_of_its_sender(tmp_path: Path, given: Path) -> None:
     plan, results = waves_in(tmp_path / "there", given), Results(tmp_path / "there")
     (first, _), (then, _) = plan
     with results.held():
-        unpack(first, results, run_parcel(pack(first, results, [])))
-        parcel = pack(then, results, [first])
+        unpack(first, results, run_remote_job(pack(first, results, [])))
+        remote_job = pack(then, results, [first])
         gone = tmp_path / "gone"
         (tmp_path / "there").rename(gone)
-        assert set(run_parcel(parcel)) == {"knowledge/then-3.knowledge", "results/then-3.json"}
+        assert set(run_remote_job(remote_job)) == {"knowledge/then-3.knowledge", "results/then-3.json"}
 
 
-def test_parcel_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
+def test_remote_job_of_another_program_is_refused(tmp_path: Path, given: Path) -> None:
     (first, _), _ = waves_in(tmp_path, given)
-    parcel = pack(first, Results(tmp_path), [])._replace(program="another")
+    remote_job = pack(first, Results(tmp_path), [])._replace(program="another")
     with pytest.raises(WorkerDiffersError, match=r"got [0-9a-f]{16}, Python .+, allowed another"):
-        run_parcel(parcel)
+        run_remote_job(remote_job)
 
 
 def test_unpack_gives_an_earlier_knowledge_file_another_name(tmp_path: Path, given: Path) -> None:
@@ -130,7 +130,7 @@ def test_executor_gets_the_earlier_jobs_of_each_robot(tmp_path: Path, given: Pat
 
 
 class _InTurn:
-    """Executor that run parcels in this process."""
+    """Executor that run remote jobs in this process."""
 
     def __init__(self) -> None:
         self.earlier: list[dict[int, list[str]]] = []
@@ -144,12 +144,12 @@ class _InTurn:
     ) -> None:
         self.earlier.append({seed: [each.name for each in done] for seed, done in earlier.items()})
         for job in jobs:
-            unpack(job, results, run_parcel(pack(job, results, earlier.get(job.seed, ()))))
+            unpack(job, results, run_remote_job(pack(job, results, earlier.get(job.seed, ()))))
             on_progress(PoolProgress(1.0, ()))
 
 
-def test_parcel_of_a_job_with_other_paths_keeps_them(tmp_path: Path, given: Path) -> None:
+def test_remote_job_of_a_job_with_other_paths_keeps_them(tmp_path: Path, given: Path) -> None:
     (first, _), _ = waves_in(tmp_path / "there", given)
     missing = replace(first, given=tmp_path / "nowhere")
     with pytest.raises(FileNotFoundError, match="nowhere"):
-        run_parcel(pack(missing, Results(tmp_path / "there"), []))
+        run_remote_job(pack(missing, Results(tmp_path / "there"), []))

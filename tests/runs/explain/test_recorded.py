@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.runs.explain.from_run import explain_run
+from kurt2rt.runs.explain.recorded import explain_run
 from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import open_run_recorder

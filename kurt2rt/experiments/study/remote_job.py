@@ -1,4 +1,4 @@
-"""Parcel: a job with the files that it needs, to be run on another machine, and the files that it gives."""
+"""RemoteJob: a job with the files that it needs, to be run on another machine, and the files that it gives."""
 
 import pickle
 import tempfile
@@ -22,7 +22,7 @@ class WorkerDiffersError(UserError):
     """A worker has another program, or came to another result."""
 
 
-class Parcel(NamedTuple):
+class RemoteJob(NamedTuple):
     """Job and files, for a machine that shares no disk with this one."""
 
     job: bytes
@@ -37,11 +37,11 @@ class Parcel(NamedTuple):
     """Hash of the sender's program."""
 
 
-def pack(job: StoredJob, results: Results, earlier: Iterable[StoredJob]) -> Parcel:
-    """Return the parcel of a job; `earlier`: jobs of the same robot that are done. Raises OSError."""
+def pack(job: StoredJob, results: Results, earlier: Iterable[StoredJob]) -> RemoteJob:
+    """Return the remote job of a job; `earlier`: jobs of the same robot that are done. Raises OSError."""
     names = [name for each in earlier for name in _files_of(each)]
     inputs = {path for path in _paths(job) if path.is_file()} - {results.folder / name for name in names}
-    return Parcel(
+    return RemoteJob(
         pickle.dumps(job),
         str(results.folder),
         {name: (results.folder / name).read_bytes() for name in names},
@@ -50,35 +50,35 @@ def pack(job: StoredJob, results: Results, earlier: Iterable[StoredJob]) -> Parc
     )
 
 
-def run_parcel(parcel: Parcel) -> dict[str, bytes]:
-    """Run the job of a parcel in a temporary folder; return the files that it gives, by path within it.
+def run_remote_job(remote_job: RemoteJob) -> dict[str, bytes]:
+    """Run a remote job in a temporary folder; return the files that it gives, by path within it.
 
     Raises:
         WorkerDiffersError: this machine has another program than the sender.
         Exception: any error of the job.
     """
-    if _program() != parcel.program:
+    if _program() != remote_job.program:
         raise WorkerDiffersError(
-            f"the worker's program is another one (got {_program()}, allowed {parcel.program})",
+            f"the worker's program is another one (got {_program()}, allowed {remote_job.program})",
             do="install the same version of kurt2rt and its packages on both",
         )
     with tempfile.TemporaryDirectory(prefix="kurt2rt-") as name, threadpool_limits(limits=1):
         made = Path(name) / "made"
-        for file, content in parcel.earlier.items():
+        for file, content in remote_job.earlier.items():
             _write(made / file, content)
         inputs = {}
-        for number, (file, content) in enumerate(parcel.inputs.items()):
+        for number, (file, content) in enumerate(remote_job.inputs.items()):
             inputs[file] = Path(name) / f"inputs/{number}/{Path(file).name}"
             _write(inputs[file], content)
         made.mkdir(exist_ok=True)
-        folder = Path(parcel.folder)
+        folder = Path(remote_job.folder)
 
         def move(path: Path) -> Path:
             if str(path) in inputs:
                 return inputs[str(path)]
             return made / path.relative_to(folder) if path == folder or folder in path.parents else path
 
-        job: StoredJob = _moved(pickle.loads(parcel.job), move)
+        job: StoredJob = _moved(pickle.loads(remote_job.job), move)
         # anyio marks the worker's event loop in a context variable, which Dask copies to the thread of the job.
         Context().run(job.run, lambda _done_s: None)
         return {file: (made / file).read_bytes() for file in _files_of(job)}
