@@ -37,8 +37,6 @@ class Clearance:
 
     def distances_m(self, positions: Sequence[Point]) -> list[float]:
         """Return the distance in m from each position to the nearest face; 0 inside a solid."""
-        if not positions:
-            return []
         world = self._world.settings
         if world is not self._surveyed:
             self._survey()

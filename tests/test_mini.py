@@ -90,8 +90,9 @@ def test_mini_is_taught_at_the_keyboard(monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.setattr("time.sleep", lambda _s: None)
     with pytest.raises(KeyboardInterrupt):
         MINI["main"]()
-    assert re.findall(r"rule .*|I do.*\?", capsys.readouterr().out) == [
-        "I do not know this. What shall I do?",
+    assert re.findall(r"rule .*|I do not know this|front \d+ cm", capsys.readouterr().out) == [
+        "front 60 cm",
+        "I do not know this",
         "rule 1: forward",
         "rule 2: curve_right",
     ]

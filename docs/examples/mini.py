@@ -1,4 +1,4 @@
-"""The whole idea on two screens: sense, look for the nearest rule, ask, be taught, drive.
+"""The whole idea in one file: sense, look for the nearest rule, ask, be taught, drive.
 
     python docs/examples/mini.py
 
@@ -168,6 +168,13 @@ class Mind:
         return rule
 
 
+def seen(counts: Sequence[int]) -> str:
+    """Return what the robot sees on each side: the distance of the nearest obstacle in cm, up to 60."""
+    law = load_kurt2().infrared
+    nearest = {side: max(counts[number - 1] for number in numbers) for side, numbers in HEADINGS.items()}
+    return ", ".join(f"{side} {100 * min(law.distance_m(near), 0.6):.0f} cm" for side, near in nearest.items())
+
+
 @contextmanager
 def keyboard() -> Iterator[None]:
     """Let single keys through, without Enter."""
@@ -188,11 +195,14 @@ def key(*, wait: bool) -> str:
 def main() -> None:
     """Drive the simulated robot and be its teacher, until Ctrl-C."""
     print("keys: " + ", ".join(f"{letter} {action}" for letter, action in KEYS.items()) + "; Ctrl-C ends")
-    mind, senses, waits = Mind(), Senses(), True
+    mind, senses, waits, bumps = Mind(), Senses(), True, 0
     factory = Kurt2SimulationFactory(load_kurt2())
     with closing(factory.open("a", 1, "mini")) as simulation, keyboard():
         for tick in count(1):
             simulation.step()
+            if simulation.collisions > bumps:
+                bumps = simulation.collisions
+                print(f"\n{tick * TICK_S:6.2f} s  bump", end="", flush=True)
             readings = simulation.robot.sense(tick * TICK_S)
             if readings.infrared_age_s > 1:  # before the first reading
                 continue
@@ -200,7 +210,11 @@ def main() -> None:
             decision = mind.decide(situation)
             waits = decision.rule is None
             if waits:
-                print(f"\n{tick * TICK_S:6.2f} s  I do not know this. What shall I do? ", end="", flush=True)
+                print(
+                    f"\n{tick * TICK_S:6.2f} s  {seen(readings.infrared_counts)}: I do not know this. ",
+                    end="",
+                    flush=True,
+                )
             # The world stands still while it waits for an answer.
             action = KEYS.get(key(wait=waits))
             if action is not None and action != decision.action:

@@ -11,7 +11,7 @@ import pytest
 from kurt2rt.channel.protocol.codec import PATHS, body_checks, encode_state
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.core.decision.standing import Standing
+from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.teaching.message_fields import (
     Bytes,
     BytesUpTo,
@@ -63,6 +63,11 @@ def test_wire_page_rows_have_the_documented_places(key: str) -> None:
 
 def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
     assert {path: len(body) for path, body in bodies().items()} == {path: len(body_checks(path)) for path in PATHS}
+
+
+def test_every_reason_to_stand_is_explained() -> None:
+    explained = set(re.findall(r"`([a-z ]+)`", STATE))
+    assert {each.value for each in StandReason} <= explained
 
 
 def ranges() -> dict[str, str]:

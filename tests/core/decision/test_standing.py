@@ -7,7 +7,7 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause
 from kurt2rt.core.decision.standing import (
     ASKS_AFTER_TICKS,
     DRIVES,
@@ -21,8 +21,10 @@ from kurt2rt.core.decision.standing import (
     question_text,
     reason_text,
     short_text,
+    standing_for,
     standing_headline,
 )
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Teach, Watch
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
@@ -178,3 +180,9 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert picture.question == ()  # the situation is known: nothing differs
     assert not expects_answer(picture)  # an action that is typed corrects the RLA
     assert view_of_state(picture).asking  # and so a scripted teacher answers
+
+
+@pytest.mark.parametrize("cause", DecisionCause)
+def test_every_cause_of_a_decision_has_a_standing(cause: DecisionCause) -> None:
+    drives = standing_for(cause, BASIC, None).reason is StandReason.DRIVES
+    assert drives == (cause in BY_KNOWLEDGE or cause is DecisionCause.TEACHER)
