@@ -34,11 +34,11 @@ class Behaviour(Protocol):
 
 @runtime_checkable
 class DrivesOn(Protocol):
-    """Action with a known speed ahead."""
+    """Action with a fixed speed ahead, from its settings; doubt asks for it before the action drives."""
 
     @property
     def forward_m_s(self) -> float:
-        """Return the speed of the robot's centre in m/s; negative when it backs."""
+        """Return the set speed of the robot's centre in m/s; negative when it backs."""
         ...
 
 

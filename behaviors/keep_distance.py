@@ -61,7 +61,7 @@ class KeepDistance:
 
     @property
     def forward_m_s(self) -> float:
-        """Return the speed of the robot's centre in m/s; negative when it backs."""
+        """Return the set speed of the robot's centre in m/s; negative when it backs."""
         return self.numbers.speed_m_s
 
     def start(self) -> None:

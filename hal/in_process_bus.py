@@ -46,7 +46,10 @@ class InProcessBus(VirtualBus):
         self._heard = frame_ids
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """Return the oldest frame, or None after `timeout` seconds. Raises can.CanOperationError after shutdown."""
+        """Return the oldest frame, or None after `timeout` seconds; a `timeout` of None waits for one.
+
+        Raises can.CanOperationError after shutdown.
+        """
         if timeout == 0:
             frames = self.recv_all(1)
             frame = frames[0] if frames else None

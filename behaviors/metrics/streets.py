@@ -87,7 +87,7 @@ class Lane:
     """The middle line of a street."""
 
     level: bool
-    """East to west."""
+    """True if the street runs from east to west, False from north to south."""
     line_m: float
     """Its y when level, else its x."""
     from_m: float

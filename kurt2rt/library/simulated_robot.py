@@ -132,7 +132,10 @@ class SimulatedRobot:
         self._keeping.check()
 
     def run(self, seconds: float) -> None:
-        """Drive for `seconds` of robot time. Raises UserError (kurt2rt.Error) as `step` does."""
+        """Drive for `seconds` of robot time, rounded to whole steps, at least one; a robot that asks stands meanwhile.
+
+        Raises UserError (kurt2rt.Error) unless `seconds` is above 0 and at most a day, and for a lost lesson.
+        """
         if not 0.0 < seconds <= _LONGEST_S:
             raise UserError(
                 f"not a duration (got {seconds!r}, allowed above 0, at most {_LONGEST_S:g})", where="seconds"

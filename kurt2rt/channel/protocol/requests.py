@@ -95,7 +95,7 @@ class FileRequest(Request):
 
 @_at("/exam")
 class ExamRequest(CommandRequest):
-    """Examine a copy of the present knowledge in simulation, while the robot goes on."""
+    """Examine a copy of the present knowledge in simulation, while the robot goes on; /exam/standing has the result."""
 
 
 @_at("/exam/standing")

@@ -60,7 +60,7 @@ class SymbolHistory:
         self._detector = detector
 
     def perceive(self, readings: SensorReadings) -> bool:
-        """Process one tick and return whether there is a new symbol."""
+        """Process one tick; return whether a junction was passed, whose turn is the new first number of `vector`."""
         self.passed = self._detector.perceive(readings)
         if self.passed is None:
             return False

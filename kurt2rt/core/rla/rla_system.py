@@ -144,7 +144,7 @@ class RlaSystem:
         return self._names.for_level(level)
 
     def appraisal(self, rla_id: int) -> Appraisal:
-        """Return the numbers of rewards and punishments of an RLA."""
+        """Return the numbers of rewards and punishments of an RLA; zeros for an unknown id."""
         return self._rewards.get(rla_id)
 
     @property

@@ -23,7 +23,7 @@ from kurt2rt.knowledge.files.archive_existing import archive_existing
 
 
 class PupilOutcome(TaughtOutcome):
-    """Lesson and exams of one robot that is one of the pupils."""
+    """Result of one robot with one learner: its lesson, and its exams at the checkpoints."""
 
     failure: str
     """Failure of the learner in the lesson or an exam; empty without one."""

@@ -32,7 +32,10 @@ class Comparison:
     rows: tuple[Row, ...]
 
     def of_task(self, task: str) -> tuple[Row, tuple[Row, ...]]:
-        """Return the row of the RLA system as shipped in a task, and the other rows."""
+        """Return the row of the RLA system as shipped, which is the first of each task, and the task's other rows.
+
+        `task`: name of a task of the plan; ValueError for any other.
+        """
         shipped, *others = (row for row in self.rows if row.of[0] == task)
         return shipped, tuple(others)
 

@@ -156,7 +156,7 @@ class DriveRow(Settings):
 
 
 def label_of(world: str) -> str:
-    """Return the label of a world: a capital letter for shipped ones, else the name."""
+    """Return the label of a world in tables: a one-letter name as a capital, such as A; any other as it is."""
     return world.upper() if len(world) == 1 else world
 
 

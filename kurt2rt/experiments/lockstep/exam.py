@@ -130,7 +130,7 @@ class ExamRun(Episode):
             self.metric.abort()
 
     def on_tick(self, record: TickRecord) -> None:
-        """Measure the drive; end it or rescue the robot if it is stuck.
+        """Measure the drive; end it at an alarm, and end it or rescue the robot if it is stuck.
 
         Raises LessonLostError if the robot refused a behaviour.
         """

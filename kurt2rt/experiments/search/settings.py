@@ -58,6 +58,7 @@ class Dimension(Settings):
     """Levels with dots between them; a number is a place in a list, from 0."""
     low: float
     high: float
+    """Range of the values to try, in the key's own unit."""
     log: bool = False
     """Equal ratios are equally far apart, and not equal differences."""
 

@@ -35,7 +35,8 @@ class FeatureContrast:
 def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare, ...]:
     """Return all features that contribute to the distance, largest share first.
 
-    Empty if the robot does not know its place.
+    Shares of the squared weighted distance from the situation of `level` to the condition of `rla`. Empty if the
+    distance is 0 or not finite, as at a mid level that does not know its place.
     """
     squares = _squares(level, rla)
     whole = float(squares.sum())

@@ -134,7 +134,7 @@ async def _supervise_alone(robot: TeacherClient, supervisor: ScriptedSupervisor)
 
 
 def mid_level_refusal(task: TaskSettings) -> str:
-    """Return the reason why the scripted teacher does not teach a task with a mid level over the channel."""
+    """Return the sentence that refuses a task over the channel; the caller has checked that it has a mid level."""
     return (
         f"task {task.name} has a mid level, and over the channel the scripted teacher does not see the streets that "
         f"say which way is right; kurt2rt train --task {task.name} teaches it in simulated time"
