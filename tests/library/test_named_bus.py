@@ -15,8 +15,8 @@ from kurt2rt.library.named_bus import NoVcanError, require_bus
         ("vcan7", {}, NoVcanError, "no such interface; sudo modprobe vcan"),
         ("vcan7", {"type": "280", "flags": "0xc0"}, NoVcanError, "is down; sudo ip link set vcan7 up"),
         ("vcan7", {"type": "1", "flags": "0xc1"}, kurt2rt.Error, "not of CAN"),
-        ("vcan7", {"type": "280", "flags": "0xc1", "device": ""}, kurt2rt.Error, "no virtual CAN interface"),
-        ("can0", {"type": "280", "flags": "0xc1"}, kurt2rt.Error, "no virtual CAN interface"),
+        ("vcan7", {"type": "280", "flags": "0xc1", "device": ""}, kurt2rt.Error, "not a virtual CAN interface"),
+        ("can0", {"type": "280", "flags": "0xc1"}, kurt2rt.Error, "not a virtual CAN interface"),
         ("radio:mine", {}, kurt2rt.Error, "no such kind"),
     ],
 )
