@@ -71,7 +71,7 @@ _MOVING = (
 
 
 class RobotBatch:
-    """Robots in compiled loops; each is equal bit by bit to the same robot on the CAN bus until it leaves."""
+    """Batch (hal.batch.Batch) of KURT2s: compiled loops drive each as the CAN bus does, bit by bit, until it leaves."""
 
     def __init__(
         self,

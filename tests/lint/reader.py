@@ -1,5 +1,6 @@
-"""Findings of the texts that a user reads: Markdown, help of the command line, the teacher's page, golden texts."""
+"""Findings of the texts that a user reads: Markdown, help, the teacher's page, golden texts, captions of reports."""
 
+import ast
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -27,6 +28,19 @@ def reader_findings(path: str, text: str) -> Iterator[Finding]:
     elif path.startswith("kurt2rt/teacher/page/static/"):
         for literal in _LITERALS[path[path.rindex(".") :]].finditer(text):
             yield from _findings(path, text.count("\n", 0, literal.start()) + 1, literal[1] or literal[2] or "")
+    elif path.startswith("kurt2rt/experiments/") and path.endswith(".py"):
+        for node in ast.walk(ast.parse(text)):
+            for caption in _captions_in(node):
+                words = (each.value for each in ast.walk(caption) if isinstance(each, ast.Constant))
+                yield from _findings(path, caption.lineno, " ".join(each for each in words if isinstance(each, str)))
+
+
+def _captions_in(node: ast.AST) -> list[ast.expr]:
+    """Return the notes of a table and the captions of a figure that a call makes; none of any other node."""
+    if not isinstance(node, ast.Call):
+        return []
+    notes = [each.value for each in node.keywords if each.arg == "note"]
+    return [*notes, *node.args[2:]] if ast.unparse(node.func) == "SavedFigure" else notes
 
 
 def help_findings() -> Iterator[Finding]:

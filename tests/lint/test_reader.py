@@ -29,6 +29,8 @@ def test_sentence_of_more_than_22_words_is_found_at_its_line(text: str, found: l
         ("tests/golden/x.txt", "\nso many: Short. | {}"),
         ("kurt2rt/teacher/page/static/x.js", '// of "before\n  f("{}")'),
         ("kurt2rt/teacher/page/static/x.js", "\n  f(`{}`)"),
+        ("kurt2rt/experiments/x.py", "f(\n    note='{}')"),
+        ("kurt2rt/experiments/x.py", "SavedFigure(path, 'So many',\n    '{}')"),
         ("kurt2rt/teacher/page/static/x.html", "<p>\n</p><p>{}</p>"),
         ("kurt2rt/teacher/page/static/x.html", '\n<p title="{}"></p>'),
     ],

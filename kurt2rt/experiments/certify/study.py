@@ -56,7 +56,7 @@ class Run(NamedTuple):
 
     @property
     def world(self) -> str:
-        """Name of the world."""
+        """Name of the world of this run, its number put in."""
         return world_of(self.place, self.number)
 
 
@@ -128,7 +128,7 @@ class Certified(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Certificate:
-    """Plan and drives."""
+    """Drives of all runs of a certificate, from which its tables and report are made."""
 
     plan: StudyPlan[Certified]
     drives: tuple[DriveRow, ...]

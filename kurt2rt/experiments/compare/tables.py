@@ -86,11 +86,11 @@ def success_table(comparison: Comparison) -> Table:
         ("task", "learner", *(f"after {presses}" for presses in after), "at the end"),
         tuple(rows),
         words=2,
-        note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}), judged by "
-        "the drive of the teacher's policy from the same start; a world in which the policy does not pass is left out. "
-        "With 95 % intervals. A robot that gave cause for fewer presses has all that it was taught. All see the "
-        "situation with the weights of the RLAs. The RLA system has the settings of its task, which were searched; "
-        "learners have the defaults of their classes, unless a gate is given.",
+        note=f"A robot passes if it passes in every world of the task's exam, without a teacher ({lasting}). The drive "
+        "of the teacher's policy from the same start is the measure. A world in which it fails is left out. With 95 % "
+        "intervals. A robot that needed fewer presses has all that it was taught. All see the situation with the "
+        "weights of the RLAs. The RLA system has the searched settings of its task. Learners have the defaults of "
+        "their classes, unless a gate is given.",
     )
 
 

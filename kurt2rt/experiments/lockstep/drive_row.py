@@ -20,7 +20,11 @@ NOT_JUDGED_BECAUSE = "not judged: the policy itself gets nowhere here"
 
 
 class ExamVerdict(StrEnum):
-    """Outcome of an exam."""
+    """Verdict on a drive without a teacher, by the drive of the task's policy from the same start.
+
+    The robot passes with a share of the policy's progress and few collisions, neither stuck nor stopped
+    (SuccessSettings).
+    """
 
     PASSED = "passed"
     FAILED = "failed"
@@ -34,7 +38,7 @@ class ExamVerdict(StrEnum):
 
 
 class DriveRow(Settings):
-    """Drive without a teacher."""
+    """Result of one drive without a teacher, as a study stores it."""
 
     world: str
     seed: int

@@ -31,7 +31,10 @@ def build_stuck_rule(window_s: float, period_s: float, *, least_m: float) -> Stu
 
 
 class StuckDetector:
-    """Detector of a robot that stays about where it is, also if it goes round in circles."""
+    """Detector of a robot that stayed within `least_m` for `window_s`, also if it goes round in circles.
+
+    Exams end at it; in lessons the robot is set down elsewhere (rescued).
+    """
 
     def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:
         rule = build_stuck_rule(window_s, period_s, least_m=least_m)
@@ -69,7 +72,7 @@ class StuckDetector:
         )
 
     def restart(self) -> None:
-        """Begin a new window."""
+        """Begin a new window, because the robot was set down elsewhere."""
         self._positions.clear()
         self._ticks = 0
 

@@ -15,7 +15,7 @@ _CORRECTED_ONLY = (Phase.SUPERVISED, Phase.CORRECTIONS)
 
 @dataclass(frozen=True, slots=True)
 class SignalTimes:
-    """Intervals of the rewards."""
+    """Intervals in s at which a scripted teacher rewards and appraises."""
 
     bad_every_s: float = 1.0
     good_every_s: float = 2.0

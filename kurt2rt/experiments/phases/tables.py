@@ -486,10 +486,10 @@ def workload_table(title: str, steps: Sequence[str], study: PhasesStudy) -> Tabl
         ("-1", counted(lambda each: each.negative_rewards)),
         ("too late", counted(lambda each: each.refused_signals)),
         ("withdrawn", counted(lambda each: each.withdrawn)),
-        note="Medians of all robots; in brackets in a minute. Phases 1 and 2 are one lesson. Set down, shown, rescued "
-        "and Go are the work of the hands: the robot carried elsewhere as planned, an action shown to the critic, "
-        "carried away because it made no way, told to drive again after the guard had stopped it. Too late: rewards "
-        "and appraisals that the robot refused.",
+        note="Medians of all robots; in brackets in a minute. Phases 1 and 2 are one lesson. Set down: the robot was "
+        "carried elsewhere as planned. Shown: the critic was shown an action. Rescued: the robot was carried away, "
+        "because it got nowhere. Go: it was sent on after a stop of the guard. Too late: rewards and appraisals that "
+        "the robot refused.",
     )
 
 

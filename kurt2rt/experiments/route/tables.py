@@ -62,7 +62,7 @@ def verdicts(routes: Routes, paper: PaperResult) -> Iterator[Verdict]:
 
 
 def all_tables(study: RouteStudy) -> Iterator[Table]:
-    """Yield all tables."""
+    """Yield the tables of a study of routes, in the order of its report."""
     paper = study.plan.about.task.paper
     found = [((_length(each),), verdict) for each in study.routes for verdict in verdicts(each, paper)]
     if found:

@@ -53,7 +53,7 @@ class CheckedSettings:
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """Result of a check."""
+    """Result of a check: scores of the shipped and of the found settings, robot by robot."""
 
     record: CheckRecord
     shipped: tuple[RobotScore, ...]

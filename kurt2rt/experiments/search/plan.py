@@ -62,7 +62,7 @@ class SearchPlan:
 
     @property
     def folder(self) -> Path:
-        """Folder of the results."""
+        """Folder that gets the journal, the results and the report."""
         return self.parts["results"].folder
 
     def trial_jobs(self, values: Values, trial: int) -> tuple[SearchJob, ...]:

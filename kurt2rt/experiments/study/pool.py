@@ -35,7 +35,7 @@ class Job(Protocol):
 
     @property
     def name(self) -> str:
-        """Name in progress displays."""
+        """Name of the job next to its progress bar."""
         ...
 
     @property

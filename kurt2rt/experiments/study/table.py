@@ -15,7 +15,7 @@ RowT = TypeVar("RowT")
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table of texts."""
+    """Table of texts for terminal and report, with title and note."""
 
     title: str
     columns: tuple[str, ...]
@@ -81,5 +81,5 @@ def to_text(ends: Iterable[float], form: str) -> str:
 
 
 def collisions_text(collisions: int) -> str:
-    """Return `2 collisions`."""
+    """Return a number of collisions in words, such as `2 collisions`."""
     return f"{collisions} collision{'' if collisions == 1 else 's'}"

@@ -115,9 +115,9 @@ def curve_table(study: TransferStudy) -> Table:
         words=2,
         note=f"Exams of {study.plan.about.task.exam.duration_s:.0f} s without a teacher, with 95 % intervals. Until "
         "right: as if teaching ended with the first exam that was passed; the best of several exams flatters. A robot "
-        "that gave cause for fewer presses has all that it was taught. Policy: own drives of the teacher's policy "
-        "without collision or standstill, with enough junctions right; a robot whose policy does not pass there is not "
-        "judged and not counted.",
+        "that needed fewer presses has all that it was taught. Policy: own drives of the teacher's policy without "
+        "collision or standstill, with enough junctions right. A robot whose policy fails there is not judged and not "
+        "counted.",
     )
 
 
