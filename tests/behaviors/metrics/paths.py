@@ -28,22 +28,22 @@ def arc(centre: Point, radius_m: float, from_deg: float, to_deg: float) -> list[
     return [_on_circle(centre, radius_m, angle) for angle in angles]
 
 
-def put(course: TaskMetric, at: Point, towards_deg: float) -> None:
-    course.reset(Pose(*at, math.radians(towards_deg)))
+def put(metric: TaskMetric, at: Point, towards_deg: float) -> None:
+    metric.reset(Pose(*at, math.radians(towards_deg)))
 
 
-def follow(course: TaskMetric, points: Sequence[Point]) -> None:
-    """Drive there; stops where the course says that the robot is needs_reset."""
+def follow(metric: TaskMetric, points: Sequence[Point]) -> None:
+    """Drive there; stops where the metric says that the robot is needs_reset."""
     for pose in along(points):
-        course.update(pose)
-        if course.needs_reset:
+        metric.update(pose)
+        if metric.needs_reset:
             return
 
 
-def follow_in_stretches(course: StretchMetric, poses: Sequence[Pose], ticks: int) -> None:
+def follow_in_stretches(metric: StretchMetric, poses: Sequence[Pose], ticks: int) -> None:
     """Drive along poses, so many ticks at once."""
     for begin in range(0, len(poses), ticks):
-        course.update_all(poses[begin : begin + ticks])
+        metric.update_all(poses[begin : begin + ticks])
 
 
 def noisy_poses(centre: Point, seed: int, ticks: int = 3000) -> list[Pose]:

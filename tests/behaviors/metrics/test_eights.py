@@ -16,16 +16,16 @@ MIDDLE = (2.45, 1.8)
 
 
 def eights() -> Eights:
-    course = Eights(SETTINGS, SimulatedPost("west", *WEST, 0.2), SimulatedPost("east", *EAST, 0.2), "")
-    put(course, MIDDLE, 90.0)
-    return course
+    metric = Eights(SETTINGS, SimulatedPost("west", *WEST, 0.2), SimulatedPost("east", *EAST, 0.2), "")
+    put(metric, MIDDLE, 90.0)
+    return metric
 
 
 def driven(*rounds: list[Point]) -> float:
-    course = eights()
+    metric = eights()
     # A little way on, since a round is over where the other post's side of the floor begins.
-    follow(course, [point for each in rounds for point in each] + [(2.4, 1.9), (2.5, 1.9), (2.4, 1.9)])
-    return course.progress
+    follow(metric, [point for each in rounds for point in each] + [(2.4, 1.9), (2.5, 1.9), (2.4, 1.9)])
+    return metric.progress
 
 
 @pytest.mark.parametrize(
@@ -46,11 +46,11 @@ def test_eights_round_about_other_post_counts_half(rounds: list[list[Point]], pr
 
 
 def test_a_round_that_a_hand_broke_off_does_not_count() -> None:
-    course = eights()
-    follow(course, WEST_LEFT[:120])
-    put(course, (2.0, 1.2), 0.0)
-    follow(course, [*arc(WEST, HALF_GAP_M, -60.0, 0.0), *EAST_RIGHT, MIDDLE, (2.4, 1.8)])
-    assert course.progress == 0.5  # the eastern one alone
+    metric = eights()
+    follow(metric, WEST_LEFT[:120])
+    put(metric, (2.0, 1.2), 0.0)
+    follow(metric, [*arc(WEST, HALF_GAP_M, -60.0, 0.0), *EAST_RIGHT, MIDDLE, (2.4, 1.8)])
+    assert metric.progress == 0.5  # the eastern one alone
 
 
 def test_a_world_without_two_posts_is_refused() -> None:

@@ -23,19 +23,19 @@ def laps_in(simulation: Kurt2Simulation) -> TaskMetric:
     return settings.build(simulation, ("",), random.Random(1))
 
 
-def carry(simulation: Kurt2Simulation, course: TaskMetric, pose: Pose) -> None:
+def carry(simulation: Kurt2Simulation, metric: TaskMetric, pose: Pose) -> None:
     simulation.simulated_robot.place(pose)
-    course.update(pose)
+    metric.update(pose)
 
 
 def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
     simulation = STAGE.open("one_object", 1, "test")
     try:
-        course = laps_in(simulation)
+        metric = laps_in(simulation)
         for pose in along(ROUND[:2], 0.02):
-            carry(simulation, course, pose)
-        assert course.unit == "laps"
-        assert course.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
+            carry(simulation, metric, pose)
+        assert metric.unit == "laps"
+        assert metric.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
     finally:
         simulation.close()
 
@@ -44,18 +44,18 @@ def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
 def test_laps_count_forwards_and_subtract_backwards(towards_rad: float, sign: int) -> None:
     simulation = STAGE.open("one_object", 1, "test")
     try:
-        course = laps_in(simulation)
+        metric = laps_in(simulation)
         simulation.simulated_robot.place(Pose(0.4, 2.2, towards_rad))
-        before = course.progress
+        before = metric.progress
         for tick in range(300):
             simulation.robot.sense(tick * 0.01)
             simulation.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
             simulation.step()
-            course.update(simulation.pose)
+            metric.update(simulation.pose)
         way_m = abs(simulation.pose.y_m - 2.2)
         assert way_m > 0.5
         # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.
-        assert sign * (course.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
+        assert sign * (metric.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
     finally:
         simulation.close()
 

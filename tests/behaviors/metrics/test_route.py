@@ -26,9 +26,9 @@ def a_route(seed: int = 1, decisions: int = 8) -> Route:
 
 
 def set_down(route: Route | None = None) -> FixedRoute:
-    course = FixedRoute(streets(), route or a_route(), ALL)
-    course.reset(course.reset_pose)
-    return course
+    metric = FixedRoute(streets(), route or a_route(), ALL)
+    metric.reset(metric.reset_pose)
+    return metric
 
 
 def middle(leg: Leg) -> Point:
@@ -39,12 +39,12 @@ def corner(leg: Leg) -> Point:
     return leg.junction.x_m, leg.junction.y_m
 
 
-def drive(course: FixedRoute, legs: int) -> None:
+def drive(metric: FixedRoute, legs: int) -> None:
     """Follow the route for `legs` legs, from the middle of the present street."""
-    all_legs = course.route.legs
+    all_legs = metric.route.legs
     for _ in range(legs):
-        leg, following = (all_legs[(course.ahead.passed + k) % len(all_legs)] for k in (0, 1))
-        follow(course, [middle(leg), corner(leg), middle(following)])
+        leg, following = (all_legs[(metric.ahead.passed + k) % len(all_legs)] for k in (0, 1))
+        follow(metric, [middle(leg), corner(leg), middle(following)])
 
 
 def wrong_way(leg: Leg) -> Point:
@@ -55,81 +55,81 @@ def wrong_way(leg: Leg) -> Point:
     return junction.x_m + along[0], junction.y_m + along[1]
 
 
-def with_a_choice(course: FixedRoute) -> None:
+def with_a_choice(metric: FixedRoute) -> None:
     """Drive on to where another way than the route's is possible."""
-    while len(course.route.legs[course.ahead.passed % 8].junction.arms) < 3:
-        drive(course, 1)
+    while len(metric.route.legs[metric.ahead.passed % 8].junction.arms) < 3:
+        drive(metric, 1)
 
 
 def test_route_begins_in_the_middle_of_the_first_street() -> None:
-    course = set_down()
-    assert isinstance(course, RouteMetric)
-    assert course.reset_pose == course.route.legs[0].middle
-    assert MEANING[course.behaviour] == course.route.quarters[0]
-    passed, inside, here, after = course.ahead
-    assert (passed, inside, here, MEANING[after]) == (0, False, course.behaviour, course.route.quarters[1])
+    metric = set_down()
+    assert isinstance(metric, RouteMetric)
+    assert metric.reset_pose == metric.route.legs[0].middle
+    assert MEANING[metric.behaviour] == metric.route.quarters[0]
+    passed, inside, here, after = metric.ahead
+    assert (passed, inside, here, MEANING[after]) == (0, False, metric.behaviour, metric.route.quarters[1])
 
 
 def test_route_without_errors_counts_every_decision_right() -> None:
-    course = set_down()
+    metric = set_down()
     asked = []
     for _ in range(16):
-        asked.append(MEANING[course.behaviour])
-        drive(course, 1)
-    assert tuple(asked) == course.route.quarters * 2
-    assert course.progress == course.findings["junctions"] == course.findings["junctions right"] == 16.0
-    lefts = float(2 * course.route.quarters.count(1))
-    assert course.findings["junctions, turn_left"] == course.findings["junctions right, turn_left"] == lefts
-    assert course.ahead.passed == 16
-    assert not course.needs_reset
+        asked.append(MEANING[metric.behaviour])
+        drive(metric, 1)
+    assert tuple(asked) == metric.route.quarters * 2
+    assert metric.progress == metric.findings["junctions"] == metric.findings["junctions right"] == 16.0
+    lefts = float(2 * metric.route.quarters.count(1))
+    assert metric.findings["junctions, turn_left"] == metric.findings["junctions right, turn_left"] == lefts
+    assert metric.ahead.passed == 16
+    assert not metric.needs_reset
 
 
 def test_route_wrong_way_counts_and_resets_to_the_right_street() -> None:
-    course = set_down()
-    with_a_choice(course)
-    place = course.ahead.passed
-    leg = course.route.legs[place]
-    follow(course, [middle(leg), corner(leg), wrong_way(leg)])
-    assert course.needs_reset
-    assert course.passages[-1].taken != leg.quarters
-    assert course.reset_pose == course.route.legs[(place + 1) % 8].middle
-    course.reset(course.reset_pose)
-    assert not course.needs_reset
-    drive(course, 3)
-    assert course.findings["junctions"] - course.findings["junctions right"] == 1.0
-    assert course.progress == place + 3.0
+    metric = set_down()
+    with_a_choice(metric)
+    place = metric.ahead.passed
+    leg = metric.route.legs[place]
+    follow(metric, [middle(leg), corner(leg), wrong_way(leg)])
+    assert metric.needs_reset
+    assert metric.passages[-1].taken != leg.quarters
+    assert metric.reset_pose == metric.route.legs[(place + 1) % 8].middle
+    metric.reset(metric.reset_pose)
+    assert not metric.needs_reset
+    drive(metric, 3)
+    assert metric.findings["junctions"] - metric.findings["junctions right"] == 1.0
+    assert metric.progress == place + 3.0
 
 
 def test_route_turning_back_counts_as_wrong_and_repeats() -> None:
-    course = set_down()
-    drive(course, 1)
-    follow(course, [middle(course.route.legs[1]), corner(course.route.legs[0])])
-    assert course.needs_reset
-    assert course.passages[-1].taken is None
-    assert course.reset_pose == course.route.legs[1].middle
-    course.reset(course.reset_pose)
-    drive(course, 1)
-    assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
+    metric = set_down()
+    drive(metric, 1)
+    follow(metric, [middle(metric.route.legs[1]), corner(metric.route.legs[0])])
+    assert metric.needs_reset
+    assert metric.passages[-1].taken is None
+    assert metric.reset_pose == metric.route.legs[1].middle
+    metric.reset(metric.reset_pose)
+    drive(metric, 1)
+    assert (metric.progress, metric.findings["junctions"]) == (2.0, 3.0)
 
 
 def test_route_reset_repeats_a_street_and_skips_a_junction() -> None:
-    course = set_down()
-    first, second = course.route.legs[:2]
-    assert course.reset_pose == first.middle
-    course.reset(course.reset_pose)
-    assert course.passages == []
-    follow(course, [middle(first), corner(first)])
-    assert course.reset_pose == second.middle
-    course.reset(course.reset_pose)
-    assert [each.taken for each in course.passages] == [None]
-    assert (course.ahead.passed, course.ahead.inside) == (1, False)
+    metric = set_down()
+    first, second = metric.route.legs[:2]
+    assert metric.reset_pose == first.middle
+    metric.reset(metric.reset_pose)
+    assert metric.passages == []
+    follow(metric, [middle(first), corner(first)])
+    assert metric.reset_pose == second.middle
+    metric.reset(metric.reset_pose)
+    assert [each.taken for each in metric.passages] == [None]
+    assert (metric.ahead.passed, metric.ahead.inside) == (1, False)
 
 
 def test_route_abort_counts_as_wrong() -> None:
-    course = set_down()
-    drive(course, 2)
-    course.abort()
-    assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
+    metric = set_down()
+    drive(metric, 2)
+    metric.abort()
+    assert (metric.progress, metric.findings["junctions"]) == (2.0, 3.0)
 
 
 def test_route_refuses_other_worlds_behaviours_and_numbers() -> None:

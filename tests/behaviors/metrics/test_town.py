@@ -15,13 +15,13 @@ from simbridge.simulation import Kurt2SimulationFactory
 
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
 PLAN = Kurt2SimulationFactory(load_kurt2()).plan_of("manhattan")
-COURSE = load_task("errands").metric
+METRIC = load_task("errands").metric
 
 
 @pytest.fixture(scope="module")
 def town() -> Town:
-    assert isinstance(COURSE, ErrandsSettings)
-    return COURSE.walk_in(PLAN, BEHAVIOURS).town
+    assert isinstance(METRIC, ErrandsSettings)
+    return METRIC.walk_in(PLAN, BEHAVIOURS).town
 
 
 def street(town: Town, x_m: float, y_m: float, way: Side) -> Street:
@@ -57,8 +57,8 @@ def test_ways_are_measured_from_where_one_is_to_where_one_comes(town: Town) -> N
 
 
 def test_tracker_lists_streets_once_and_marks_resets() -> None:
-    assert isinstance(COURSE, ErrandsSettings)
-    walk = COURSE.walk_in(PLAN, BEHAVIOURS)
+    assert isinstance(METRIC, ErrandsSettings)
+    walk = METRIC.walk_in(PLAN, BEHAVIOURS)
     walk.reset(Pose(1.3, 2.2, 0.0))
     for x_m in (1.5, 1.8, 2.2, 2.6, 2.75, 3.0):
         walk.update(Pose(x_m, 2.2, 0.0))
