@@ -66,7 +66,7 @@ class PolicyMind:
 
 @dataclass(frozen=True, slots=True)
 class TaughtMind:
-    """Robot that drives by the RLAs of the wanted behaviour, oldest first, and stands outside their radii."""
+    """Robot that drives by the RLAs of its active behaviour, and stands outside their radii."""
 
     sizes: tuple[int, ...]
     """Number of RLAs of each taught behaviour, in the order of `DriveSettings.behaviours` and of all fields below."""

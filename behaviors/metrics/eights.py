@@ -73,7 +73,7 @@ class Eights:
         self.update(pose)
 
     def update(self, pose: Pose) -> None:
-        """Update the metric with the robot's pose."""
+        """Add the way round the posts from the pose before, and the distance error; call it in every tick."""
         away_m = [swept.away_m(pose) - post.radius_m for swept, post in zip(self._sides, self._posts, strict=True)]
         side = 0 if away_m[0] <= away_m[1] else 1
         if self._ticks % MEASURE_EVERY == 0:

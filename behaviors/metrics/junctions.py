@@ -103,7 +103,7 @@ class Junctions:
             self._command(self._inside, way)  # not judged: the direction of its arrival is unknown
 
     def update(self, pose: Pose) -> None:
-        """Update the metric with the robot's pose."""
+        """Count a junction that this pose has left, and the deviation in the street; call it in every tick."""
         self.update_all([pose])
 
     def update_all(self, poses: Sequence[Pose]) -> None:

@@ -73,7 +73,7 @@ class Rounds:
         self.update(pose)
 
     def update(self, pose: Pose) -> None:
-        """Update the metric with the robot's pose."""
+        """Add the turn about the post from the pose before, and the distance error; call it in every tick."""
         away_m = self._swept.away_m(pose) - self._radius_m
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(away_m - self._settings.wanted_m))

@@ -42,7 +42,7 @@ class WallFollowingSettings(PolicySettings):
 
 
 class Thresholds(NamedTuple):
-    """Numbers of the policy for one robot, by the names of its settings."""
+    """Thresholds of the policy for one robot, in m; the names are those of its settings."""
 
     wanted_m: float
     tolerance_m: float

@@ -48,7 +48,7 @@ class Counters:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Rates of datagrams, at once and in the long run."""
+    """Limits of datagrams by their sender: a burst (`_at_once`) and a sustained rate (`_per_s`)."""
 
     strangers_at_once: float = 40
     strangers_per_s: float = 40

@@ -130,7 +130,7 @@ class TrainingResult:
 
     @property
     def counts(self) -> LessonCounts:
-        """Counts of the run."""
+        """Counts of the run, such as questions, corrections and collisions."""
         counted = {name: getattr(self, name) for name in LessonCounts.model_fields if name != "rlas"}
         return LessonCounts(rlas=len(self.rlas), **counted)
 

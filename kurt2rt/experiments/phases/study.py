@@ -111,7 +111,7 @@ class StageOutcome(Settings):
 
 
 class JobOutcome(Outcome):
-    """Stored outcome of one job."""
+    """Result of one job of this study: the steps of one robot, and the drives of the teacher's policy."""
 
     stages: tuple[StageOutcome, ...]
     teachers: tuple[DriveRow, ...] = ()

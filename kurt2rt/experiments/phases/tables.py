@@ -66,7 +66,7 @@ _PAIRED = (
 
 @dataclass(frozen=True, slots=True)
 class PhasesStudy:
-    """Plan and outcomes of the study."""
+    """Results of `kurt2rt study phases` by step and robot, from which tables and figures are made."""
 
     plan: StudyPlan[PhasesTask]
     stages: dict[str, tuple[StageOutcome, ...]]

@@ -36,7 +36,7 @@ class SearchTrials:
 
     @property
     def all(self) -> list[FrozenTrial]:
-        """All trials in order."""
+        """All trials of the search, in the order of their numbers."""
         return self._study.get_trials(deepcopy=False)
 
     def values(self, number: int) -> Values:

@@ -34,7 +34,7 @@ class JobParts(TypedDict):
 
 
 class Outcome(Settings):
-    """Stored outcome of a job."""
+    """Result of a job as its study stores it in JSON, with what made it."""
 
     made_of: Provenance
     seed: int
