@@ -79,8 +79,6 @@ class RuntimeOptions:
     """False if there is no teacher to ask: RLAs whose action was withdrawn are skipped."""
     tolerates_stalls: bool = False
     """True if the robot stalls with this program, because it is simulated in it."""
-    checks_sensors: bool = True
-    """Notice single broken sensors and stop; False for studies of such a fault."""
     asks_at_bumper: bool = True
     """Ask if an RLA pushes on toward what a bumper touches; False for a teacher who cannot see a bumper."""
     appraises: bool = True
@@ -255,7 +253,6 @@ class _Assembly:
 
     def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:
         """Return the parts of the tick."""
-        infrared, checks = self._settings.infrared, self._options.checks_sensors
         appraises = self._options.appraises or self._system.rlas_at(CRITIC)
         return TickParts(
             robot=robot,
@@ -268,8 +265,8 @@ class _Assembly:
             timer=TickTimer(),
             appraisal_perception=AppraisalPerception(self.critic, self._settings) if appraises else None,
             expectations=self.expectations,
-            sensor_watch=SensorWatch(self._settings) if checks else None,
-            substitute=SubstituteReadings(infrared) if checks else None,
+            sensor_watch=SensorWatch(self._settings),
+            substitute=SubstituteReadings(self._settings.infrared),
         )
 
 

@@ -12,14 +12,13 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Simulation, SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.doubt.measures import DriveLog
 from kurt2rt.experiments.lockstep.episode import Episode
-from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
-from kurt2rt.runtime import Runtime
+from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions
 
 _STUCK_S = 15.0
 _AT_OUTLINE_M = 0.05
@@ -83,7 +82,8 @@ async def drive(
     """
     task = with_doubt(task, setup.response)
     with closing(factory.open(setup.world, setup.seed, "doubt")) as simulation:
-        runtime = build_unattended_runtime(simulation, settings, task, events, Statistics())
+        exam = ExamSetup(setup.world, setup.seed, events=events)
+        runtime = build_exam_runtime(simulation, settings, task, exam, RuntimeOptions())
         run = DoubtRun(simulation, runtime, setup, on_progress)
         await run.run(round(setup.duration_s / run.period_s))
         return run.log()

@@ -22,8 +22,7 @@ from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import HoldAction
-from kurt2rt.experiments.lockstep.batch_lesson_settings import build_lesson_settings
-from kurt2rt.experiments.lockstep.batch_mind import choice_of
+from kurt2rt.experiments.lockstep.batch_mind import build_lesson_settings, choice_of
 from kurt2rt.experiments.lockstep.command_checks import require_accepted
 from kurt2rt.experiments.lockstep.episode import StuckDetector
 from kurt2rt.experiments.lockstep.lesson import GivenLesson, TrainingRun

@@ -1,4 +1,4 @@
-"""Minds of a batch, from a task and its knowledge, and the refusal of exams that a batch does not know."""
+"""Minds and settings of a batch, from a task and its knowledge, and the refusal of what a batch does not know."""
 
 from collections.abc import Callable, Sequence
 
@@ -28,6 +28,7 @@ from hal.batch import (
     Turn,
     WallDistance,
 )
+from hal.batch_lesson import LessonDriveSettings
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner_team import LearnerTeam
@@ -43,6 +44,7 @@ from kurt2rt.core.perception.definition import (
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.episode import build_stuck_rule
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
+from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
 
@@ -96,13 +98,60 @@ def require_known_exams(settings: RobotSettings, task: TaskSettings, *, policy: 
     require_known(settings, task, [ExamSetup(task.teaching.world, 0)])
     if policy and not isinstance(task.policy.build(settings.infrared), TabledPolicy):
         raise refused(task, f"policy {task.policy.kind}")
+    _known_parts(settings, task)
+
+
+def require_known_lesson(settings: RobotSettings, task: TaskSettings) -> None:
+    """Check that a batch can teach a task with its teacher. Raises BatchRefusedError."""
+    build_lesson_settings(settings, task)
+
+
+def build_lesson_settings(
+    settings: RobotSettings, task: TaskSettings, choose: Choose | None = None
+) -> LessonDriveSettings:
+    """Return what a batch needs to know of a robot that is taught a task by its teacher.
+
+    `choose`: choice of its actions, for situations in counts; None: RLAs decide, for weighted situations.
+
+    Raises:
+        BatchRefusedError: the batch does not know the task or its teacher.
+        hal.settings.SettingsError: settings of the task do not fit each other.
+    """
+    require_known_robot(settings, task)
+    require_known_task(task)
+    doubt = task.learning.doubt
+    if doubt is not None and doubt.asks:
+        raise refused(task, "a robot that asks at a doubt")
+    policy = task.policy.build(settings.infrared)
+    if not isinstance(policy, TabledPolicy):
+        raise refused(task, f"policy {task.policy.kind}")
+    drive, features = _known_parts(settings, task, weighted=choose is None)
+    return LessonDriveSettings(
+        actions=dict(drive.actions),
+        minimum_ticks=drive.minimum_ticks,
+        behaviours=task.behaviours,
+        policy=policy,
+        features=features,
+        ticks=round(plan_of(task).duration_s / settings.cycle_s),
+        choose=choose,
+    )
+
+
+def _known_parts(
+    settings: RobotSettings, task: TaskSettings, *, weighted: bool = True
+) -> tuple[DriveSettings, FeatureTable]:
+    """Return the actions and the features of a task, which a batch knows all.
+
+    `weighted`: whether the features have the weights of the task, not 1. Raises BatchRefusedError.
+    """
     definition = load_situation(task.situation, settings.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
-    feature_table(definition, settings, weights, task)
-    unknown = sorted(set(load_task_repertoire(task, settings)) - set(build_drive_settings(settings, task).actions))
-    if unknown:
+    features = feature_table(definition, settings, weights if weighted else np.ones_like(weights), task)
+    drive = build_drive_settings(settings, task)
+    if unknown := sorted(set(load_task_repertoire(task, settings)) - set(drive.actions)):
         raise refused(task, f"action {', '.join(unknown)}")
+    return drive, features
 
 
 def build_drive_settings(

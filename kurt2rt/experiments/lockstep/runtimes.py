@@ -1,9 +1,8 @@
-"""Runtimes of simulated robots in lockstep with their world: with a scripted teacher, and without any teacher."""
+"""Runtime of a simulated robot with a scripted teacher, in lockstep with its world."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
 from kurt2rt.core.event_store import EventStore
@@ -79,38 +78,5 @@ def build_training_runtime(
             appraises=appraises,
             recent=recent,
             learners=training.learners,
-        ),
-    )
-
-
-def build_unattended_runtime(
-    simulation: Simulation,
-    settings: RobotSettings,
-    task: TaskSettings,
-    events: Sequence[TeachingEvent],
-    saved: Statistics,
-    robot: Robot | None = None,
-) -> Runtime:
-    """Build the runtime for a drive without a teacher that continues the counters of `saved`.
-
-    Args:
-        robot: driver in place of the simulation's own, for instance with a faulty sensor, which does not stop it.
-
-    Raises:
-        hal.settings.SettingsError: settings do not fit each other.
-        UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
-    """
-    return build_runtime(
-        robot or simulation.robot,
-        settings,
-        task,
-        events,
-        NoTeachingAllowed(),
-        LockstepClock(simulation.step),
-        RuntimeOptions(
-            statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
-            checkpoint=saved,
-            teacher_available=False,
-            checks_sensors=robot is None,
         ),
     )

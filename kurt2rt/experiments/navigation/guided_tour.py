@@ -2,12 +2,12 @@
 
 import random
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from behaviors.metrics.errands import Errands, ErrandsSettings
 from behaviors.metrics.town import Street
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
+from hal.settings import Settings, SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.rla.statistics import Statistics
@@ -24,16 +24,10 @@ from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
 
 
-@dataclass(frozen=True, slots=True)
-class TourResult:
-    """Counters and knowledge of one tour."""
+class TourCounts(Settings):
+    """Counters of one tour."""
 
     teaching_s: float
-    home: Pose
-    named: dict[str, Street]
-    """Named places, each with the street that it is in."""
-    streets: tuple[Street | None, ...]
-    """TaughtStreets in the order of the tour; None where the robot was repositioned."""
     ways: int
     """Transitions from a street to the next that were taught."""
     mid_rlas: int
@@ -43,9 +37,21 @@ class TourResult:
     corrections: int
     """Corrections of the basic level."""
     rescues: int
-    trail: tuple[Place, ...]
-    saved: Statistics
+    led: tuple[Place, ...]
+    """Trail of the tour."""
     knowledge_hash: str
+
+
+class TourResult(NamedTuple):
+    """Counters and knowledge of one tour."""
+
+    counts: TourCounts
+    home: Pose
+    named: dict[str, Street]
+    """Named places, each with the street that it is in."""
+    streets: tuple[Street | None, ...]
+    """Streets in the order of the tour; None where the robot was repositioned."""
+    saved: Statistics
 
 
 def navigation_settings(task: TaskSettings) -> ErrandsSettings:
@@ -172,11 +178,8 @@ class TourRun(Episode):
     def result(self) -> TourResult:
         """Return the counters and the knowledge of the tour."""
         system = self.runtime.level.system
-        return TourResult(
+        counts = TourCounts(
             teaching_s=self._planned_ticks * self.period_s,
-            home=self._home,
-            named=dict(self._guide.named),
-            streets=tuple(self._tracker.streets),
             ways=self._guide.ways,
             mid_rlas=len(system.rlas_at(MID)),
             basic_rlas=len(system),
@@ -184,7 +187,8 @@ class TourRun(Episode):
             missed_junctions=self._guide.missed,
             corrections=self.runtime.handler.corrections,
             rescues=self._rescues,
-            trail=rounded_places(self.trail),
-            saved=self.runtime.snapshot(),
+            led=rounded_places(self.trail),
             knowledge_hash=system.knowledge_hash(),
         )
+        named, streets = dict(self._guide.named), tuple(self._tracker.streets)
+        return TourResult(counts, self._home, named, streets, self.runtime.snapshot())

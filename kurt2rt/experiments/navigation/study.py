@@ -8,46 +8,32 @@ from pathlib import Path
 
 from behaviors.metrics.streets import ALONG
 from behaviors.metrics.town import Street
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.drive_row import Place, rounded_places
+from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.experiments.navigation.exam import GoalOutcome, GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
-from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
+from kurt2rt.experiments.navigation.guided_tour import TourCounts, guided_tour, navigation_settings, street_tracker
 from kurt2rt.experiments.route.study import basic_task_of, streets_of
 from kurt2rt.experiments.study.jobs import JobParts, Outcome, StudyJob, require_places
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import StudyPlan
 from kurt2rt.knowledge.journal.loading import copy_knowledge, read_lessons
+from kurt2rt.runtime import RuntimeOptions
 
 _BESIDE_M = 0.15
-_COUNTED = (
-    *("teaching_s", "ways", "mid_rlas", "basic_rlas", "mid_asks", "missed_junctions", "corrections", "rescues"),
-    "knowledge_hash",
-)
-"""Counters of a tour that are stored as they are."""
 
 
-class ErrandsOutcome(Outcome):
+class ErrandsOutcome(Outcome, TourCounts):
     """Outcome of one robot: a tour and drives to goals."""
 
-    teaching_s: float
-    ways: int
-    """Taught, of all that the town has."""
     ways_in_all: int
-    mid_rlas: int
-    basic_rlas: int
-    mid_asks: int
-    missed_junctions: int
-    corrections: int
-    rescues: int
+    """Number of ways of the town, taught or not."""
     named: dict[str, Place]
     """Position of each name: right of the middle of its street."""
-    led: tuple[Place, ...]
-    """Trail of the tour."""
-    knowledge_hash: str
     errands: tuple[GoalOutcome, ...]
     trail: tuple[Place, ...]
     """Trail of the errands."""
@@ -90,7 +76,9 @@ class NavigationJob(StudyJob):
         goals = choose_goals(town, led.named, led.streets, start, navigation_settings(task), chance)
         whole_s = len(goals) * task.exam.duration_s
         with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
-            runtime = build_unattended_runtime(simulation, robot, task, events, led.saved)
+            counted = StatisticsCounter(dict(led.saved.uses), dict(led.saved.transitions))
+            setup = ExamSetup(exam_world, seed, events=events, saved=led.saved)
+            runtime = build_exam_runtime(simulation, robot, task, setup, RuntimeOptions(statistics=counted))
 
             def on_goal(done: float) -> None:
                 report("errands", done * task.exam.duration_s, whole_s)
@@ -100,10 +88,9 @@ class NavigationJob(StudyJob):
         return ErrandsOutcome(
             made_of=self.made_of,
             seed=seed,
-            **{name: getattr(led, name) for name in _COUNTED},
+            **led.counts.model_dump(),
             ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
             named={name: _shown_at(street) for name, street in led.named.items()},
-            led=led.trail,
             errands=errands,
             trail=rounded_places(run.trail),
         )

@@ -37,7 +37,6 @@ from kurt2rt.experiments.study.figures import SavedFigure
 from kurt2rt.experiments.study.intervals import (
     TEN_MIN_S,
     Rate,
-    RateDifference,
     collisions_in_10_min,
     difference_of,
     fall_of,
@@ -181,7 +180,7 @@ class Paired:
     before: float
     """Mean."""
     after: float
-    difference: RateDifference
+    difference: Rate
     better: int
     """Robots."""
     worse: int

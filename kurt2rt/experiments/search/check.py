@@ -13,7 +13,7 @@ from kurt2rt.experiments.search.score import RobotScore, effort, score_of
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.search.trials import SearchTrials, finished
-from kurt2rt.experiments.study.intervals import RateDifference, difference_of
+from kurt2rt.experiments.study.intervals import Rate, difference_of
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import StudyError
 from kurt2rt.experiments.study.runner import Executor, missing_time_s, run_missing
@@ -40,9 +40,9 @@ class CheckedSettings:
     label: str
     values: Values
     robots: tuple[RobotScore, ...]
-    passed: RateDifference
+    passed: Rate
     """Difference of the share of exams passed; positive is better."""
-    effort: RateDifference
+    effort: Rate
     """Difference of a robot's effort (`effort`); negative is better."""
 
     @property

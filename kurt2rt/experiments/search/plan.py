@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from kurt2rt.core.teacher_settings import load_teacher
-from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
-from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import Engine, Engines, choose_witnesses
 from kurt2rt.experiments.search.score import RobotScore, robot_score
 from kurt2rt.experiments.search.settings import CheckSettings, Robots, SearchSettings

@@ -17,7 +17,7 @@ from kurt2rt.experiments.search.settings import Objective, Robots
 from kurt2rt.experiments.search.space import Values
 from kurt2rt.experiments.search.trials import SearchTrials, finished
 from kurt2rt.experiments.study.figures import SavedFigure, save
-from kurt2rt.experiments.study.intervals import RateDifference
+from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.report import Section, spans, write_report
 from kurt2rt.experiments.study.table import Table, of_text, table_of, to_text
 from kurt2rt.platform.durable_files import write_durably
@@ -96,7 +96,7 @@ def _values(values: Values, keys: Sequence[str]) -> tuple[str, ...]:
     return tuple(f"{values[key]:g}" for key in keys)
 
 
-def _difference(difference: RateDifference, factor: float = 1.0) -> str:
+def _difference(difference: Rate, factor: float = 1.0) -> str:
     value, *ends = (factor * each for each in difference)
     return f"{value:+.1f} ({to_text(ends, '+.1f')})"
 
@@ -192,7 +192,7 @@ def _counts(robots: tuple[RobotScore, ...], objective: Objective) -> dict[str, A
     }
 
 
-def _interval(difference: RateDifference) -> dict[str, float]:
+def _interval(difference: Rate) -> dict[str, float]:
     return {name: round(value, _DIGITS) for name, value in difference._asdict().items()}
 
 

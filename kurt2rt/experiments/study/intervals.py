@@ -21,7 +21,7 @@ TEN_MIN_S = 600.0
 
 
 class Rate(NamedTuple):
-    """A rate and its 95 % interval."""
+    """A rate, or a mean of differences, and its 95 % interval."""
 
     value: float
     low: float
@@ -106,15 +106,7 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
     return at(0.25), at(0.5), at(0.75)
 
 
-class RateDifference(NamedTuple):
-    """A mean of differences and its 95 % interval."""
-
-    value: float
-    low: float
-    high: float
-
-
-def difference_of(changes: Sequence[float], comparisons: int = 1) -> RateDifference:
+def difference_of(changes: Sequence[float], comparisons: int = 1) -> Rate:
     """Return the mean change of the same robots, with an interval bootstrapped over the robots.
 
     The interval of equal changes is a point, and infinite for one robot.
@@ -125,20 +117,20 @@ def difference_of(changes: Sequence[float], comparisons: int = 1) -> RateDiffere
     """
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:
-        return RateDifference(value, -math.inf, math.inf)
+        return Rate(value, -math.inf, math.inf)
     low, high = _bootstrapped(np.mean, changes, tail=_TAIL / comparisons)
-    return RateDifference(value, min(low, value), max(high, value))
+    return Rate(value, min(low, value), max(high, value))
 
 
-def fall_of(before: Sequence[float], after: Sequence[float]) -> RateDifference:
+def fall_of(before: Sequence[float], after: Sequence[float]) -> Rate:
     """Return the relative fall of a sum in the same robots, bootstrapped over the pairs; 0 for a sum of 0 before."""
     value = 1.0 - math.fsum(after) / math.fsum(before) if any(before) else 0.0
     if len(before) == 1:
-        return RateDifference(value, -math.inf, 1.0)
+        return Rate(value, -math.inf, 1.0)
 
     def fall(were: FloatArray, are: FloatArray, axis: int) -> Any:
         sums = were.sum(axis)
         return 1.0 - np.divide(are.sum(axis), sums, out=np.ones_like(sums), where=sums > 0)
 
     low, high = _bootstrapped(fall, before, after)
-    return RateDifference(value, min(low, value), max(high, value))
+    return Rate(value, min(low, value), max(high, value))

@@ -9,8 +9,7 @@ from hal.batch import BatchRefusedError
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
-from kurt2rt.experiments.lockstep.batch_mind import require_known_exams
+from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import StudyJob

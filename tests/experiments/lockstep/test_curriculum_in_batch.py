@@ -9,7 +9,7 @@ import pytest
 from hal.batch import BatchRefusedError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
-from kurt2rt.experiments.lockstep.batch_lesson_settings import require_known_lesson
+from kurt2rt.experiments.lockstep.batch_mind import require_known_lesson
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.lesson import GivenLesson

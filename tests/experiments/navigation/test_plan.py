@@ -88,6 +88,6 @@ def test_guided_tour_counts_the_holds_of_a_person_as_corrections(tmp_path: Path)
             closing(STAGE.open("manhattan", 1, "errands")) as simulation,
         ):
             led = await guided_tour(simulation, ROBOT, task, keeping.training, seed=1, on_progress=lambda _done_s: None)
-            return led.corrections
+            return led.counts.corrections
 
     assert anyio.run(lead) > 0

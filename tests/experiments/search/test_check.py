@@ -22,7 +22,7 @@ from kurt2rt.experiments.search.score import RobotScore
 from kurt2rt.experiments.search.settings import Objective
 from kurt2rt.experiments.search.tables import write_found
 from kurt2rt.experiments.search.trials import SearchTrials
-from kurt2rt.experiments.study.intervals import RateDifference
+from kurt2rt.experiments.study.intervals import Rate
 from kurt2rt.experiments.study.provenance import source_hash
 from kurt2rt.experiments.study.results import StudyError
 from tests.experiments.search.tiny import tiny_plan
@@ -111,10 +111,10 @@ VALUES = {"learning.radius": 512.0, "learning.weights.0.weight": 0.7}
 RECORD = CheckRecord(trials=9, candidates=(7,), date="2026-11-27T04:00:00+00:00")
 
 
-def written(folder: Path, passed: RateDifference) -> dict[str, object]:
+def written(folder: Path, passed: Rate) -> dict[str, object]:
     """Write what a check with this difference found; return the content of the file."""
     robots = (RobotScore(4, 4, 9, 0, 50), RobotScore(3, 4, 11, 0, 60))
-    checked = CheckedSettings("0007", VALUES, robots, passed, RateDifference(-2.0, -3.0, -1.0))
+    checked = CheckedSettings("0007", VALUES, robots, passed, Rate(-2.0, -3.0, -1.0))
     check = CheckResult(RECORD, robots, (checked,), "passed_then_presses")
     write_found(tiny_plan(folder), check, "kurt2rt study search tiny", folder / "found.yaml")
     content: dict[str, object] = yaml.safe_load((folder / "found.yaml").read_text())
@@ -122,7 +122,7 @@ def written(folder: Path, passed: RateDifference) -> dict[str, object]:
 
 
 def test_found_changes_are_taken_by_set(tmp_path: Path) -> None:
-    found = written(tmp_path, RateDifference(0.25, 0.125, 0.375))
+    found = written(tmp_path, Rate(0.25, 0.125, 0.375))
     changes = found["changes"]
     assert isinstance(changes, dict)
     task = load_task("wall_following", changes={key: json.dumps(value) for key, value in changes.items()})
@@ -133,7 +133,7 @@ def test_found_changes_are_taken_by_set(tmp_path: Path) -> None:
 
 
 def test_found_without_better_settings_changes_nothing(tmp_path: Path) -> None:
-    found = written(tmp_path, RateDifference(0.25, -0.125, 0.375))
+    found = written(tmp_path, Rate(0.25, -0.125, 0.375))
     assert found["changes"] == {}
     assert "the shipped settings stay" in str(found["verdict"])
     assert (found["command"], found["date"], found["source"]) == (
