@@ -14,7 +14,6 @@ from kurt2rt.core.learner.learner import Label
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID, Phase, Rla
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
@@ -72,7 +71,6 @@ class TrainingResult:
     corrections: int
     """Corrections of the basic level."""
     rescues: int
-    statistics: StatisticsCounter
     growth: tuple[int, ...]
     """Number of RLAs after each second of teaching."""
     trail: tuple[Position, ...]
@@ -272,7 +270,6 @@ class TrainingRun(Episode):
             asks=len(self.ask_positions),
             corrections=runtime.handler.corrections,
             rescues=self._rescues,
-            statistics=runtime.statistics,
             growth=tuple(self._growth),
             trail=tuple(self.trail),
             ask_positions=tuple(self.ask_positions),

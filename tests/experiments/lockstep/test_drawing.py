@@ -6,7 +6,6 @@ from matplotlib.figure import Figure
 
 from hal.simulation import Position
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.platform.ledger import TickTimer
@@ -31,7 +30,6 @@ def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
         asks=1,
         corrections=52,
         rescues=3,
-        statistics=StatisticsCounter(),
         growth=tuple(range(20)),
         trail=trail,
         ask_positions=trail[1:],
