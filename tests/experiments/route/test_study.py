@@ -31,7 +31,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.study.here import carry_out, parts_in
 from tests.experiments.study.page import Page
 
-COMMAND = "kurt2rt lesson route --seeds 1"
+COMMAND = "kurt2rt train --task route --seeds 1"
 
 
 def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
