@@ -20,7 +20,10 @@ ASKS = {"cause": "unknown", "action": None, "rla": None, "distance": 1100.0, "qu
 # Orange, as in canvas.js: pixels of one canvas in that colour.
 MARKED = """
 const canvas = document.querySelector(arguments[0]);
-const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+const copy = new OffscreenCanvas(canvas.width, canvas.height); // Chromium warns of a canvas that is read repeatedly
+const paint = copy.getContext("2d", { willReadFrequently: true });
+paint.drawImage(canvas, 0, 0);
+const { data } = paint.getImageData(0, 0, canvas.width, canvas.height);
 let count = 0;
 for (let i = 0; i < data.length; i += 4) count += data[i] === 0xd9 && data[i + 1] === 0x48 && data[i + 2] === 0x0f;
 return count;
