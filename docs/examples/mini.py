@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import WheelSpeeds
+from hal.robot_settings import InfraredSettings
 from simbridge.simulation import Kurt2SimulationFactory
 
 Vector = NDArray[np.float64]
@@ -168,9 +169,8 @@ class Mind:
         return rule
 
 
-def seen(counts: Sequence[int]) -> str:
+def seen(counts: Sequence[int], law: InfraredSettings) -> str:
     """Return what the robot sees on each side: the distance of the nearest obstacle in cm, up to 60."""
-    law = load_kurt2().infrared
     nearest = {side: max(counts[number - 1] for number in numbers) for side, numbers in HEADINGS.items()}
     return ", ".join(f"{side} {100 * min(law.distance_m(near), 0.6):.0f} cm" for side, near in nearest.items())
 
@@ -196,7 +196,8 @@ def main() -> None:
     """Drive the simulated robot and be its teacher, until Ctrl-C."""
     print("keys: " + ", ".join(f"{letter} {action}" for letter, action in KEYS.items()) + "; Ctrl-C ends")
     mind, senses, waits, bumps = Mind(), Senses(), True, 0
-    factory = Kurt2SimulationFactory(load_kurt2())
+    robot = load_kurt2()
+    factory = Kurt2SimulationFactory(robot)
     with closing(factory.open("a", 1, "mini")) as simulation, keyboard():
         for tick in count(1):
             simulation.step()
@@ -210,11 +211,8 @@ def main() -> None:
             decision = mind.decide(situation)
             waits = decision.rule is None
             if waits:
-                print(
-                    f"\n{tick * TICK_S:6.2f} s  {seen(readings.infrared_counts)}: I do not know this. ",
-                    end="",
-                    flush=True,
-                )
+                sees = seen(readings.infrared_counts, robot.infrared)
+                print(f"\n{tick * TICK_S:6.2f} s  {sees}: I do not know this. ", end="", flush=True)
             # The world stands still while it waits for an answer.
             action = KEYS.get(key(wait=waits))
             if action is not None and action != decision.action:

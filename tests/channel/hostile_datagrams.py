@@ -9,7 +9,7 @@ import aiocoap
 import cbor2
 from aiocoap.optiontypes import OpaqueOption
 
-from kurt2rt.channel.protocol.codec import PATHS, WireError, body_checks, build_request, decode_request, encode_request
+from kurt2rt.channel.protocol.codec import BODIES, PATHS, WireError, build_request, decode_request, encode_request
 from kurt2rt.channel.protocol.request_types import Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.core.decision.goal import PartialGoal
@@ -162,7 +162,7 @@ class HostileDatagrams:
             "y_m": 1.0,
             "heading_rad": 0.0,
         }
-        return build_request(path, {name: values[name] for name in body_checks(path)})
+        return build_request(path, {name: values[name] for name in BODIES[path]})
 
     def payload(self) -> bytes:
         """Something that may be CBOR."""

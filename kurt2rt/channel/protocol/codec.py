@@ -7,14 +7,14 @@ from typing import Any, get_args
 
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
-from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest, tick_request
+from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest, stream_request, tick_request
 from kurt2rt.channel.protocol.requests import REQUESTS
 from kurt2rt.channel.protocol.schema import decode_strictly, encode_plainly
 from kurt2rt.channel.protocol.state import HoldState, MidState, ShownState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.rla.rla import BASIC, MID
-from kurt2rt.core.teaching.commands import Single, SingleCommand, Stop, Stream, StreamCommand
+from kurt2rt.core.teaching.commands import Single, Stop, Stream
 from kurt2rt.core.teaching.message_fields import (
     LARGEST_NUMBER,
     LONGEST_TEXT,
@@ -69,24 +69,20 @@ PATHS: Mapping[str, Any] = {kind.path: kind for kind in (*REQUESTS, *_COMMANDS)}
 
 _HEADS: Mapping[type, dict[str, Check]] = {kind: checks_of(kind) for kind in (TickRequest, StreamRequest)}
 _CHECKS = {path: checks_of(kind) for path, kind in PATHS.items()}
+_STREAMS = {kind.path for kind in get_args(Stream)}
+_SINGLES = {kind.path for kind in _COMMANDS} - _STREAMS
+
+BODIES: Mapping[str, Mapping[str, Check]] = {
+    **_CHECKS,
+    **{path: _HEADS[StreamRequest] | _CHECKS[path] for path in _STREAMS},
+    **{path: _HEADS[TickRequest] | _CHECKS[path] for path in _SINGLES},
+}
+"""Name and check of each place in the body of a path, in order."""
 
 
 def path_of(request: Request) -> str:
     """Return the path that takes a request."""
     return request.command.path if isinstance(request, TickRequest | StreamRequest) else request.path
-
-
-def body_checks(path: str) -> dict[str, Check]:
-    """Return name and check of each place in the body of a path, in order."""
-    return {**_HEADS.get(_wrapper(path), {}), **_CHECKS[path]}
-
-
-def _wrapper(path: str) -> type:
-    """Return the request that carries the command of a path; a request of its own carries itself."""
-    kind: type = PATHS[path]
-    if issubclass(kind, SingleCommand):
-        return TickRequest
-    return StreamRequest if issubclass(kind, StreamCommand) else kind
 
 
 def encode_request(request: Request) -> bytes:
@@ -102,7 +98,7 @@ def decode_request(path: str, payload: bytes) -> Request:
     if path not in PATHS:
         raise WireError(f"there is no {path} here")
     body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=_REQUEST_DEPTH)
-    checks = body_checks(path)
+    checks = BODIES[path]
     if not isinstance(body, list) or len(body) != len(checks):
         raise WireError(f"{path} takes a list of {len(checks)}: [{', '.join(checks)}]")
     return build_request(
@@ -110,16 +106,16 @@ def decode_request(path: str, payload: bytes) -> Request:
     )
 
 
-def build_request(path: str, values: dict[str, Any]) -> Request:
-    """Return the request to a path with these values by the names of `body_checks`, which are taken out.
+def build_request(path: str, values: Mapping[str, Any]) -> Request:
+    """Return the request to a path with these values by the names of `BODIES`.
 
     A command has no teacher yet; the id of one that counts once lacks the teacher's name.
     """
-    kind, wrapper = PATHS[path], _wrapper(path)
-    if wrapper is TickRequest:
+    kind = PATHS[path]
+    if path in _SINGLES:
         return tick_request(kind, **values)
-    if wrapper is StreamRequest:
-        return StreamRequest(values.pop("boot"), kind(teacher="", **values))
+    if path in _STREAMS:
+        return stream_request(kind, **values)
     request: Request = kind(**values)
     return request
 

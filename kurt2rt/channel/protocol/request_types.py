@@ -1,6 +1,6 @@
 """Base classes of requests, and the types of their fields, each with its check."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, COMMAND_ID_BYTES, LONGEST_WAY_M, UPLOAD_ID_BYTES
@@ -50,9 +50,14 @@ class TickRequest(CommandRequest):
     """Command without its teacher, whose id lacks the teacher's name; its fields follow in the body."""
 
 
+def stream_request(kind: type[Stream], boot: bytes, **own: Any) -> StreamRequest:
+    """Return the request of a message of a stream; `own` are the fields of the command with a check."""
+    return StreamRequest(boot, kind(teacher="", **own))
+
+
 def tick_request(kind: type[Single], boot: bytes, command_id: bytes, seen: int, **own: Any) -> TickRequest:
     """Return the request of a command for the next tick; `own` are the fields of the command with a check."""
     # Some commands do not depend on the state that their teacher saw.
-    if any(each.name == "seen_tick" for each in fields(kind)):
+    if hasattr(kind, "seen_tick"):
         own["seen_tick"] = seen
     return TickRequest(boot, command_id, seen, kind(command_id=command_id.hex(), teacher="", **own))

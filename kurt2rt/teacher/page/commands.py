@@ -6,27 +6,27 @@ from typing import Any
 
 from kurt2rt.channel.protocol.limits import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.protocol.requests import PACKAGE
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.core.teaching import commands
 from kurt2rt.core.teaching.message_fields import (
+    LARGEST_NUMBER,
     MOST_SEGMENTS,
-    SLOWEST_PERCENT,
     Bytes,
     Check,
     Flag,
     Float,
     Int,
     ListOf,
-    OneOf,
-    OneWord,
     OrNone,
     Text,
     WireError,
+    checks_of,
 )
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
 
-_NAME = Text(64, least=1)
-_LEVEL = OneWord((BASIC, MID))
+_NAME, _LEVEL = (checks_of(commands.Teach)[name] for name in ("action", "level"))
+_NUMBER = Int(0, LARGEST_NUMBER)
 _PLACE_M = Float(100.0, "m")
 _MOTION_S = 1.0
 _OTHER_S = 3.0
@@ -70,6 +70,12 @@ def _hexadecimal(length: int) -> Check:
     return check
 
 
+def _single(kind: type[commands.Single], send: _Send) -> CommandKind:
+    """Return the command of the page for one of the tick: the page sends its fields, but for the tick that is meant."""
+    checks = {name: check for name, check in checks_of(kind).items() if name != "decision_tick"}
+    return CommandKind(send, checks, moves=kind.moves)
+
+
 COMMANDS: Mapping[str, CommandKind] = {
     "answer": CommandKind(
         lambda robot, given, tick: robot.answer(
@@ -87,35 +93,28 @@ COMMANDS: Mapping[str, CommandKind] = {
     # Tick of an earlier state, which the page kept and the teacher picked; the robot checks that it still knows it.
     "correct_at": CommandKind(
         lambda robot, given, _: robot.correct(given["action"], of=given["tick"]),
-        {"action": _NAME, "tick": Int(0, 2**53)},
+        {"action": _NAME, "tick": _NUMBER},
     ),
     "teach_shown": CommandKind(
         lambda robot, given, _: robot.teach_shown(given["segments"], press_id=given["press_id"]),
-        {"press_id": Int(0, 2**53), "segments": ListOf(Int(0, MOST_SEGMENTS - 1), most=MOST_SEGMENTS)},
+        {"press_id": _NUMBER, "segments": ListOf(Int(0, MOST_SEGMENTS - 1), most=MOST_SEGMENTS)},
     ),
-    "reward": CommandKind(lambda robot, given, tick: robot.reward(given["value"], of=tick), {"value": OneOf((1, -1))}),
-    "appraise": CommandKind(
-        lambda robot, given, tick: robot.appraise(given["appraisal"], of=tick), {"appraisal": _NAME}
-    ),
+    "reward": _single(commands.Reward, lambda robot, given, tick: robot.reward(given["value"], of=tick)),
+    "appraise": _single(commands.Appraise, lambda robot, given, tick: robot.appraise(given["appraisal"], of=tick)),
     # By id: "the last lesson" would be another one if a second teacher taught meanwhile.
     "undo": CommandKind(lambda robot, given, _: robot.undo(given["lesson"]), {"lesson": Text(128, least=1)}),
-    "phase": CommandKind(
-        lambda robot, given, _: robot.set_phase(given["phase"]),
-        {"phase": OneOf(tuple(each.value for each in Phase), Phase)},
-    ),
-    "lesson_speed": CommandKind(
-        lambda robot, given, _: robot.set_lesson_speed(given["percent"]), {"percent": Int(SLOWEST_PERCENT, 100)}
-    ),
-    "pursue": CommandKind(lambda robot, given, _: robot.pursue(given["behaviour"]), {"behaviour": _NAME}, moves=True),
-    "name": CommandKind(lambda robot, given, tick: robot.name_situation(given["name"], of=tick), {"name": _NAME}),
+    "phase": _single(commands.SetPhase, lambda robot, given, _: robot.set_phase(given["phase"])),
+    "lesson_speed": _single(commands.SetLessonSpeed, lambda robot, given, _: robot.set_lesson_speed(given["percent"])),
+    "pursue": _single(commands.Pursue, lambda robot, given, _: robot.pursue(given["behaviour"])),
+    "name": _single(commands.NameSituation, lambda robot, given, tick: robot.name_situation(given["name"], of=tick)),
     "seek": CommandKind(lambda robot, given, _: robot.seek(given["name"]), {"name": _NAME}, moves=True),
-    "stop_seeking": CommandKind(lambda robot, *_: robot.stop_seeking(), {}, moves=True),
-    "be_at": CommandKind(lambda robot, given, _: robot.set_location(given["name"]), {"name": _NAME}),
-    "begin_session": CommandKind(lambda robot, given, _: robot.begin_session(given["name"]), {"name": _NAME}),
-    "end_session": CommandKind(lambda robot, *_: robot.end_session(), {}),
-    "resume": CommandKind(lambda robot, *_: robot.resume(), {}, moves=True),
-    "take": CommandKind(lambda robot, *_: robot.take(), {}, moves=True),
-    "hand_over": CommandKind(lambda robot, given, _: robot.hand_over(given["to"]), {"to": OrNone(_NAME)}),
+    "stop_seeking": _single(commands.StopSeeking, lambda robot, *_: robot.stop_seeking()),
+    "be_at": _single(commands.BeAt, lambda robot, given, _: robot.set_location(given["name"])),
+    "begin_session": _single(commands.BeginSession, lambda robot, given, _: robot.begin_session(given["name"])),
+    "end_session": _single(commands.EndSession, lambda robot, *_: robot.end_session()),
+    "resume": _single(commands.Resume, lambda robot, *_: robot.resume()),
+    "take": _single(commands.Take, lambda robot, *_: robot.take()),
+    "hand_over": _single(commands.HandOver, lambda robot, given, _: robot.hand_over(given["to"])),
     "save": CommandKind(lambda robot, given, _: robot.save(given["label"]), {"label": Text(64)}),
     "export": CommandKind(lambda robot, *_: robot.export(PACKAGE), {}),
     "examine": CommandKind(lambda robot, *_: robot.examine(), {}),

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.codec import (
+    BODIES,
     PATHS,
     WireError,
-    body_checks,
     build_request,
     decode_answer,
     decode_request,
@@ -109,7 +109,7 @@ def values(check: Check) -> st.SearchStrategy[Any]:
 
 REQUESTS = st.one_of(
     [
-        st.fixed_dictionaries({name: values(check) for name, check in body_checks(path).items()}).map(
+        st.fixed_dictionaries({name: values(check) for name, check in BODIES[path].items()}).map(
             partial(build_request, path)
         )
         for path in PATHS

@@ -8,7 +8,7 @@ from typing import Any
 import cbor2
 import pytest
 
-from kurt2rt.channel.protocol.codec import PATHS, body_checks, encode_state
+from kurt2rt.channel.protocol.codec import BODIES, PATHS, encode_state
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.core.decision.standing import Standing, StandReason
@@ -62,7 +62,7 @@ def test_wire_page_rows_have_the_documented_places(key: str) -> None:
 
 
 def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
-    assert {path: len(body) for path, body in bodies().items()} == {path: len(body_checks(path)) for path in PATHS}
+    assert {path: len(body) for path, body in bodies().items()} == {path: len(BODIES[path]) for path in PATHS}
 
 
 def test_every_reason_to_stand_is_explained() -> None:
@@ -111,7 +111,7 @@ def in_words(check: object) -> str:
 @pytest.mark.parametrize("path", sorted(PATHS))
 def test_the_range_of_every_place_is_written(path: str) -> None:
     written = ranges()
-    for word, check in zip(bodies()[path], body_checks(path).values(), strict=True):
+    for word, check in zip(bodies()[path], BODIES[path].values(), strict=True):
         name = word.removesuffix(" or null")
         takes = in_words(check)
         if name != word:
