@@ -1,6 +1,5 @@
 """`kurt2rt doctor`."""
 
-import json
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +12,7 @@ from rich.text import Text
 from hal.errors import ExitCode
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus
 from kurt2rt.checks.doctor.checks import run_checks
-from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 
@@ -22,7 +21,7 @@ _STYLES = {CheckStatus.OK: "green", CheckStatus.WARNING: "yellow", CheckStatus.M
 
 def doctor(
     folder: Annotated[Path, typer.Option(help="The folder where knowledge is kept.")] = Path("var"),
-    json: AsJson = False,
+    as_json: AsJson = False,
     ticks: Annotated[
         int,
         typer.Option(metavar="N", min=1, help="Ticks to time; each takes 20 ms, and more of them find rarer lateness."),
@@ -31,12 +30,12 @@ def doctor(
     """Check what this machine offers the robot, and what to do.
 
     Measures how late the timer is compared with asyncio.sleep, and how long the
-    disk takes to save a lesson. Checks clock, real-time priority, memory lock,
-    cores, CAN, SQLite and the simulator's packages. Changes nothing, and needs
-    neither a robot nor a display.
+    disk takes to save a lesson. Checks real-time priority, cores, CAN, SQLite and
+    the simulator's packages. Changes nothing, and needs neither a robot nor a
+    display.
 
-    Ends with code 1 only if kurt2rt run cannot work here: without Python, the
-    timer, or a disk for knowledge. CAN is not needed: the simulated robot does
+    Ends with code 1 only if kurt2rt run cannot work here: without the timer, or
+    a disk for knowledge. CAN is not needed: the simulated robot does
     without.
 
     For example:
@@ -45,28 +44,13 @@ def doctor(
     """
     with Console(stderr=True).status("looking at this machine ..."):
         findings = run_checks(folder, ticks)
-    if json:
-        typer.echo(as_json(findings))
+    if as_json:
+        told = ("code", "subject", "status", "found", "what_to_do", "needed")
+        print_json([{key: getattr(finding, key) for key in told} for finding in findings])
     else:
         print_report(findings, console_of())
     if any(finding.forbids_run for finding in findings):
         raise typer.Exit(ExitCode.FAILED)
-
-
-def as_json(findings: Sequence[CheckResult]) -> str:
-    """Return a JSON list with one object per finding."""
-    return json.dumps([_row(finding) for finding in findings], indent=2)
-
-
-def _row(finding: CheckResult) -> dict[str, object]:
-    return {
-        "code": finding.code,
-        "subject": finding.subject,
-        "status": finding.status,
-        "found": finding.found,
-        "what_to_do": finding.what_to_do,
-        "needed": finding.needed,
-    }
 
 
 def print_report(findings: Sequence[CheckResult], console: Console) -> None:

@@ -7,7 +7,6 @@ from kurt2rt.cli.doctor import summary
 
 _VALUES: dict[str, float | str] = {
     "version": "3.11.7",
-    "least": "3.11",
     "name": "can0",
     "used_for": "tables",
     "fault": "no module",
@@ -21,18 +20,10 @@ _VALUES: dict[str, float | str] = {
     "asyncio_median_ms": 1.0,
     "asyncio_worst_ms": 2.0,
     "error": "refused",
-    "resolution_ns": 1.0,
-    "source": "tsc",
-    "limit": "0",
-    "capability": "without",
-    "limit_mib": 8.0,
-    "mapped_mib": 300.0,
     "usable": 1,
     "cores": 4,
     "governors": "performance on 2 cores",
     "folder": "/x",
-    "numpy": "2.1",
-    "libraries": "openblas 1",
     "parent": "/",
     "free_gb": 0.5,
     "times": 20,
@@ -50,7 +41,7 @@ def findings() -> Iterator[tuple[str, str]]:
 
 def summaries() -> Iterator[tuple[str, str]]:
     """Yield the last line of the report, of a machine that can run the robot program and of one that cannot."""
-    fine = CheckResult(FindingCode.PYTHON, CheckStatus.OK, needed=True)
+    fine = CheckResult(FindingCode.SQLITE_LOG, CheckStatus.OK, needed=True)
     no_folder = CheckResult(FindingCode.FOLDER_UNWRITABLE, CheckStatus.MISSING, _VALUES, needed=True)
     yield "can start", summary([fine])
     yield "cannot start", summary([fine, no_folder])

@@ -1,4 +1,4 @@
-"""Checks of CAN: kernel support, interfaces, and a virtual one."""
+"""Checks of CAN: kernel support and interfaces with hardware."""
 
 import os
 import socket
@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sysfs import read_attribute
 
 NET_FOLDER = Path("/sys/class/net")
 MODULES_FOLDER = Path("/lib/modules", os.uname().release)
@@ -31,7 +30,7 @@ def check_can_kernel(
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
-        code = FindingCode.CAN_UNLOADED if _has_module("can-raw", modules) else FindingCode.CAN_MISSING
+        code = FindingCode.CAN_UNLOADED if _has_can_module(modules) else FindingCode.CAN_MISSING
         return CheckResult(code, CheckStatus.MISSING, {"error": str(error)})
     return CheckResult(FindingCode.CAN, CheckStatus.OK)
 
@@ -46,22 +45,6 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
         values = {"folder": str(net), "up": _up_command("can0")}
         return (CheckResult(FindingCode.CAN_INTERFACE_NONE, CheckStatus.MISSING, values),)
     return tuple(_check_interface(each) for each in interfaces)
-
-
-def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> CheckResult:
-    """Check for a virtual CAN interface, which tests need and a robot does not.
-
-    `net`, `modules`: folders of the kernel.
-    """
-    interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
-    for each in interfaces:
-        if _is_up(each):
-            return CheckResult(FindingCode.VCAN, CheckStatus.OK, {"name": each.name})
-    if interfaces:
-        return CheckResult(FindingCode.VCAN_DOWN, CheckStatus.WARNING, {"name": interfaces[0].name})
-    if not _has_module("vcan", modules):
-        return CheckResult(FindingCode.VCAN_NO_MODULE, CheckStatus.WARNING, {"folder": str(modules)})
-    return CheckResult(FindingCode.VCAN_NONE, CheckStatus.WARNING)
 
 
 def _check_interface(interface: Path) -> CheckResult:
@@ -92,7 +75,15 @@ def _up_command(name: str) -> str:
     return f"sudo ip link set {name} up{bit_rate}"
 
 
-def _has_module(module: str, modules: Path) -> bool:
-    """Return whether the running kernel has this module, loadable or built in."""
-    lists = [modules / "modules.dep", modules / "modules.builtin"]
-    return any(f"/{module}.ko" in each.read_text(encoding="utf-8") for each in lists if each.is_file())
+def _has_can_module(modules: Path) -> bool:
+    """Return whether the running kernel can load CAN."""
+    dependencies = modules / "modules.dep"
+    return dependencies.is_file() and "/can-raw.ko" in dependencies.read_text(encoding="utf-8")
+
+
+def read_attribute(path: Path) -> str:
+    """Return the text of a file in /sys; empty if the kernel has none, as the carrier of an interface that is down."""
+    try:
+        return path.read_text(encoding="ascii").strip()
+    except OSError:
+        return ""

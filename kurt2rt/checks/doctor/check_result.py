@@ -15,9 +15,6 @@ _TIMER = (
     "{ticks} ticks of {period_ms:g} ms: timerfd median {median_ms:.3f} ms late, worst {worst_ms:.3f}; "
     "asyncio.sleep median {asyncio_median_ms:.3f} ms late, worst {asyncio_worst_ms:.3f}; ratio {ratio:.1f}"
 )
-_CLOCK = "resolution {resolution_ns:.0f} ns, source {source}"
-_LIMIT_MIB = "RLIMIT_MEMLOCK {limit_mib:.0f} MiB"
-_MAPPED = f"{_LIMIT_MIB}, a process like this one maps {{mapped_mib:.0f}} MiB"
 
 
 class CheckStatus(StrEnum):
@@ -43,8 +40,6 @@ class FindingCode(StrEnum):
         member.subject, member.found, member.what_to_do = subject, found, what_to_do
         return member
 
-    PYTHON = ("python", "Python", "{version}")
-    PYTHON_OLD = ("python old", "Python", "{version}", "install Python {least} or newer and make a new .venv with it")
     PACKAGE = ("package", "{name}", "{version}, for {used_for}")
     PACKAGE_MISSING = (
         "package missing",
@@ -65,40 +60,13 @@ class FindingCode(StrEnum):
         "no timerfd ({error})",
         "run on Linux, outside of sandboxes that refuse timerfd_create",
     )
-    CLOCK = ("clock", "clock", _CLOCK)
-    CLOCK_COARSE = (
-        "clock coarse",
-        "clock",
-        f"{_CLOCK}: ticks would follow the kernel's jiffies",
-        "use a kernel with CONFIG_HIGH_RES_TIMERS, booted without highres=off",
-    )
-    CLOCK_SLOW = (
-        "clock slow",
-        "clock",
-        f"{_CLOCK}: slow to read",
-        "boot with clocksource=tsc, if dmesg does not call the TSC unstable",
-    )
-    PRIORITY = (
-        "priority",
-        "real-time priority",
-        "SCHED_FIFO granted; RLIMIT_RTPRIO {limit}, {capability} CAP_SYS_NICE",
-    )
+    PRIORITY = ("priority", "real-time priority", "SCHED_FIFO granted")
     PRIORITY_REFUSED = (
         "priority refused",
         "real-time priority",
-        "not permitted ({error}), so ticks are missed while other programs are busy; "
-        "RLIMIT_RTPRIO {limit}, {capability} CAP_SYS_NICE",
+        "not permitted ({error}), so ticks are missed while other programs are busy",
         "the unit of kurt2rt service install is permitted it; by hand: "
         f'echo "$USER - rtprio 50" | sudo tee -a {_LIMITS_FILE}, then log in again',
-    )
-    MEMORY_LOCK_UNLIMITED = ("memory lock unlimited", "memory lock", "RLIMIT_MEMLOCK unlimited")
-    MEMORY_LOCK_CAPABLE = ("memory lock capable", "memory lock", f"{_LIMIT_MIB}, but CAP_IPC_LOCK sets no limit")
-    MEMORY_LOCK_LARGE = ("memory lock large", "memory lock", _MAPPED)
-    MEMORY_LOCK_SMALL = (
-        "memory lock small",
-        "memory lock",
-        _MAPPED,
-        f'echo "$USER - memlock unlimited" | sudo tee -a {_LIMITS_FILE}, then log in again',
     )
     CORES = ("cores", "cores", "{usable} usable of {cores}")
     CORES_FEW = (
@@ -115,15 +83,6 @@ class FindingCode(StrEnum):
         "{governors}",
         "echo performance | sudo tee {folder}/cpu*/cpufreq/scaling_governor",
     )
-    BLAS = ("blas", "BLAS threads", "numpy {numpy}: {libraries}")
-    BLAS_MANY = (
-        "blas many",
-        "BLAS threads",
-        "numpy {numpy}: {libraries}",
-        "export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1",
-    )
-    SQLITE = ("sqlite", "SQLite", "{version}")
-    SQLITE_OLD = ("sqlite old", "SQLite", "{version}", "use a Python that brings SQLite {least} or newer")
     SQLITE_LOG = ("sqlite log", "SQLite log", "write-ahead log works next to a reader")
     SQLITE_LOG_FAILS = (
         "sqlite log fails",
@@ -169,15 +128,6 @@ class FindingCode(StrEnum):
         "up, but off the bus",
         "check cable, terminators and bit rate; sudo ip link set {name} down; {up}",
     )
-    VCAN = ("vcan", "virtual CAN", "{name}, up")
-    VCAN_DOWN = ("vcan down", "virtual CAN", "{name}, down", "sudo ip link set {name} up")
-    VCAN_NONE = (
-        "vcan none",
-        "virtual CAN",
-        "no interface, but the module vcan is there",
-        "sudo modprobe vcan && sudo ip link add dev vcan0 type vcan && sudo ip link set vcan0 up",
-    )
-    VCAN_NO_MODULE = ("vcan no module", "virtual CAN", "no interface, no module vcan in {folder}", _OTHER_KERNEL)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""All checks in the order of the report; here are those of Python, the processor and the knowledge folder."""
+"""All checks in the order of the report; here are those of packages, the processor and the knowledge folder."""
 
 import os
 import shutil
@@ -9,23 +9,19 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from functools import cache
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import BinaryIO
 
-import numpy as np
-from threadpoolctl import threadpool_info
-
-from kurt2rt.checks.doctor.can_bus import check_can_interfaces, check_can_kernel, check_vcan
+from kurt2rt.checks.doctor.can_bus import check_can_interfaces, check_can_kernel, read_attribute
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.privileges import check_memory_lock, check_real_time_priority
-from kurt2rt.checks.doctor.sysfs import read_attribute
-from kurt2rt.checks.doctor.timer import check_clock, check_timer
+from kurt2rt.checks.doctor.timer import check_timer
+from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
-LEAST_PYTHON = (3, 11)
 CPU_FOLDER = Path("/sys/devices/system/cpu")
 SYNC_TIMES = 20
 SYNC_LIMIT_S = 0.02
@@ -34,40 +30,25 @@ LEAST_BYTES = 64 * 1024 * 1024
 WANTED_BYTES = 1024 * 1024 * 1024
 """Recommended free space, most of it for recorded runs."""
 _PAGE_BYTES = 4096
-LEAST_SQLITE = (3, 37, 0)
-"""First version with STRICT tables."""
+_HIGHEST_PRIORITY = UNIT_PRIORITY + 1
+"""Priority of the threads that must preempt a hanging loop."""
 
 
 def run_checks(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
     """Run all checks; `folder` is that of the knowledge. Changes nothing. Takes 20 ms per tick."""
     return (
-        check_python(),
         check_timer(ticks),
-        check_clock(),
         check_real_time_priority(),
-        check_memory_lock(),
         check_cores(),
         check_governor(),
-        check_blas_threads(),
-        check_sqlite(),
         *check_disk(folder),
         check_can_kernel(),
         *check_can_interfaces(),
-        check_vcan(),
         check_package("foxglove", "recordings of runs", "recording"),
         check_package("pymunk", "the simulator's physics"),
         check_package("shapely", "the simulator's worlds"),
         check_package("matplotlib", "drawing to files, without a display"),
     )
-
-
-def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckResult:
-    """Check that Python is new enough."""
-    name = ".".join(map(str, found))
-    if found[:2] < LEAST_PYTHON:
-        least = ".".join(map(str, LEAST_PYTHON))
-        return CheckResult(FindingCode.PYTHON_OLD, CheckStatus.MISSING, {"version": name, "least": least}, needed=True)
-    return CheckResult(FindingCode.PYTHON, CheckStatus.OK, {"version": name}, needed=True)
 
 
 def check_package(name: str, used_for: str, extra: str = "simulation", python: str = sys.executable) -> CheckResult:
@@ -102,6 +83,23 @@ def _import_fault(name: str, python: str) -> str:
     return said[-1] if said else f"the import ended with code {trial.returncode}"
 
 
+def check_real_time_priority(
+    set_scheduler: Callable[[int, int, os.sched_param], None] = os.sched_setscheduler,
+) -> CheckResult:
+    """Check that the kernel grants SCHED_FIFO at the service's priorities.
+
+    A trial decides, because a control group may refuse. It runs in a thread that ends, so that nothing keeps the
+    priority.
+    """
+    with ThreadPoolExecutor(max_workers=1) as thread:
+        trial = thread.submit(set_scheduler, 0, os.SCHED_FIFO, os.sched_param(_HIGHEST_PRIORITY))
+    try:
+        trial.result()
+    except OSError as error:
+        return CheckResult(FindingCode.PRIORITY_REFUSED, CheckStatus.WARNING, {"error": str(error.strerror)})
+    return CheckResult(FindingCode.PRIORITY, CheckStatus.OK)
+
+
 def check_cores(usable: int | None = None) -> CheckResult:
     """Check for a core for the ticks and another for everything else. `usable`: number of cores; None: measure."""
     if usable is None:
@@ -124,16 +122,6 @@ def check_governor(cpu_folder: Path = CPU_FOLDER) -> CheckResult:
     return CheckResult(
         FindingCode.GOVERNOR_SAVING, CheckStatus.WARNING, {"governors": found, "folder": str(cpu_folder)}
     )
-
-
-def check_blas_threads() -> CheckResult:
-    """Check that numpy's linear algebra uses one thread; a match is too small for more, and idle threads spin."""
-    libraries = [each for each in threadpool_info() if each["user_api"] == "blas"]
-    found = ", ".join(f"{each['internal_api']} {each['num_threads']}" for each in libraries) or "no BLAS that tells"
-    values = {"numpy": np.__version__, "libraries": found}
-    if all(each["num_threads"] == 1 for each in libraries):
-        return CheckResult(FindingCode.BLAS, CheckStatus.OK, values)
-    return CheckResult(FindingCode.BLAS_MANY, CheckStatus.WARNING, values)
 
 
 def check_disk(folder: Path) -> tuple[CheckResult, ...]:
@@ -194,21 +182,17 @@ def fsync_ns(file: BinaryIO) -> int:
     return time.perf_counter_ns() - begun_ns
 
 
-def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> CheckResult:
-    """Check that Python's SQLite is new enough for the journal."""
-    name = ".".join(map(str, found))
-    if found < LEAST_SQLITE:
-        least = ".".join(map(str, LEAST_SQLITE))
-        return CheckResult(FindingCode.SQLITE_OLD, CheckStatus.MISSING, {"version": name, "least": least}, needed=True)
-    return CheckResult(FindingCode.SQLITE, CheckStatus.OK, {"version": name}, needed=True)
-
-
 def check_sqlite_log(folder: Path) -> CheckResult:
     """Check that a write-ahead log works in this folder; on most network disks it does not."""
     path = folder / "log.sqlite"
     try:
         with closing(_connect(path)) as writer, closing(_connect(path)) as reader:
-            fault = log_fault(writer, reader)
+            (mode,) = writer.execute("PRAGMA journal_mode = WAL").fetchone()
+            fault = "" if mode == "wal" else f"journal mode stays {mode}"
+            writer.execute("CREATE TABLE lesson (number INTEGER)")
+            reader.execute("BEGIN")
+            reader.execute("SELECT * FROM lesson").fetchall()
+            writer.execute("INSERT INTO lesson VALUES (1)")  # without a log this would wait for the reader, and fail
     except sqlite3.Error as error:
         fault = str(error)
     if fault:
@@ -218,24 +202,3 @@ def check_sqlite_log(folder: Path) -> CheckResult:
 
 def _connect(path: Path) -> sqlite3.Connection:
     return sqlite3.connect(path, timeout=0.2, isolation_level=None)
-
-
-def log_fault(writer: sqlite3.Connection, reader: sqlite3.Connection) -> str:
-    """Return the fault of a write during another program's read, in words; empty without a fault."""
-    (mode,) = writer.execute("PRAGMA journal_mode = WAL").fetchone()
-    if mode != "wal":
-        return f"journal mode stays {mode}"
-    writer.execute("PRAGMA synchronous = FULL")
-    writer.execute("CREATE TABLE lesson (number INTEGER)")
-    reader.execute("BEGIN")
-    before = _lessons(reader)
-    writer.execute("INSERT INTO lesson VALUES (1)")  # without a log this would wait for the reader, and fail
-    during = _lessons(reader)
-    reader.execute("COMMIT")
-    seen = (before, during, _lessons(reader))
-    return "" if seen == (0, 0, 1) else f"a reader saw {seen} lessons before, during and after, not (0, 0, 1)"
-
-
-def _lessons(connection: sqlite3.Connection) -> int:
-    (count,) = connection.execute("SELECT count(*) FROM lesson").fetchone()
-    return int(count)

@@ -6,23 +6,16 @@ import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from pathlib import Path
 
 import anyio
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sysfs import read_attribute
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 
 PERIOD_S = 0.01
 TOLERABLE_MEDIAN_S = 0.001
 """Limit of the median lateness; a timerfd is about 0.1 ms late, the event loop's sleep 1 ms."""
-COARSE_RESOLUTION_S = 1e-6
-"""Limit of the resolution: 1 ns with high-resolution timers, 1 to 10 ms without."""
-SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
-"""Clock sources that take a microsecond or more to read."""
-CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
 
 
 class AsyncioClock:
@@ -84,16 +77,3 @@ def check_timer(
     if ours.median_s > TOLERABLE_MEDIAN_S or ours.worst_s >= period_s:
         return CheckResult(FindingCode.TIMER_LATE, CheckStatus.WARNING, values, needed=True)
     return CheckResult(FindingCode.TIMER, CheckStatus.OK, values, needed=True)
-
-
-def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> CheckResult:
-    """Check the resolution (s) and the source of the monotonic clock."""
-    if resolution_s is None:
-        resolution_s = time.get_clock_info("monotonic").resolution
-    name = read_attribute(source) or "unknown"
-    values: dict[str, float | str] = {"resolution_ns": resolution_s * 1e9, "source": name}
-    if resolution_s > COARSE_RESOLUTION_S:
-        return CheckResult(FindingCode.CLOCK_COARSE, CheckStatus.WARNING, values)
-    if name in SLOW_CLOCK_SOURCES:
-        return CheckResult(FindingCode.CLOCK_SLOW, CheckStatus.WARNING, values)
-    return CheckResult(FindingCode.CLOCK, CheckStatus.OK, values)
