@@ -60,3 +60,14 @@ class UserError(Exception):
     def __str__(self) -> str:
         """Return the line."""
         return (f"{self.where}: " if self.where else "") + self.what + (f"; {self.do}" if self.do else "")
+
+
+class CodedError(UserError):
+    """An error whose line is the text of a code."""
+
+    code: TextCode
+
+    def __init__(self, code: TextCode, *, where: object = "", **fields: object) -> None:
+        """Fill the gaps in the code's texts with `fields`; `where` is as in `UserError`."""
+        super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
+        self.code = code

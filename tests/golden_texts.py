@@ -18,7 +18,6 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from tests.texts import (
-    access,
     commission,
     doctor,
     health,
@@ -60,7 +59,6 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "troubles": health.troubles,
     },
     "reports": {
-        "access of a unit": access.findings,
         "errors of a unit": units.errors,
         "errors of a status": units.status_errors,
         "health report": health.reports,

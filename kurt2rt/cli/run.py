@@ -131,8 +131,7 @@ class _Options:
         bool,
         typer.Option(
             "--service",
-            help="Run as a systemd unit does (kurt2rt service): wait for bus, disk and network, stand until Go, and "
-            "read the settings again at SIGHUP.",
+            help="Run as a systemd unit does (kurt2rt service): wait for bus, disk and network, and stand until Go.",
         ),
     ] = False
     seconds: Annotated[
@@ -282,7 +281,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     )
     if run_options.unrecorded:
         screen.print_line(run_options.unrecorded, "yellow")
-    return RobotProgram(run_options, lambda: _changed(options, task), robot, taught, screen)
+    return RobotProgram(run_options, settings, robot, taught, screen)
 
 
 def _run_options(options: _Options, live_view: tuple[str, int] | None, *, recorded: bool) -> "RunOptions":

@@ -9,23 +9,17 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from hal.errors import ExitCode
 from hal.plugins import Plugin, is_target, loaded_plugins
 from hal.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
-from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
-from kurt2rt.service.systemd.access import RequiredAccess, access_text, paths_to_chown, private_paths
+from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, require_access, start_command
 from kurt2rt.service.systemd.install import install as install_unit
-from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
-from kurt2rt.service.systemd.installation import start_command
 from kurt2rt.service.systemd.unit import STATE, Unit, build_unit, require_name
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
-from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
 
 service = typer.Typer(
     help="Run the robot's program as a unit of systemd.\n\nIt starts with the machine, and restarts after a crash.",
@@ -46,11 +40,6 @@ class _UnitOptions:
     page: Annotated[bool, typer.Option("--page", help="Let the unit serve the teacher's page as well.")] = False
 
 
-@dataclass(frozen=True, slots=True)
-class _CheckOptions(_UnitOptions):
-    as_json: AsJson = False
-
-
 @service.command()
 @takes_options(_UnitOptions)
 def show(options: _UnitOptions) -> None:
@@ -62,50 +51,6 @@ def show(options: _UnitOptions) -> None:
     """
     unit, _ = _unit(options)
     typer.echo(unit.service, nl=False)
-
-
-@service.command()
-@takes_options(_CheckOptions)
-def check(options: _CheckOptions) -> None:
-    """Check the unit by systemd's own tools: whether it loads, and what it may do.
-
-    Changes nothing. Ends with code 1 if the unit does not load. Also if its user
-    cannot read this installation or the settings, or cannot write its folders.
-    Also if its exposure (systemd-analyze security, 0 to 10, less is safer) is
-    above 2. Ends with code 2 if the name belongs to another program.
-
-    For example:
-
-        kurt2rt service check --bus can0 --settings my-runtime.yaml
-    """
-    name = options.name
-    require_free(name)
-    unit, wanted = _unit(options)
-    found = verify(unit)
-    obstacles = (*private_paths(wanted), *paths_to_chown(name, wanted))
-    wrong = (*found.complaints, *map(access_text, obstacles))
-    passed = found.passed and not wrong
-    if options.as_json:
-        told = {
-            "unit": f"{name}.service",
-            "passed": passed,
-            "exposure": found.exposure,
-            "exposure_limit": MOST_EXPOSURE,
-        }
-        print_json({**told, "open": tuple(map(str, found.open)), "wrong": wrong})
-    else:
-        console = Console()
-        for setting in found.open:
-            console.print(f"open: {setting}", markup=False, highlight=False, soft_wrap=True)
-        console.print(
-            f"exposure {found.exposure} of 10, at most {MOST_EXPOSURE} is well", markup=False, highlight=False
-        )
-        for line in wrong:
-            console.print(line, style="red", markup=False, highlight=False, soft_wrap=True)
-        if passed:
-            console.print(f"{name}.service loads")
-    if not passed:
-        raise typer.Exit(ExitCode.FAILED)
 
 
 @service.command()
@@ -123,12 +68,11 @@ def install(options: _UnitOptions) -> None:
     """
     unit, wanted = _unit(options)
     name = options.name
-    for obstacle in private_paths(wanted):
-        raise UnitError(UnitCode.NO_ACCESS, says=access_text(obstacle))
+    require_access(wanted)
     for path in install_unit(unit):
         typer.echo(f"{path} is written")
     for finding in paths_to_chown(name, wanted):
-        typer.echo(f"first of all: {access_text(finding)}")
+        typer.echo(f"first of all: {finding}")
     typer.echo(f"start it, now and with the machine: systemctl enable --now {name}")
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.access import start_command
 
 POLL_S = 1.0
 """Period of the checks whether children run, and first delay of a restart, in s."""

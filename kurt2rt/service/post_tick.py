@@ -15,11 +15,9 @@ from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_do
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.gc_control import collect_young
-from kurt2rt.runs.recording.budget import budget_of
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.health.monitor import HealthMonitor
-from kurt2rt.service.settings import ServiceSettings
 
 if TYPE_CHECKING:
     from kurt2rt.runs.recording.recorder import RunRecorder
@@ -80,7 +78,9 @@ class PostTick:
         self._recorder = recorder
         self._words = words_for(runtime.robot.infrared)
         self._ticks_per_second = round(1 / runtime.robot.cycle_s)
-        self._set_periods(service.settings)
+        settings, period_s = service.settings, runtime.robot.cycle_s
+        self._checkpoint_ticks = round(settings.checkpoint_period_s / period_s)
+        self._status_ticks = round(settings.status_period_s / period_s)
         self._unsaved: dict[str, str] = {}
         """Texts of lessons that are not durable yet, by command id."""
         self.last: ProgramStatus | None = None
@@ -113,12 +113,6 @@ class PostTick:
         if ticks % self._ticks_per_second == 0:
             collect_young()
 
-    def apply_settings(self, settings: ServiceSettings) -> None:
-        """Apply the periods and the budget for recordings of reloaded settings."""
-        self._set_periods(settings)
-        if self._recorder is not None:
-            self._recorder.set_budget(budget_of(settings.recordings_mb))
-
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """Publish that a lesson is durable, or that it can never be."""
         if acknowledgement.stamped_at:
@@ -138,11 +132,6 @@ class PostTick:
         Raises KnowledgeError after the journal was closed.
         """
         self._writer.submit_statistics(self._runtime.snapshot())
-
-    def _set_periods(self, settings: ServiceSettings) -> None:
-        period_s = self._runtime.robot.cycle_s
-        self._checkpoint_ticks = round(settings.checkpoint_period_s / period_s)
-        self._status_ticks = round(settings.status_period_s / period_s)
 
     def _show_status(self, record: TickRecord) -> None:
         self.last = ProgramStatus(

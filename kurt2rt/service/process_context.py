@@ -1,10 +1,8 @@
 """Context of the process around the service: signals, service manager, threads."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from threading import Thread
 
-from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.shutdown import ShutdownHandler
 from kurt2rt.service.systemd.notifier import Notifier
 
@@ -15,11 +13,7 @@ class ProcessContext:
 
     shutdown: ShutdownHandler
     notifier: Notifier
-    reloader: ConfigReloader | None = None
-    """None: settings are not reloaded."""
     liveness: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
     """Checks of what must be alive for the heartbeat, without the loop, by name."""
-    guard_threads: Callable[[], Iterable[Thread]] = tuple
-    """Returns the threads that must preempt the loop."""
     log: Callable[[str], None] = lambda _: None
     """Gets a line for the log. The loop calls it: it may not wait."""

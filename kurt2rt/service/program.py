@@ -2,7 +2,6 @@
 
 import gc
 import math
-import signal
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -29,7 +28,6 @@ from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.bus_names import SHARED
 from kurt2rt.service.child_processes import ChildProcesses
-from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.console_thread import ConsoleThread
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.live_exam import LiveExam
@@ -60,28 +58,24 @@ class RobotProgram:
     def __init__(
         self,
         options: RunOptions,
-        read_settings: Callable[[], ServiceSettings],
+        settings: ServiceSettings,
         robot: RobotSettings,
         task: TaskSettings,
         screen: ProgramScreen,
         environment: ProgramEnvironment | None = None,
     ) -> None:
-        """Read the settings; nothing is opened before `run`.
+        """Open nothing before `run`.
 
         Args:
             options: options of the command line.
-            read_settings: reads the runtime settings and applies the command line to them.
+            settings: runtime settings with the command line applied to them.
             robot: settings of the robot.
             task: task of the first run.
             screen: output of the program.
             environment: opener of the robot and times; None: those of `kurt2rt run`.
-
-        Raises:
-            SettingsError: the runtime settings cannot be read.
         """
         self._options = options
-        self._read_settings = read_settings
-        self._service = self._read()
+        self._service = with_unit_priority(settings) if options.as_service else settings
         self._robot = robot
         self._task = task
         self._screen = screen
@@ -94,11 +88,6 @@ class RobotProgram:
         self._startup: ProgramStartup | None = None
         """Startup of the present run; None before the first one, and from a run's end to the next one."""
 
-    def _read(self) -> ServiceSettings:
-        """Return the settings as they are now. Raises SettingsError."""
-        settings = self._read_settings()
-        return with_unit_priority(settings) if self._options.as_service else settings
-
     def run(self) -> None:
         """Run until a user or a signal ends it.
 
@@ -109,14 +98,10 @@ class RobotProgram:
         end = "" if options.as_service else "; Ctrl-C ends"
         with self._program_stack as stack:
             notifier = stack.enter_context(Notifier())
-            reloader = ConfigReloader(self._read, service, notifier, self._log) if options.as_service else None
-            others = {} if reloader is None else {signal.SIGHUP: reloader.request}
-            shutdown = stack.enter_context(ShutdownHandler(others=others, on_timeout=self._environment.on_timeout))
+            shutdown = stack.enter_context(ShutdownHandler(on_timeout=self._environment.on_timeout))
             # Not before: a reader of the line may send a signal at once.
             self._screen.print_line(f"task {self._task.name}, robot {options.bus}, knowledge {service.knowledge}{end}")
-            self._context = ProcessContext(
-                shutdown, notifier, reloader, self._liveness(), self._guard_threads, self._log
-            )
+            self._context = ProcessContext(shutdown, notifier, self._liveness(), self._log)
             self._children = stack.enter_context(ChildProcesses(options.settings, shutdown.remaining_s, self._log))
             self._printer = stack.enter_context(ConsoleThread(shutdown.remaining_s))
             stack.callback(self._printer.submit, self._screen.close)

@@ -27,7 +27,6 @@ from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.gc_control import gc_frozen
-from kurt2rt.platform.realtime_priority import set_sched_fifo
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
@@ -177,7 +176,6 @@ class _Run:
         self._options = options
         self._context = context
         self._recorder = recorder
-        self._priority = service.settings.priority
         knowledge, writer = Path(service.settings.knowledge), service.writer
         plugins = plugins_in_use()
         for plugin in plugins:
@@ -207,7 +205,7 @@ class _Run:
 
     async def serve(self, console: ProgramConsole, speed: Speed | None) -> ProgramStatus | None:
         """Open the channel, run the ticks, close the channel, hand the statistics to the journal's thread."""
-        options, reloader = self._options, self._context.reloader
+        options = self._options
         async with anyio.create_task_group() as tasks, self._channel(speed) as channel:
             post_tick = PostTick(
                 self._service,
@@ -218,8 +216,6 @@ class _Run:
                 recorder=self._recorder,
             )
             tasks.start_soon(self._status.serve)
-            if reloader is not None:
-                tasks.start_soon(reloader.serve, partial(self._apply_settings, post_tick))
             await self._tick(post_tick)
             self._context.shutdown.stage = ShutdownStage.CHANNEL
             tasks.cancel_scope.cancel()
@@ -270,12 +266,6 @@ class _Run:
             )
             options.on_open(channel)
             yield channel
-
-    def _apply_settings(self, post_tick: PostTick, settings: ServiceSettings) -> None:
-        post_tick.apply_settings(settings)
-        if settings.priority != self._priority:
-            self._priority = settings.priority
-            self._context.log(set_sched_fifo(self._priority, self._context.guard_threads()))
 
 
 @contextmanager

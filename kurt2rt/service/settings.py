@@ -2,7 +2,7 @@
 
 import ipaddress
 import re
-from typing import Annotated, Final, Literal, NamedTuple
+from typing import Annotated, Final, Literal
 
 from pydantic import Field, PlainValidator
 
@@ -10,8 +10,6 @@ from hal.settings import Settings, load_settings
 from hal.settings_files import find_config
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
-WHILE_RUNNING: Final = "may change while the robot runs"
-"""Mark of the keys that SIGHUP applies; other keys wait for the next start."""
 AUTO: Final = "auto"
 _HIGHEST_PRIORITY = 80
 
@@ -46,32 +44,21 @@ class ServiceSettings(Settings):
     task: str
     world: str
     knowledge: str
-    checkpoint_period_s: Annotated[float, Field(ge=0.1, le=60), WHILE_RUNNING]
-    status_period_s: Annotated[float, Field(ge=1, le=3600), WHILE_RUNNING]
-    real_time_priority: Annotated[int | Literal["auto"], PlainValidator(_priority_of), WHILE_RUNNING]
+    checkpoint_period_s: Annotated[float, Field(ge=0.1, le=60)]
+    status_period_s: Annotated[float, Field(ge=1, le=3600)]
+    real_time_priority: Annotated[int | Literal["auto"], PlainValidator(_priority_of)]
     teachers: str
     devices: str
     port: Annotated[int, Field(ge=0, le=65535)]
     page_port: Annotated[int, Field(ge=0, le=65535)]
     page_address: Annotated[str, PlainValidator(page_address_of)]
     recordings: str
-    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000), WHILE_RUNNING]
+    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000)]
 
     @property
     def priority(self) -> int:
         """Real-time priority of the loop, 1 to 99; 0: none."""
         return 0 if self.real_time_priority == AUTO else self.real_time_priority
-
-
-class Reloaded(NamedTuple):
-    """Result of a reload while the robot runs."""
-
-    settings: ServiceSettings
-    """Settings with the applied keys."""
-    applied: tuple[str, ...]
-    """Changed keys that apply at once."""
-    postponed: tuple[str, ...]
-    """Changed keys that wait for the next start."""
 
 
 def load_service(name_or_path: str = "default") -> ServiceSettings:
@@ -84,12 +71,3 @@ def with_unit_priority(settings: ServiceSettings) -> ServiceSettings:
     if settings.real_time_priority != AUTO:
         return settings
     return settings.model_copy(update={"real_time_priority": UNIT_PRIORITY})
-
-
-def reloaded_settings(current: ServiceSettings, read: ServiceSettings) -> Reloaded:
-    """Return `current` with those changes of `read` that may apply while the robot runs."""
-    fields = ServiceSettings.model_fields
-    changed = [key for key in fields if getattr(current, key) != getattr(read, key)]
-    taken = tuple(key for key in changed if WHILE_RUNNING in fields[key].metadata)
-    settings = current.model_copy(update={key: getattr(read, key) for key in taken})
-    return Reloaded(settings, taken, tuple(key for key in changed if key not in taken))

@@ -7,7 +7,7 @@ import signal
 import socket
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
@@ -134,22 +134,19 @@ class ShutdownHandler:
     def __init__(
         self,
         *,
-        others: Mapping[signal.Signals, Callback] | None = None,
         on_timeout: Callable[[ShutdownStage], None] | None = None,
     ) -> None:
         """Install no handler yet.
 
         Args:
-            others: callbacks of signals that do not end the program, run in this thread.
             on_timeout: ends the process; gets the stage that did not end in time. None: the end may last.
         """
-        self._others: dict[int, Callback] = {int(number): act for number, act in (others or {}).items()}
         self._on_timeout = on_timeout
         self._callbacks: list[Callback] = []
         self._failures: list[Exception] = []
         self._clock = ShutdownClock()
         self._lock = threading.Lock()
-        self._handlers = SignalHandlers(dict.fromkeys((*SHUTDOWN_SIGNALS, *map(signal.Signals, self._others)), _ignore))
+        self._handlers = SignalHandlers(dict.fromkeys(SHUTDOWN_SIGNALS, _ignore))
         self._wakeup_before = -1
         self._wakeup_send, self._wakeup_recv = socket.socketpair()
         self._wakeup_send.setblocking(False)
@@ -227,10 +224,7 @@ class ShutdownHandler:
                 self._on_signal(number)
 
     def _on_signal(self, number: int) -> None:
-        other = self._others.get(number)
-        if other is not None:
-            self._run_callbacks((other,))
-        elif number in SHUTDOWN_SIGNALS and not self.requested:
+        if number in SHUTDOWN_SIGNALS and not self.requested:
             with self._lock:
                 self._clock.start()
                 callbacks = tuple(self._callbacks)

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
 
 import anyio
@@ -15,7 +16,6 @@ from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_private_folder
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.service.missing_dependency import DependencyName, MissingDependency, WaitReason
 from kurt2rt.service.systemd.notifier import Notifier
 
 RETRY_S = 1.0
@@ -32,15 +32,18 @@ class StartError(UserError):
     """A folder of the program is missing."""
 
 
-_REASONS: Mapping[type[Exception], WaitReason] = {
-    StartError: WaitReason.FOLDER,
-    BusError: WaitReason.BUS,
-    KnowledgeError: WaitReason.KNOWLEDGE,
-    ChannelError: WaitReason.CHANNEL,
-    CredentialsError: WaitReason.KEYS,
-    RecordingError: WaitReason.RECORDING,
-    OSError: WaitReason.SYSTEM,
-}
+_WAITED_FOR = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
+"""Errors of a check that is tried again."""
+
+
+class DependencyName(StrEnum):
+    """Thing that the program cannot start without."""
+
+    BUS = "bus"
+    KNOWLEDGE = "knowledge"
+    KEYS = "teachers' keys"
+    NETWORK = "network"
+    RECORDINGS = "recordings"
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +80,9 @@ class StartupGate:
         self._log = log
         self._hold = hold
         self._retry_s = retry_s
-        self._missing = {each.name: MissingDependency(each.name) for each in dependencies}
+        self.missing: dict[DependencyName, str] = {each.name: "" for each in dependencies}
+        """Error of each missing dependency, in words; empty until its first check is over."""
         self._available = {each.name: anyio.Event() for each in dependencies}
-
-    @property
-    def missing(self) -> tuple[MissingDependency, ...]:
-        """Missing dependencies, each with the reason once it is known."""
-        return tuple(self._missing.values())
 
     async def wait_for(self, name: DependencyName) -> None:
         """Wait until one dependency is there; `wait_for_all`, which checks it, must run meanwhile."""
@@ -106,21 +105,20 @@ class StartupGate:
         while True:
             try:
                 await anyio.to_thread.run_sync(dependency.check, abandon_on_cancel=True)
-            except tuple(_REASONS) as error:
-                reason = next(each for kind, each in _REASONS.items() if isinstance(error, kind))
-                self._report_missing(MissingDependency(dependency.name, reason, str(error)))
+            except _WAITED_FOR as error:
+                self._report_missing(dependency.name, str(error))
             else:
                 break
             await anyio.sleep(self._retry_s)
-        if self._missing.pop(dependency.name).reason is not None:
+        if self.missing.pop(dependency.name):
             self._log(available_text(dependency.name))
         self._available[dependency.name].set()
         self._publish_status()
 
-    def _report_missing(self, missing: MissingDependency) -> None:
-        if self._missing[missing.name] != missing:
-            self._missing[missing.name] = missing
-            self._log(startup_text((missing,)))
+    def _report_missing(self, name: DependencyName, says: str) -> None:
+        if self.missing[name] != says:
+            self.missing[name] = says
+            self._log(startup_text({name: says}))
         self._publish_status()
 
     def _publish_status(self) -> None:
@@ -154,13 +152,13 @@ def available_text(name: DependencyName) -> str:
     return _AVAILABLE.format(name=name)
 
 
-def startup_text(missing: Sequence[MissingDependency]) -> str:
-    """Return the line for a start with these missing dependencies; those without a known reason are left out."""
-    known = [each for each in missing if each.reason is not None]
+def startup_text(missing: Mapping[DependencyName, str]) -> str:
+    """Return the line for a start with these missing dependencies; those without a known error are left out."""
+    known = {name: says for name, says in missing.items() if says}
     return _WAITS.format(missing=missing_text(known)) if known else _STARTS
 
 
-def missing_text(missing: Sequence[MissingDependency]) -> str:
-    """Return the dependencies with a known reason in a line; without any, the names of all."""
-    known = [_MISSING.format(name=each.name, says=each.says) for each in missing if each.reason is not None]
-    return "; ".join(known or [each.name for each in missing])
+def missing_text(missing: Mapping[DependencyName, str]) -> str:
+    """Return the dependencies with a known error in a line; without any, the names of all."""
+    known = [_MISSING.format(name=name, says=says) for name, says in missing.items() if says]
+    return "; ".join(known or missing)

@@ -38,7 +38,7 @@ def settings_in(folder: Path, **changes: object) -> str:
     return str(path)
 
 
-def test_unit_starts_reloads_and_ends_under_a_service_manager(tmp_path: Path, systemd: Manager) -> None:
+def test_unit_starts_and_ends_under_a_service_manager(tmp_path: Path, systemd: Manager) -> None:
     environment = systemd.environment(0.5)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--bus", "sim", "--settings", settings_in(tmp_path))
@@ -48,14 +48,6 @@ def test_unit_starts_reloads_and_ends_under_a_service_manager(tmp_path: Path, sy
         program.wait_for("stands until Go: the robot program was started")
         assert systemd.wait_for("until Go")[-1].startswith("STATUS=")
         systemd.wait_for("WATCHDOG=1")
-
-        settings_in(tmp_path, status_period_s=2.0, task="circle")
-        program.process.send_signal(signal.SIGHUP)
-        program.wait_for("settings taken: status_period_s")
-        program.wait_for("settings for the next start, not for a robot that runs: task")
-        systemd.wait_for("RELOADING=1")
-        systemd.wait_for("READY=1")
-
         said = program.end(signal.SIGTERM)
         assert (said.exit_code, said.err) == (0, "")
         systemd.wait_for("STOPPING=1")
@@ -91,20 +83,12 @@ def _is_real_time(thread: int) -> bool:
     return os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO
 
 
-def test_reload_of_the_priority_keeps_the_guards_above_the_loop(
-    tmp_path: Path, kurt2rt_process: Callable[..., Running]
-) -> None:
+def test_guards_of_a_unit_preempt_its_loop(tmp_path: Path, kurt2rt_process: Callable[..., Running]) -> None:
     program = kurt2rt_process("run", "--service", "--bus", "sim", "--settings", settings_in(tmp_path))
     if "not permitted" in program.wait_for("real-time priority 20"):  # as delivered
         pytest.skip("SCHED_FIFO is not permitted here: no CAP_SYS_NICE")
     program.wait_for("stands until Go: the robot program was started")
-    pid = program.process.pid
-    assert priorities_of(pid) == [21, 21, 20]  # the second guard, the signal thread, the loop
-    for priority, expected in ((0, []), (5, [6, 6, 5]), (3, [4, 4, 3]), ("auto", [21, 21, 20])):
-        settings_in(tmp_path, real_time_priority=priority)
-        program.process.send_signal(signal.SIGHUP)
-        program.wait_for("settings taken: real_time_priority")
-        assert priorities_of(pid) == expected
+    assert priorities_of(program.process.pid) == [21, 21, 20]  # the second guard, the signal thread, the loop
     assert program.end(signal.SIGTERM).exit_code == 0
 
 

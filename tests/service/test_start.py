@@ -29,7 +29,7 @@ from kurt2rt.service.health.status_socket import read_reports, status_socket_pat
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.program import RobotProgram
 from kurt2rt.service.run_options import ProgramEnvironment, RunOptions
-from kurt2rt.service.settings import ServiceSettings, load_service
+from kurt2rt.service.settings import load_service
 from kurt2rt.teacher import TeacherClient
 from tests.service.rig import SETTINGS, Rig, end_service, rig
 from tests.service.systemd.manager import manager
@@ -102,9 +102,6 @@ class World:
                 "port": self._port,
             }
         )
-
-    def read(self) -> ServiceSettings:
-        return self.service
 
     @contextmanager
     def open_robot(
@@ -231,7 +228,7 @@ def test_its_status_says_what_it_waits_for(tmp_path: Path, taught: bytes) -> Non
 def program_in(world: World) -> RobotProgram:
     return RobotProgram(
         ORDERS,
-        world.read,
+        world.service,
         SETTINGS,
         TASK,
         TerminalScreen(Console(file=world.log), Path(), as_service=True),

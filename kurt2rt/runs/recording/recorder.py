@@ -170,11 +170,6 @@ class RunRecorder:
         """Note a health report in plain values, which must not change any more."""
         self._note(HealthNote(report))
 
-    def set_budget(self, budget: Budget) -> None:
-        """Apply another budget of disk space; older runs may be deleted for it."""
-        if self._files is not None:
-            self._files.set_budget(budget)
-
     def start(self) -> None:
         """Start the thread; call it once.
 

@@ -57,10 +57,6 @@ class RunFiles:
         """Return whether messages logged now go to a file."""
         return self._segment is not None
 
-    def set_budget(self, budget: Budget) -> None:
-        """Apply a budget at the next `poll`; thread-safe."""
-        self._budget = budget
-
     def poll(self) -> bool:
         """Sync, start and end segments; return whether everything is durable. Call it once a second."""
         try:

@@ -1,6 +1,6 @@
 """Error of a status that cannot be read, as a code with its text."""
 
-from hal.errors import TextCode, UserError
+from hal.errors import CodedError, TextCode
 
 
 class StatusCode(TextCode):
@@ -25,10 +25,5 @@ class StatusCode(TextCode):
     NO_ANSWER = ("no answer", "no robot answers at {address} as {device}", "is kurt2rt run running? ({error})")
 
 
-class StatusError(UserError):
-    """The status of a robot program cannot be read."""
-
-    def __init__(self, code: StatusCode, *, where: object = "", **fields: object) -> None:
-        """Fill the code's texts with `fields`; `where` is the path of the status socket."""
-        super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
-        self.code = code
+class StatusError(CodedError):
+    """The status of a robot program cannot be read; `where` is the path of its socket."""

@@ -31,12 +31,8 @@ class Notifier:
         self._status = ""
 
     def ready(self) -> None:
-        """Report that the service is up, or up again after a reload."""
+        """Report that the service is up."""
         self._send("READY=1")
-
-    def reloading(self, monotonic_us: int) -> None:
-        """Report the begin of a reload at `monotonic_us`, in µs of CLOCK_MONOTONIC; `ready` reports its end."""
-        self._send(f"RELOADING=1\nMONOTONIC_USEC={monotonic_us}")
 
     def stopping(self) -> None:
         """Report that the service ends."""

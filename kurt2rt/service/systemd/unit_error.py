@@ -1,13 +1,16 @@
-"""Error of a unit that cannot be made, installed or checked, as a code with its text."""
+"""Error of a unit that cannot be made or installed, as a code with its text."""
 
-from hal.errors import TextCode, UserError
+from hal.errors import CodedError, TextCode
 
 _SUDO = "say it with sudo"
+_UNREADABLE = "the service's user cannot read it, because {closed} is closed to others"
+_HIDDEN = "the service does not see what is in {closed}"
+_COPY = "say: sudo install -D -m 644 {path_word} {copy_word}, and name that one"
 _OTHER_NAME = "give another --name"
 
 
 class UnitCode(TextCode):
-    """Condition that keeps a unit from being made, installed or checked."""
+    """Condition that keeps a unit from being made or installed."""
 
     BAD_NAME = ("bad name", "cannot name a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
     UNPRINTABLE = ("unprintable", "cannot stand in a unit", "give a path without control characters")
@@ -21,8 +24,22 @@ class UnitCode(TextCode):
         "the service would not find {module}: it is in {file}, and is not installed",
         "make a package of it and install it next to kurt2rt (docs/extend.md)",
     )
-    NO_ACCESS = ("no access", "{says}", "")
-    """A path that the unit's user cannot use; `says` is the text of the access finding."""
+    INSTALLATION_UNREADABLE = (
+        "installation unreadable",
+        _UNREADABLE,
+        "install kurt2rt in a folder for all, such as /opt/kurt2rt",
+    )
+    FILE_UNREADABLE = ("file unreadable", _UNREADABLE, _COPY)
+    FILE_HIDDEN = ("file hidden", _HIDDEN, _COPY)
+    """The unit does not see the folder that holds the file."""
+    FOLDER_HIDDEN = ("folder hidden", _HIDDEN, "name a folder elsewhere")
+    FOLDER_UNREACHABLE = (
+        "folder unreachable",
+        "the service's user cannot get there, because {closed} is closed to others",
+        "name a folder elsewhere, or say: sudo chmod o+x {closed_word}",
+    )
+    FOLDER_OF_ANOTHER = ("folder of another", "belongs to {owner}", "say: sudo chown {user}: {path_word}")
+    """Another user owns the folder, so the unit's user may not write it."""
     NAME_TAKEN = ("name taken", "is another program's", _OTHER_NAME)
     USER_TAKEN = ("user taken", "is a user of this machine already", _OTHER_NAME)
     NOT_OURS = ("not ours", "is another program's and stays", "give the --name that you installed with")
@@ -32,15 +49,7 @@ class UnitCode(TextCode):
     NOT_READ = ("not read", "cannot be read ({error})", _SUDO)
     NO_COMMAND = ("no command", "{command} is not on this machine", "the unit needs systemd")
     COMMAND_FAILED = ("command failed", "{says}", "")
-    NO_TOOL = ("no tool", "{tool} is not on this machine", "on Debian: apt-get install systemd")
-    NO_EXPOSURE = ("no exposure", "{tool} security says no exposure: {says!r}", "look at it yourself")
-    TOOL_HANGS = ("tool hangs", "{tool} {command} does not end", "look at the machine's load")
 
 
-class UnitError(UserError):
-    """A unit cannot be made, installed or checked."""
-
-    def __init__(self, code: UnitCode, *, where: object = "", **fields: object) -> None:
-        """Fill the code's text with `fields`; `where` names the file, user or setting."""
-        super().__init__(code.text.format_map(fields), where=where, do=code.do.format_map(fields))
-        self.code = code
+class UnitError(CodedError):
+    """A unit cannot be made or installed; `where` names the file, user or setting."""

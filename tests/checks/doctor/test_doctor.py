@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import socket
 import threading
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
@@ -75,7 +76,7 @@ def test_each_can_interface_with_hardware_is_looked_at(tmp_path: Path) -> None:
 
 
 def test_kernel_without_can_still_allows_a_run(tmp_path: Path) -> None:
-    def refuse() -> None:
+    def refuse() -> socket.socket:
         raise OSError(97, "Address family not supported by protocol")
 
     finding = check_can_kernel(refuse, tmp_path)
@@ -84,7 +85,7 @@ def test_kernel_without_can_still_allows_a_run(tmp_path: Path) -> None:
     assert check_can_kernel(refuse, tmp_path).code is FindingCode.CAN_UNLOADED
 
 
-def test_disk_of_a_missing_folder_is_its_parents_and_stays_unchanged(tmp_path: Path) -> None:
+def test_disk_of_a_missing_folder_is_its_parents(tmp_path: Path) -> None:
     findings = check_disk(tmp_path / "robots" / "anna's")
     assert [each.code for each in findings][::3] == [FindingCode.FOLDER_TO_MAKE, FindingCode.SQLITE_LOG]
     assert not any(each.forbids_run for each in findings)

@@ -23,10 +23,6 @@ class Unit:
         """Stop the unit; return when its program has ended."""
         _do("systemctl", "stop", NAME)
 
-    def reload(self) -> None:
-        """Reload the unit; return when its program has done so."""
-        _do("systemctl", "reload", NAME)
-
     def kill(self, signal: str) -> None:
         """Send its main process a signal."""
         _do("systemctl", "kill", "--kill-whom=main", f"--signal={signal}", NAME)

@@ -207,20 +207,6 @@ async def test_unit_stop_brakes_first_and_ends_within_a_second(unit: Unit, tmp_p
     assert unit.said_at_s("Stopped ") - unit.said_at_s("Stopping ") < 1.0
 
 
-async def test_unit_reload_reads_settings_again(unit: Unit, settings: Path, tmp_path: Path) -> None:
-    with robot(tmp_path):
-        unit.start()
-        pid = await until_up(unit)
-        try:
-            write_settings(settings, status_period_s=2.0, task="circle")
-            unit.reload()
-        finally:
-            write_settings(settings)
-        unit.wait_until_said("settings taken: status_period_s")
-        unit.wait_until_said("settings for the next start, not for a robot that runs: task")
-        assert (unit.pid, unit.shows("ActiveState"), unit.shows("NRestarts")) == (pid, "active", "0")
-
-
 async def test_unit_without_bus_and_robot_waits_for_them(unit: Unit, link: Link, tmp_path: Path) -> None:
     link.delete()
     unit.start()

@@ -112,18 +112,6 @@ def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) 
     assert entries_of(run)[-1].tick == desk.records[-1].tick
 
 
-def test_another_budget_is_kept_to_from_then_on(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path)
-    desk.recorder.poll()
-    desk.second()
-    desk.recorder.set_budget(Budget(75_000, segment_bytes=20_000))
-    for second in range(15):
-        desk.second(counts=200 + second)
-    desk.recorder.close()
-    assert sum(segment.stat().st_size for segment in segments_in(tmp_path / NAME)) <= 100_000
-    assert entries_of(tmp_path / NAME)[-1].tick == desk.records[-1].tick
-
-
 def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> None:
     other = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
     other.recorder.poll()
