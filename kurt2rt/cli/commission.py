@@ -64,11 +64,6 @@ _Skip = Annotated[
         show_default=False,
     ),
 ]
-_Fresh = Annotated[bool, typer.Option("--fresh", help="Delete the results of earlier sessions for NAME.")]
-_Force = Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")]
-_Operator = Annotated[
-    str | None, typer.Option(help="Your name, for the report. Default: the user's name.", show_default=False)
-]
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +74,6 @@ class _Options:
     robot_settings: RobotName = None
     only: _Only = None
     skip: _Skip = None
-    fresh: _Fresh = False
-    force: _Force = False
-    operator: _Operator = None
 
 
 @takes_options(_Options)
@@ -121,7 +113,7 @@ def commission(options: _Options) -> None:
     Ends with code 1 if a step of this session failed.
     """
     console = Console()
-    target = _target(options.name, options.out, force=options.force)
+    target = _target(options.name, options.out)
     session = _session(options)
     _tell(console, f"{options.name} on {options.bus}; progress is kept in {session.path}; Ctrl-C brakes")
     _tell_earlier(console, session.progress, session.chosen)
@@ -139,24 +131,23 @@ def commission(options: _Options) -> None:
 def _session(options: _Options) -> "_Session":
     """Return what the options ask for. Raises typer.BadParameter, SettingsError."""
     requested, skipped = _named(options.only, "--only"), _named(options.skip, "--skip")
-    operator = _require_one_line(options.operator or _user())
     base = load_kurt2(options.robot_settings or "kurt2")
     path = Path("var", "commission", f"{options.name}.json")
     fresh = Progress(name=options.name, base=options.robot_settings or "kurt2", bus=options.bus)
-    progress = _progress(path, fresh, options.fresh)
+    progress = _progress(path, fresh)
     chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
-    return _Session(base, progress, path, chosen, skipped, operator)
+    return _Session(base, progress, path, chosen, skipped)
 
 
-def _target(name: str, out: Path | None, *, force: bool) -> Path:
+def _target(name: str, out: Path | None) -> Path:
     """Return the settings file to write. Raises typer.BadParameter."""
     if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
         raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
     target = out or Path("var", "robots", f"{name}.yaml")
     if target.suffix != ".yaml":
         raise typer.BadParameter("a settings file ends in .yaml", param_hint="--out")
-    if target.exists() and not force:
-        raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
+    if target.exists():
+        raise typer.BadParameter(f"{target} is there already; give another file, or remove it", param_hint="--out")
     return target
 
 
@@ -177,8 +168,6 @@ class _Session(NamedTuple):
     """Progress file."""
     chosen: Sequence[CommissionStep]
     skipped: Sequence[CommissionStep]
-    operator: str
-    """Name for the report."""
 
 
 async def _run_checklist(session: _Session, console: Console) -> Progress:
@@ -193,7 +182,7 @@ async def _run_checklist(session: _Session, console: Console) -> Progress:
             ConsoleOperator(sys.stdin, console),
             second_guard=True,
         )
-        checklist = Checklist(stand, session.progress, session.path, session.operator, _now)
+        checklist = Checklist(stand, session.progress, session.path, _user(), _now)
         stopped = True
         async with anyio.create_task_group() as tasks:
             await tasks.start(_cancel_on_signal, tasks.cancel_scope)
@@ -238,9 +227,7 @@ def _conclude(console: Console, progress: Progress, base: Kurt2Settings, target:
     _tell(console, f"        kurt2rt run --bus {progress.bus} --settings THAT.yaml", to_copy=True)
 
 
-def _progress(path: Path, fresh: Progress, start_over: bool) -> Progress:
-    if start_over:
-        return fresh
+def _progress(path: Path, fresh: Progress) -> Progress:
     try:
         kept = load_progress(path)
     except FileNotFoundError:
@@ -249,13 +236,13 @@ def _progress(path: Path, fresh: Progress, start_over: bool) -> Progress:
         raise SettingsError(
             f"was begun with --robot-settings {kept.base}",
             where=path,
-            do="go on with that, give another --name, or --fresh",
+            do="go on with that, give another --name, or remove this file",
         )
     if kept.bus != fresh.bus and kept.findings != Findings() and kept.findings.hardware_id is None:
         raise SettingsError(
             f"was begun on bus {kept.bus}, and which robot that was is not known",
             where=path,
-            do="go on there, give another --name, or --fresh",
+            do="go on there, give another --name, or remove this file",
         )
     return kept.model_copy(update={"bus": fresh.bus})
 
@@ -274,17 +261,9 @@ def _now() -> str:
 
 def _user() -> str:
     try:
-        return getpass.getuser()
+        return " ".join(getpass.getuser().split())
     except (KeyError, OSError):  # a user without a name, as in a container
         return "unknown"
-
-
-def _require_one_line(who: str) -> str:
-    """Return the name if it fits in a comment of the settings file. Raises typer.BadParameter."""
-    name = " ".join(who.split())
-    if not name or not name.isprintable():
-        raise typer.BadParameter("a name on one line", param_hint="--operator")
-    return name
 
 
 def _tell(console: Console, text: str, *, to_copy: bool = False) -> None:

@@ -84,6 +84,25 @@ RobotName = Annotated[
         "task, which is kurt2 unless the task is of another one, such as school/fleeing.",
     ),
 ]
+SettingsName = Annotated[
+    str, typer.Option("--settings", help="Runtime settings by name (config/runtime) or a path to a YAML file.")
+]
+RobotAddress = Annotated[
+    str | None, typer.Option("--robot", help="Address of the robot. Default: as noted when the device was paired.")
+]
+RobotPort = Annotated[
+    int | None,
+    typer.Option(
+        "--port", metavar="PORT", min=1, max=65535, help="UDP port of the robot. Default: as noted with the pairing."
+    ),
+]
+RecordedRun = Annotated[
+    Path | None,
+    typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
+]
+RunsFolder = Annotated[
+    Path | None, typer.Option("--runs", help="Folder of recorded runs. Default: as the settings say.")
+]
 Seed = Annotated[
     int,
     typer.Option(

@@ -13,7 +13,7 @@ from rich.text import Text
 from kurt2rt.channel.security import pairing
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
-from kurt2rt.cli.options import PageAddressName
+from kurt2rt.cli.options import PageAddressName, SettingsName
 from kurt2rt.cli.qr_code import print_code
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -42,7 +42,6 @@ _Renew = Annotated[
 _Revoke = Annotated[
     bool, typer.Option("--revoke", help="Delete NAME's keys; a running robot refuses it within a second.")
 ]
-_Settings = Annotated[str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")]
 
 
 def pair(
@@ -52,7 +51,7 @@ def pair(
     renew: _Renew = False,
     revoke: _Revoke = False,
     page_address: PageAddressName = None,
-    settings: _Settings = "default",
+    settings: SettingsName = "default",
 ) -> None:
     """Pair a teacher's device, and show the code of its page.
 

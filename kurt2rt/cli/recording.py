@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import RecordedRun, RunsFolder, SettingsName
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.runs.recording.recording import LAYOUT
@@ -29,7 +29,7 @@ _REPORT_EVERY_TICKS = 500
 
 
 @recording.command("list")
-def list_(runs: RunsFolder = None, as_json: AsJson = False, settings: RuntimeSettingsName = "default") -> None:
+def list_(runs: RunsFolder = None, as_json: AsJson = False, settings: SettingsName = "default") -> None:
     """List the recorded runs, the newest last: task, robot, length and size.
 
     For example:
@@ -66,7 +66,7 @@ def repair(
     run: RecordedRun = None,
     out: Annotated[Path, typer.Option(help="Folder for the copies; made if it is missing.")] = Path("results/repaired"),
     runs: RunsFolder = None,
-    settings: RuntimeSettingsName = "default",
+    settings: SettingsName = "default",
 ) -> None:
     """Copy what is whole of a run to files for Foxglove.
 
@@ -113,7 +113,7 @@ def export(
     ] = 100,
     runs: RunsFolder = None,
     as_json: AsJson = False,
-    settings: RuntimeSettingsName = "default",
+    settings: SettingsName = "default",
 ) -> None:
     """Write recorded runs as a data set for LeRobot (LeRobotDataset v3.0), an episode for each run or 1 000 s of it.
 

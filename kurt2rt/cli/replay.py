@@ -1,18 +1,18 @@
 """`kurt2rt replay`."""
 
-import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 
 from hal.errors import ExitCode
-from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.json_output import AsJson, plain, print_json
+from kurt2rt.cli.options import RecordedRun, RunsFolder, SettingsName
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -45,7 +45,7 @@ def replay(
         int, typer.Option(metavar="N", min=1, help="With --compare: number of differences to list, longest first.")
     ] = 30,
     as_json: AsJson = False,
-    settings: RuntimeSettingsName = "default",
+    settings: SettingsName = "default",
 ) -> None:
     """Replay a recorded run, and compare it bit for bit.
 
@@ -70,7 +70,12 @@ def _verify(run: Run, *, as_json: bool) -> None:
     with _bar(run) as on_tick:
         verdict = verify(run, on_tick)
     if as_json:
-        typer.echo(json.dumps(_verdict_as_json(run, verdict), indent=2))
+        told = {"run": run.name, "task": run.head.task, "recorded_by": run.head.kurt2rt, "same": verdict.same}
+        differences = [
+            {**each._asdict(), "recorded": repr(each.recorded), "replayed": repr(each.replayed)}
+            for each in verdict.differences
+        ]
+        print_json({**told, **plain(replace(verdict, differences=())), "differences": differences})
     else:
         for line in _verdict_in_words(run, verdict):
             typer.echo(line)
@@ -99,35 +104,16 @@ def _verdict_in_words(run: Run, verdict: ReplayVerdict) -> Iterator[str]:
         yield verdict.trouble
 
 
-def _verdict_as_json(run: Run, verdict: ReplayVerdict) -> dict[str, Any]:
-    return {
-        "run": run.name,
-        "task": run.head.task,
-        "recorded_by": run.head.kurt2rt,
-        "same": verdict.same,
-        "ticks": verdict.ticks,
-        "lasted_s": verdict.lasted_s,
-        "knowledge_compared": verdict.knowledge,
-        "differences": [
-            {
-                "tick": each.tick,
-                "field": each.field,
-                "recorded": repr(each.recorded),
-                "replayed": repr(each.replayed),
-            }
-            for each in verdict.differences
-        ],
-        "whole": verdict.whole,
-        "trouble": verdict.trouble,
-    }
-
-
 def _compare(run: Run, knowledge: Path, limit: int, *, as_json: bool) -> None:
     policy = load_policy(run, knowledge)
     with _bar(run) as on_tick:
         found = counterfactual(run, policy, on_tick=on_tick)
     if as_json:
-        typer.echo(json.dumps(_counterfactual_as_json(run, knowledge, found), indent=2))
+        stretches = [
+            {**each._asdict(), "was": _data(each.was), "would_be": _data(each.would_be)} for each in found.stretches
+        ]
+        told = {"run": run.name, "knowledge": knowledge, "same": found.same}
+        print_json({**told, **plain(replace(found, stretches=())), "stretches": stretches})
         return
     typer.echo(_title(run))
     for line in _shares(found, knowledge):
@@ -184,33 +170,7 @@ def _said(answer: PolicyAnswer) -> str:
     return "asks" if answer.rla is None else f"{answer.action} by {answer.rla.title}"
 
 
-def _counterfactual_as_json(run: Run, knowledge: Path, found: Counterfactual) -> dict[str, Any]:
-    return {
-        "run": run.name,
-        "knowledge": str(knowledge),
-        "same": found.same,
-        "ticks": found.ticks,
-        "decided": found.decided,
-        "other_action": found.other_action,
-        "would_drive": found.would_drive,
-        "would_ask": found.would_ask,
-        "mid_otherwise": found.mid_otherwise,
-        "stretches": [
-            {
-                "level": each.level,
-                "from_s": each.from_s,
-                "to_s": each.to_s,
-                "ticks": each.ticks,
-                "was": _answer_as_json(each.was),
-                "would_be": _answer_as_json(each.would_be),
-            }
-            for each in found.stretches
-        ],
-        "trouble": found.trouble,
-    }
-
-
-def _answer_as_json(answer: PolicyAnswer) -> dict[str, Any]:
+def _data(answer: PolicyAnswer) -> dict[str, object]:
     nearest = answer.nearest
     return {
         "action": answer.action,

@@ -13,6 +13,7 @@ from rich.console import Console
 from hal.errors import UserError
 from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.options import RobotAddress, RobotPort, SettingsName
 from kurt2rt.cli.teach_shutdown import until_teaching_ends
 from kurt2rt.ros.settings import Naming, RosSettings, is_ros_name
 from kurt2rt.service.settings import load_service
@@ -46,18 +47,9 @@ class _Options:
     namespace: Annotated[str, typer.Option(help="Namespace of topics and services, such as robot1.")] = ""
     stamped: Annotated[bool, typer.Option("--stamped", help="cmd_vel carries TwistStamped instead of Twist.")] = False
     device: Annotated[str, typer.Option(help="Paired device that this is to the robot.")] = _DEVICE
-    robot: Annotated[
-        str | None, typer.Option(help="Address of the robot. Default: as noted when the device was paired.")
-    ] = None
-    port: Annotated[
-        int | None,
-        typer.Option(
-            metavar="PORT", min=1, max=65535, help="UDP port of the robot. Default: as noted with the pairing."
-        ),
-    ] = None
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default"
+    robot: RobotAddress = None
+    port: RobotPort = None
+    settings: SettingsName = "default"
 
 
 @takes_options(_Options)

@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import DEFAULT_TEACHER, PageAddressName, RobotName, task_option, world_option
+from kurt2rt.cli.options import DEFAULT_TEACHER, PageAddressName, RobotName, SettingsName, task_option, world_option
 from kurt2rt.platform.extras import extra_for
 from kurt2rt.service.bus_names import SIMULATED
 
@@ -36,9 +36,7 @@ class _Options:
         ),
     ] = SIMULATED
     robot_settings: RobotName = None
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default"
+    settings: SettingsName = "default"
     task: Annotated[
         str | None,
         task_option(

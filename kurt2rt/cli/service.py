@@ -13,6 +13,7 @@ import typer
 from hal.plugins import Plugin, is_target, loaded_plugins
 from hal.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
+from kurt2rt.cli.options import SettingsName
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, require_access, start_command
@@ -33,9 +34,7 @@ UnitName = Annotated[str, typer.Option(help="Name of the unit and of its user; o
 @dataclass(frozen=True, slots=True)
 class _UnitOptions:
     bus: Annotated[str, typer.Option("--bus", help="Bus that the robot is on, as for kurt2rt run.")] = _BUS
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default"
+    settings: SettingsName = "default"
     name: UnitName = "kurt2rt"
     page: Annotated[bool, typer.Option("--page", help="Let the unit serve the teacher's page as well.")] = False
 

@@ -28,10 +28,6 @@ REPORTS: dict[tuple[str, ...], set[str]] = {
     },
     ("knowledge", "check", "mine.knowledge"): {"file", "sound", "faults"},
     ("knowledge", "contradictions", "mine.knowledge"): {"file", "rlas", "contradictions"},
-    ("knowledge", "diff", "mine.knowledge", "mine.knowledge"): {
-        *("common_rows", "lessons_only_here", "lessons_only_there", "rlas_only_here", "rlas_only_there"),
-        "rlas_with_another_action",
-    },
     ("knowledge", "table", "mine.knowledge"): {"table", "sha256"},
 }
 

@@ -99,7 +99,7 @@ def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path
     assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out
 
 
-def test_copy_is_taught_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_copy_is_taught_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     other = Path(shutil.copy(lessons, tmp_path / "other.knowledge"))
     with Journal.read_only(mine) as look:
@@ -109,10 +109,6 @@ def test_copy_is_taught_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path
         journal.append([JournalEntry(RlaCreated(by_ann), utc_now()), JournalEntry(_correction("right"), utc_now())])
     with Journal.open(mine, binding) as journal:
         journal.append([JournalEntry(_correction("left"), utc_now())])
-    told = json.loads(kurt2rt("knowledge", "diff", mine, other, "--json").out)
-    assert (len(told["lessons_only_here"]), len(told["lessons_only_there"]), len(told["rlas_only_there"])) == (1, 2, 1)
-    (changed,) = told["rlas_with_another_action"]
-    assert (changed["here"]["action"], changed["there"]["action"]) == ("left", "right")
     before, whole = folded(mine).rlas, mine.read_bytes()
     left_out, would, nothing = kurt2rt("knowledge", "merge", mine, other, "--dry-run").out.splitlines()
     assert "RLA 1 corrected: right" in left_out

@@ -26,7 +26,6 @@ def require_whole(narrow: str, wide: str) -> None:
         ("knowledge", "list", "."),
         ("knowledge", "lessons", "taught.knowledge"),
         ("knowledge", "show", "taught.knowledge", "--rla", "1"),
-        ("knowledge", "diff", "taught.knowledge", "taught.knowledge"),
         ("pair", "--list"),
         ("why", WALLS, "--to", "30"),
         ("why", WALLS, "--at", "1"),

@@ -163,7 +163,7 @@ class Checklist:
             raise SettingsError(
                 f"is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}",
                 where=self._path,
-                do="give this robot another --name, or start over with --fresh",
+                do="give this robot another --name, or remove this file",
             )
 
     async def _skip(self, step: CommissionStep, code: SkipCode, *, on_purpose: bool = False) -> None:

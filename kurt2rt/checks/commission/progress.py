@@ -53,4 +53,4 @@ def load_progress(path: Path) -> Progress:
         return Progress.model_validate_json(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, ValidationError) as error:
         first = " ".join(str(error).split())[:120]
-        raise SettingsError(f"cannot be used ({first})", where=path, do="start over with --fresh") from error
+        raise SettingsError(f"cannot be used ({first})", where=path, do="remove it to start over") from error

@@ -2,7 +2,6 @@
 
 import typer
 
-from kurt2rt.cli.knowledge.diff import diff
 from kurt2rt.cli.knowledge.export import export, graph, import_, table
 from kurt2rt.cli.knowledge.listing import list_files
 from kurt2rt.cli.knowledge.merge import merge
@@ -16,17 +15,5 @@ knowledge = typer.Typer(
 )
 knowledge.command("list")(list_files)
 knowledge.command("import")(import_)
-for _command in (
-    show,
-    lessons,
-    contradictions,
-    check,
-    undo,
-    redo,
-    merge,
-    diff,
-    export,
-    table,
-    graph,
-):
+for _command in (show, lessons, contradictions, check, undo, redo, merge, export, table, graph):
     knowledge.command()(_command)

@@ -22,7 +22,6 @@ class StatusCode(TextCode):
     ENDED = ("ended", "the robot program has ended", "")
     BROKEN_OFF = ("broken off", "the robot program ended ({error})", "")
     NOT_UNDERSTOOD = ("not understood", "is not understood ({error})", "use the kurt2rt that the robot runs")
-    NO_ANSWER = ("no answer", "no robot answers at {address} as {device}", "is kurt2rt run running? ({error})")
 
 
 class StatusError(CodedError):
