@@ -34,9 +34,10 @@ _PANELS = {
         "service": "Run the robot's program as a unit of systemd.",
         "ros": "Join a running robot to ROS 2, over zenoh, without ROS.",
     },
-    "Research": {
+    "Research and more": {
         "study": "Measure many robots: the paper, phases, new worlds, doubt.",
         "plugin": "List, show and begin plug-ins: parts of other authors.",
+        "docs": "List the pages of the documentation, or read one in the terminal.",
     },
 }
 """Commands by the group of the help that lists them; each is a function, or a group of its own, of that name in its
@@ -67,7 +68,7 @@ _PANEL_OF = {name: panel for panel, names in _PANELS.items() for name in names}
 _HELP = (
     "Teach the mobile robot KURT2 by showing it what to do, one situation at a time.\n\n"
     "Begin with `kurt2rt run --phone`: a simulated robot stands there and asks you what to do. "
-    "`kurt2rt demo` teaches it by itself, in a minute. docs/handbook.md has the rest."
+    "`kurt2rt demo` teaches it by itself, in a minute. `kurt2rt docs handbook` has the rest."
 )
 
 USAGE_ERROR: type[Exception] = next(each for each in typer.BadParameter.__mro__ if each.__name__ == "ClickException")
