@@ -36,7 +36,7 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
-from kurt2rt.core.teaching.commands import Command, SetPhase
+from kurt2rt.core.teaching.commands import Command, SetPhase, Take, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.batch_lesson import teach_in_batch
@@ -279,7 +279,7 @@ async def be_the_device(folder: Path, port: int, presses: int) -> None:
     made, lessons_ns, syncs_ns, chance = [], [], [], random.Random(SEED)
     async with TeacherClient(folder, port=port) as robot:
         robot.watching = True
-        assert (await robot.take()).accepted
+        assert (await robot.send(Take)).accepted
         await anext(aiter(robot.states()))
         with (folder / "sync").open("wb", buffering=0) as file:
             for number in range(presses):
@@ -290,7 +290,7 @@ async def be_the_device(folder: Path, port: int, presses: int) -> None:
                 await robot.let_go()
                 await anyio.sleep(chance.uniform(0.15, 0.25))  # the teacher does not know when ticks begin
                 begun_ns = time.perf_counter_ns()
-                assert (await robot.answer("forward" if number % 2 == 0 else "back")).accepted
+                assert (await robot.send(Teach, action="forward" if number % 2 == 0 else "back")).accepted
                 lessons_ns.append(time.perf_counter_ns() - begun_ns)
                 syncs_ns.append(fsync_ns(file))
     print(json.dumps((made, lessons_ns, syncs_ns)))

@@ -18,6 +18,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.udp_port import ChannelError
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import NoAnswerError
 
@@ -45,12 +46,12 @@ def teach(teacher: Teacher, seconds: float) -> int:
         right = what_is_right(state)
         wrong = wrong + 1 if state.cause == "rla" and state.action != right else 0
         if state.standing.needs_resume:
-            print(f"tick {state.tick}: it stands ({state.standing.reason}); {teacher.resume().text}")
+            print(f"tick {state.tick}: it stands ({state.standing.reason}); {teacher.send(Resume).text}")
             continue
         if state.standing.asks:
-            answer = teacher.answer(right, of=state.tick)
+            answer = teacher.send(Teach, action=right, decision_tick=state.tick)
         elif wrong == PATIENCE:
-            answer = teacher.correct(right, of=state.tick)
+            answer = teacher.send(Correct, action=right, decision_tick=state.tick)
         else:
             continue
         print(f"tick {state.tick}: {answer.text}")
@@ -73,8 +74,8 @@ def main() -> None:
     with ExitStack() as stack:
         device = given.device or stack.enter_context(RobotProcess()).device
         teacher = stack.enter_context(Teacher(device))
-        print(teacher.take().text)
-        teacher.resume()
+        print(teacher.send(Take).text)
+        teacher.send(Resume)
         lessons = teach(teacher, given.seconds)
         share = watch(teacher, given.seconds / 2)
         print(f"{lessons} lessons, {teacher.state.rlas} RLAs; then it drove by itself {share:.0%} of the time")

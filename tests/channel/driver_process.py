@@ -8,12 +8,13 @@ from pathlib import Path
 
 import anyio
 
+from kurt2rt.core.teaching.commands import Take
 from kurt2rt.teacher import TeacherClient
 
 
 async def drive(folder: Path, port: int) -> None:
     async with TeacherClient(folder, port=port) as robot:
-        await robot.take()
+        await robot.send(Take)
         async with robot.driving() as wheel:
             while True:
                 wheel.set(0.2, 0.2)

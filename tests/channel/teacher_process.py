@@ -14,6 +14,7 @@ from pathlib import Path
 
 import anyio
 
+from kurt2rt.core.teaching.commands import Resume, Reward, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError
 
@@ -30,7 +31,7 @@ async def teach(folder: Path, port: int) -> None:
     async def say(robot: TeacherClient, number: int) -> None:
         began_s = time.monotonic()
         try:
-            answer = await (robot.reward(1) if number % _REWARD_EACH == 0 else robot.resume())
+            answer = await (robot.send(Reward, value=1) if number % _REWARD_EACH == 0 else robot.send(Resume))
         except NoAnswerError:
             told["no answer"] += 1
             return
@@ -38,8 +39,8 @@ async def teach(folder: Path, port: int) -> None:
         told[answer.why or "accepted"] += 1
 
     async with TeacherClient(folder, port=port) as robot:
-        await robot.take()
-        await robot.answer("forward")
+        await robot.send(Take)
+        await robot.send(Teach, action="forward")
         print("teaching", flush=True)
         began_s, pictures = time.monotonic(), robot._stream.count
         async with anyio.create_task_group() as tasks:

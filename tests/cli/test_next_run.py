@@ -10,12 +10,14 @@ import pytest
 
 from hal.kurt2_settings import load_kurt2
 from hal.robot import STANDSTILL
+from kurt2rt.channel.protocol.requests import NextRunRequest, SpeedRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
 from kurt2rt.core.outcome import CommandRefusedError, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Take, Teach
 from kurt2rt.knowledge.exchange.package import export_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
@@ -178,7 +180,7 @@ async def test_present_file_under_another_tasks_name_is_set_aside(tmp_path: Path
 async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClient]:
     port = int(robot.wait_for("UDP port").split()[-1])
     async with TeacherClient(folder / "var" / "devices" / "local", port=port) as client:
-        assert (await client.take()).accepted
+        assert (await client.send(Take)).accepted
         yield client
 
 
@@ -205,9 +207,9 @@ async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> Non
     with running("run", "--port", "0", folder=tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as client:
             asks = await state_where(client, b"", cause="unknown", teacher="local")
-            assert (await client.answer("forward", of=asks.tick)).accepted
+            assert (await client.send(Teach, action="forward", decision_tick=asks.tick)).accepted
             first = await state_where(client, b"", lessons=1, unsaved=0)
-            answer = await client.next_run("b", fresh=True)
+            answer = await client.send(NextRunRequest, world="b", fresh=True, task=None)
             assert answer.accepted, answer.text
             second = await state_where(client, first.boot, teacher="local", lessons=0)
             assert second.stopped == NEXT_RUN
@@ -220,10 +222,10 @@ async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> Non
             answer = await client.load(saved)
             assert answer.accepted, answer.text
             third = await state_where(client, second.boot, teacher="local", lessons=1, unsaved=0)
-            assert (await client.set_speed(3)).accepted
+            assert (await client.send(SpeedRequest, times=3)).accepted
             # Ticks of robot time go on one by one, none is missed; and again at the speed of real time.
             faster = await state_at(client, third.tick + 30)
-            assert (await client.set_speed(1)).accepted
+            assert (await client.send(SpeedRequest, times=1)).accepted
             slower = await state_at(client, faster.tick + 30)
             assert slower.boot == third.boot
         robot.wait_for(f"kept as {Path('var', 'wall_following.knowledge.1')}")

@@ -15,6 +15,7 @@ from hal.control import RawControl, decode_control
 from hal.kurt2_settings import load_kurt2
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.cli.helpers import Running, running
@@ -135,7 +136,7 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
         with runtime(bus, folder) as robot:
             async with teacher_of(robot, folder) as we:
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 stopped = await state_where(we, lambda state: state.teacher == "local")
                 assert stopped.stopped == STARTED
                 lessons = await until_it_drives(we)
@@ -150,7 +151,7 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
                 assert (back.action, back.unsaved, back.stopped) == (None, 0, STARTED)
                 assert back.lessons >= lessons  # one that was not acknowledged may be there as well
                 assert (await we.lessons())[-1].teacher == "local"
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await until_it_drives(we)
     return cycles
 
@@ -167,9 +168,9 @@ async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
                 return lessons
             with suppress(NoAnswerError):
                 if state.stopped:
-                    await we.resume()
+                    await we.send(Resume)
                 elif state.cause == "unknown":
-                    lessons += (await we.answer(action, of=state.tick)).accepted
+                    lessons += (await we.send(Teach, action=action, decision_tick=state.tick)).accepted
     raise AssertionError("the client ended")
 
 

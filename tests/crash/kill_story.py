@@ -25,7 +25,7 @@ from kurt2rt.channel.protocol.request_types import Request, tick_request
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.teaching.commands import Correct, Reward, Teach, Undo
+from kurt2rt.core.teaching.commands import Correct, Resume, Reward, SetPhase, Take, Teach, Undo
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
@@ -136,17 +136,17 @@ class Life:
 
     async def _react(self, state: State) -> None:
         if state.teacher != self._we.name:
-            await self._we.take()
+            await self._we.send(Take)
         elif state.stopped:
-            await self._we.resume()
+            await self._we.send(Resume)
         elif state.cause == "unknown":
             await self._lesson(state, "answer")
         elif state.phase == Phase.SUPERVISED and self._chance.random() < 0.2:
-            await self._we.set_phase(Phase.CORRECTIONS)
+            await self._we.send(SetPhase, phase=Phase.CORRECTIONS)
         elif state.rla is not None and state.phase == Phase.CORRECTIONS and self._chance.random() < 0.4:
             await self._lesson(state, self._chance.choice(["correct", "correct", "correct", "undo"]))
         elif self._chance.random() < 0.04:
-            await self._we.set_phase(self._chance.choice([Phase.SUPERVISED, Phase.REINFORCEMENT]))
+            await self._we.send(SetPhase, phase=self._chance.choice([Phase.SUPERVISED, Phase.REINFORCEMENT]))
         elif state.rla is not None and state.phase == Phase.REINFORCEMENT and self._chance.random() < 0.4:
             await self._lesson(state, "reward")
 

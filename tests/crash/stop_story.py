@@ -13,6 +13,7 @@ import can
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, state_where, turns
@@ -92,11 +93,11 @@ class StopStory:
                 return
             try:
                 if state.teacher != self._we.name:
-                    await self._we.take()
+                    await self._we.send(Take)
                 elif state.stopped:
-                    await self._we.resume()
+                    await self._we.send(Resume)
                 elif state.cause == "unknown":
-                    await self._we.answer(ON_THE_SPOT, of=state.tick)
+                    await self._we.send(Teach, action=ON_THE_SPOT, decision_tick=state.tick)
             except NoAnswerError:
                 continue
 

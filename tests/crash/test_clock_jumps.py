@@ -11,6 +11,7 @@ import anyio.to_thread
 import pytest
 
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
@@ -55,12 +56,14 @@ async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None
         async for state in we.states():
             if state.rla is not None:
                 action, since = THE_OTHER_WAY if state.action == ON_THE_SPOT else ON_THE_SPOT, state.tick
-                if (await we.correct(action, of=since)).accepted and await _comes(we, acts, action, since):
+                if (await we.send(Correct, action=action, decision_tick=since)).accepted and await _comes(
+                    we, acts, action, since
+                ):
                     return
             elif state.stopped:
-                await we.resume()
+                await we.send(Resume)
             elif state.cause == "unknown":
-                await we.answer(ON_THE_SPOT, of=state.tick)
+                await we.send(Teach, action=ON_THE_SPOT, decision_tick=state.tick)
     raise AssertionError("the client ended")
 
 
@@ -105,7 +108,7 @@ async def test_lessons_and_recordings_outlive_a_wall_clock_that_is_set(tmp_path:
     async with a_robot(tmp_path):
         with wall_clock.running(*words, folder=tmp_path) as robot:
             async with teacher_of(robot, tmp_path) as we:
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await taught_the_other_way(we, wall_clock)
                 wall_clock.jump(HOUR_S)
                 await taught_the_other_way(we, wall_clock)
@@ -118,7 +121,7 @@ async def test_lessons_and_recordings_outlive_a_wall_clock_that_is_set(tmp_path:
 
         with wall_clock.running(*words, folder=tmp_path) as robot:
             async with teacher_of(robot, tmp_path) as we:
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await taught_the_other_way(we, wall_clock)
             await end(robot)
         newest = find_run(None, tmp_path / "runs")

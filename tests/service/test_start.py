@@ -22,7 +22,7 @@ from hal.tap import Tap
 from kurt2rt.channel.security.pairing import LOCAL, local_pairing
 from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import Command, Teach
+from kurt2rt.core.teaching.commands import Command, Resume, Take, Teach
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.health.status_socket import read_reports, status_socket_path
@@ -134,14 +134,14 @@ class World:
 
     async def _teach(self) -> None:
         async with TeacherClient(self._device, port=self._port, patience_s=60) as robot:
-            assert (await robot.take()).accepted
+            assert (await robot.send(Take)).accepted
             assert robot.state is None or robot.state.cause == "stopped"
             async for state in robot.states():
                 if (state.left_m_s, state.right_m_s) != STANDSTILL:
                     self._drives.set()
                     return
                 if state.stopped or state.guard:  # the guard stops it on a machine that is too slow as well
-                    await robot.resume()
+                    await robot.send(Resume)
 
 
 def turns_wheels(payload: bytes) -> bool:

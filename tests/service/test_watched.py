@@ -13,6 +13,7 @@ import anyio.to_thread
 import pytest
 
 from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.teaching.commands import Take
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running, started
 from tests.cli.three_programs import (
@@ -58,7 +59,7 @@ async def test_watchdog_kills_a_hanging_loop_and_the_next_stands(tmp_path: Path)
         ear = around.enter_context(onlooker(bus))
         with starting(systemd, tmp_path, bus, "tests.service.hanging_program", "drive") as hangs:
             async with teacher_of(Running(hangs), tmp_path) as we:
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await until_it_turns(we, ear)
                 await anyio.to_thread.run_sync(wait_for_silence, systemd)
                 hangs.send_signal(signal.SIGABRT)
@@ -76,7 +77,7 @@ async def test_watchdog_kills_a_hanging_loop_and_the_next_stands(tmp_path: Path)
                 ear.look()
                 assert any(map(is_control, ear.frames))
                 assert not any(map(drives, ear.frames))
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await until_it_drives(we)  # it could all the time
             assert (await anyio.to_thread.run_sync(program.end, signal.SIGTERM)).exit_code == 0
 

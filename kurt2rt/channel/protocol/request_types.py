@@ -35,6 +35,8 @@ class StreamRequest(Request):
 class CommandRequest(Request):
     """Command that is sent again until it is answered and counts once."""
 
+    moves: ClassVar[bool] = False
+    """True if a standing robot may drive after it: the state that the teacher saw must not be older than 1 s."""
     boot: Boot
     command_id: CommandId
     """Random id, equal in all copies of the command."""

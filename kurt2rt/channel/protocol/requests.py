@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, TypeVar, dataclass_transform
+from typing import Annotated, ClassVar, TypeVar, dataclass_transform
 
 from kurt2rt.channel.protocol.limits import FASTEST, LONGEST_FILE_NAME, MOST_LESSONS, SHA256_BYTES, UPLOAD_PART_BYTES
 from kurt2rt.channel.protocol.request_types import (
@@ -74,7 +74,8 @@ class SituationsRequest(Request):
 class SaveRequest(CommandRequest):
     """Copy the knowledge on the robot."""
 
-    label: Annotated[str, Text(LONGEST_TEXT)]
+    label: Annotated[str, Text(LONGEST_TEXT)] = ""
+    """Part of the copy's name."""
 
 
 @_at("/export")
@@ -138,6 +139,7 @@ class MoveWallRequest(CommandRequest):
 class PlaceRequest(CommandRequest):
     """Put the simulated robot down elsewhere."""
 
+    moves: ClassVar[bool] = True
     x_m: Way
     y_m: Way
     heading_rad: Angle
@@ -146,6 +148,8 @@ class PlaceRequest(CommandRequest):
 @_at("/world/start")
 class BackToStartRequest(CommandRequest):
     """Put the simulated robot down at the start of its run."""
+
+    moves: ClassVar[bool] = True
 
 
 @_at("/simulation")

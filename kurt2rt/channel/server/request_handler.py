@@ -157,7 +157,7 @@ class RequestHandler:
         if waiting is None:
             if self._runtime.handler.was_handled(command_id):  # before this start of the program, or long ago
                 return done(self.tick, Outcome(ResultCode.REPEATED), lesson=self.lesson_of(command_id))
-            moves = isinstance(request, TickRequest) and request.command.moves
+            moves = request.command.moves if isinstance(request, TickRequest) else request.moves
             longest = MOVING_TICKS if moves else COMMAND_TICKS
             stale = self._stale(request.boot, request.seen, longest)
             if stale is not None:

@@ -274,7 +274,9 @@ class SetPhase(SingleCommand):
     """Set the training phase, 1 to 5."""
 
     path: ClassVar[str] = "/phase"
+    moves: ClassVar[bool] = True
     phase: PhaseNumber
+    """Phase 5 drives without a teacher."""
     seen_tick: int | None = None
     """A stop after this tick refuses the command."""
 

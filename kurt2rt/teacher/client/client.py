@@ -1,52 +1,74 @@
 """Teacher's device in Python: see the robot, teach it and drive it over the network.
 
 async with TeacherClient(Path("var/devices/phone")) as robot:
-    await robot.take()
+    await robot.send(Take)
     async for state in robot.states():
         if state.cause == "unknown":
-            await robot.answer("forward", of=state.tick)
+            await robot.send(Teach, action="forward", decision_tick=state.tick)
 """
 
-from collections.abc import AsyncIterator, Mapping
+import hashlib
+import secrets
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
+from typing import Any
 
 import anyio
 
-from kurt2rt.channel.protocol.requests import TABLE, ExamRequest, ExportRequest, SaveRequest
-from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.teaching.commands import (
-    BeAt,
-    BeginSession,
-    EndSession,
-    HandOver,
-    Pursue,
-    Resume,
-    RunBehaviour,
-    Seek,
-    SetLessonSpeed,
-    SetPhase,
-    StopSeeking,
-    Take,
-)
-from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.lesson_commands import LessonCommands
+from kurt2rt.channel.protocol.limits import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
+from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.channel.protocol.requests import LoadRequest, UploadRequest
+from kurt2rt.core.teaching.commands import Correct, Resume, RunBehaviour, Single, Stop, Take, TeachShown
+from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDriveHandle
-from kurt2rt.teacher.client.simulation_commands import SimulationCommands
+from kurt2rt.teacher.client.observer_client import ObserverClient
 
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
+_REWIND_S = 10.0
+"""Driving that a robot keeps for late lessons, in s (1000 ticks)."""
+_PART_EACH_S = 0.008
 
 
-class TeacherClient(LessonCommands, SimulationCommands):
+class TeacherClient(ObserverClient):
     """Async context manager that connects a teacher's device to one robot.
 
     Inside it states come in. While this device is in charge, it reports its teacher's presence to the robot.
 
     Commands are sent again every 0.1 s, count once, and return the robot's `Answer`; a refusal is an Answer too. They
     raise NoAnswerError after 3.5 s without an answer; it is then unknown whether they counted. `stop` overtakes every
-    other command. Lessons take the tick of the state that is meant as `of`; None: the present decision. Only one
-    program at a time can use a pairing.
+    other command. Only one program at a time can use a pairing.
     """
+
+    async def send(self, kind: type[Single | CommandRequest], /, **fields: Any) -> Answer:
+        """Send a command; a stop that comes before the answer refuses a command that may move the robot.
+
+        `Take` returns when the robot knows that its teacher is there. `Resume` and `RunBehaviour` end a stop that is
+        still being sent.
+
+        Args:
+            kind: Class of the command, of core/teaching/commands.py or channel/protocol/requests.py.
+            fields: Fields of the class that have a check. `decision_tick` is the tick of the state that is meant; None:
+                the present decision. The client adds the others, such as the id and the state that was seen.
+
+        Raises:
+            NoAnswerError: The robot does not answer.
+            TypeError: The class has other fields.
+        """
+        if kind is Stop:
+            return await self.stop()
+        if kind in (Resume, RunBehaviour):
+            self._open.stops.supersede()
+        sender = self._open.sender
+        if not kind.moves:
+            return await sender.command(kind, **fields)
+        answer = await self._open.stops.move(kind.path.strip("/"), lambda: sender.command(kind, **fields))
+        if kind is Take and answer.accepted:
+            with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
+                async for state in self.states():
+                    if state.teacher == self.name:
+                        self._drive.beat()
+                        break
+        return answer
 
     # Motion
 
@@ -62,16 +84,8 @@ class TeacherClient(LessonCommands, SimulationCommands):
 
     @property
     def stop_pending(self) -> bool:
-        """True while an unanswered stop is being sent: until its answer, `resume`, `run` or a press."""
+        """True while an unanswered stop is being sent: until its answer, `Resume`, `run` or a press."""
         return self._open.stops.pending
-
-    async def resume(self) -> Answer:
-        """Let the robot drive again after a stop (the page's GO). Raises NoAnswerError.
-
-        The answer is a refusal if a stop came since the newest state.
-        """
-        self._open.stops.supersede()
-        return await self._move("go", Resume)
 
     async def run(self, action: str, seconds: float) -> Answer:
         """Run one action of the repertoire for `seconds` of robot time; the robot stands afterwards.
@@ -82,8 +96,9 @@ class TeacherClient(LessonCommands, SimulationCommands):
 
         async def begin() -> Answer:
             ticks = await self._ticks(seconds)
-            return await self._command(RunBehaviour, moves=True, action=action, ticks=ticks)
+            return await self._open.sender.command(RunBehaviour, action=action, ticks=ticks)
 
+        # A stop also ends the wait for the length of a tick.
         return await self._open.stops.move(action, begin)
 
     @property
@@ -160,108 +175,66 @@ class TeacherClient(LessonCommands, SimulationCommands):
         assert ended is not None, "a hold that is not released was refused"
         return ended
 
-    # Goals
+    # Lessons
 
-    async def pursue(self, behaviour: str) -> Answer:
-        """Select which of the task's behaviours the robot follows and is taught. Raises NoAnswerError."""
-        return await self._move(behaviour, Pursue, behaviour=behaviour)
+    async def correct_earlier(self, action: str, seconds: float) -> Answer:
+        """Correct what the basic level did `seconds` before it last drove (rewind).
 
-    async def seek(self, name: str) -> Answer:
-        """Go to a named situation; the robot plans the way. Raises NoAnswerError.
-
-        Without a way it stands; its state shows that.
-        """
-        return await self._move(name, Seek, goal=NamedGoal(name))
-
-    async def seek_rla(self, rla: int) -> Answer:
-        """Go to the situation that an RLA of the mid level knows; `rla` is its id. Raises NoAnswerError."""
-        return await self._move(f"RLA {rla}", Seek, goal=RlaGoal(rla))
-
-    async def seek_like(self, features: Mapping[str, float], tolerance: float) -> Answer:
-        """Go to any situation with these feature values of the mid level.
-
-        Args:
-            features: Values by the name of the feature, in its unit.
-            tolerance: Largest difference of each value, in the feature's unit (m, rad, counts or 0 to 1).
+        A robot keeps its last 10 s of driving, however long it has stood since or between.
 
         Raises:
+            ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
+            NoAnswerError: the robot does not answer.
+        """
+        if not 0.0 <= seconds <= _REWIND_S:
+            raise ValueError(f"seconds: a robot keeps the last {_REWIND_S:g} s of driving (got {seconds:g})")
+        stream = self._stream
+        tick = None if stream.tick_before(0) is None else stream.tick_before(await self._ticks(seconds))
+        if tick is None:
+            raise ValueError("this device has not seen the robot drive; correct what it does from now on")
+        return await self.send(Correct, action=action, decision_tick=tick)
+
+    async def teach_shown(self, segments: Sequence[int] | None = None) -> Answer:
+        """Teach the newest drive by hand, as `State.shown` cuts it into actions; undone as one.
+
+        `segments`: indexes of those that are right; None: all.
+
+        Raises:
+            ValueError: The newest state has no drive by hand to teach.
             NoAnswerError: The robot does not answer.
         """
-        return await self._move("a goal", Seek, goal=PartialGoal(tuple(features.items()), tolerance))
+        shown = None if self.state is None else self.state.shown
+        if shown is None:
+            raise ValueError("there is no drive by hand to teach; drive by hand and let go first")
+        chosen = tuple(range(len(shown.actions)) if segments is None else segments)
+        return await self.send(TeachShown, press_id=shown.press_id, segments=chosen)
 
-    async def stop_seeking(self) -> Answer:
-        """Drop the goal; the mid level commands by its nearest RLA again. Raises NoAnswerError."""
-        return await self._move("no goal", StopSeeking)
+    # Knowledge for the next run of a simulated robot
 
-    async def set_location(self, name: str) -> Answer:
-        """Tell the robot that it was put down at a named situation. Raises NoAnswerError."""
-        return await self._command(BeAt, name=name)
+    async def load(self, content: bytes) -> Answer:
+        """Upload knowledge at up to 100 kB/s and begin the next run with it.
 
-    # Session
-
-    async def begin_session(self, name: str) -> Answer:
-        """Begin a session: the teaching clock runs. Raises NoAnswerError."""
-        return await self._command(BeginSession, name=name)
-
-    async def end_session(self) -> Answer:
-        """End the session: the teaching clock stops. Raises NoAnswerError."""
-        return await self._command(EndSession)
-
-    async def take(self) -> Answer:
-        """Become the robot's teacher. On return the robot knows that its teacher is there.
-
-        Raises NoAnswerError.
+        `content` is an archive of an export or a knowledge file. Raises NoAnswerError.
         """
-        answer = await self._move("take", Take)
-        if answer.accepted:
-            with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
-                async for state in self.states():
-                    if state.teacher == self.name:
-                        self._drive.beat()
-                        break
-        return answer
+        upload = secrets.token_bytes(UPLOAD_ID_BYTES)
+        try:
+            await self.upload(upload, content)
+        except RefusedError as error:
+            return error.answer or Answer(False, "refused", str(error), -1)
+        return await self.send(LoadRequest, upload=upload, sha256=hashlib.sha256(content).digest())
 
-    async def hand_over(self, to: str | None = None) -> Answer:
-        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot.
+    async def upload(self, upload: bytes, content: bytes) -> None:
+        """Upload a file into the robot's memory under the random id `upload`, for a `LoadRequest`.
 
-        Raises NoAnswerError.
+        Raises RefusedError if the robot refuses a part, NoAnswerError.
         """
-        return await self._command(HandOver, to=to)
-
-    async def set_phase(self, phase: Phase) -> Answer:
-        """Choose the training phase. Phase 5 drives without a teacher, so a stop ends that command.
-
-        Raises NoAnswerError.
-        """
-        if phase is Phase.AUTONOMOUS:
-            return await self._move("phase 5", SetPhase, phase=phase)
-        return await self._command(SetPhase, phase=phase)
-
-    async def set_lesson_speed(self, percent: int) -> Answer:
-        """Set the speed of lessons (slow lessons): until the robot's program ends, or another speed is set.
-
-        In phases 1 and 2 actions drive at `percent` of their speed, 20 to 100, and their knowledge drives at
-        full speed afterwards. Raises NoAnswerError.
-        """
-        return await self._command(SetLessonSpeed, percent=percent)
-
-    async def save(self, label: str = "") -> Answer:
-        """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`.
-
-        `label` becomes part of the name. Raises NoAnswerError.
-        """
-        return await self._command(SaveRequest, label=label)
-
-    async def export(self, form: str = TABLE) -> Answer:
-        """Write the RLAs as a table on the robot, or with PACKAGE one file to give away.
-
-        `extra` of the answer holds the file's `name` and `sha256`. Raises NoAnswerError.
-        """
-        return await self._command(ExportRequest, form=form)
-
-    async def examine(self) -> Answer:
-        """Begin an exam of a copy of the present knowledge, of a simulated robot only; `exam` tells its status.
-
-        Raises NoAnswerError.
-        """
-        return await self._command(ExamRequest)
+        sender = self._open.sender
+        state = await sender.state()
+        for offset in range(0, len(content), UPLOAD_PART_BYTES):
+            part = content[offset : offset + UPLOAD_PART_BYTES]
+            began_s = self._now()
+            answer = await sender.send(UploadRequest(state.boot, upload, offset, part))
+            if not answer.accepted:
+                raise RefusedError(answer.text or answer.why, answer)
+            # The robot drops more than 200 requests a second of one key.
+            await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))

@@ -42,8 +42,8 @@ class RequestSender:
         """Reason why the robot is not reached, as far as the network tells; empty while it is."""
         return self._requests.trouble
 
-    async def command(self, kind: type[Single | CommandRequest], *, moves: bool = False, **fields: Any) -> Answer:
-        """Send a command for the newest state; `moves` tells that it may set the robot in motion.
+    async def command(self, kind: type[Single | CommandRequest], **fields: Any) -> Answer:
+        """Send a command for the newest state.
 
         Args:
             kind: class of the command, or of a request that is none for the tick.
@@ -54,7 +54,7 @@ class RequestSender:
         """
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
         state = await self.state()
-        seen = self._stream.displayed_tick if moves else self._stream.newest_tick
+        seen = self._stream.displayed_tick if kind.moves else self._stream.newest_tick
         if issubclass(kind, CommandRequest):
             return await self.send(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
         return await self.send(tick_request(kind, state.boot, command_id, seen, **fields))

@@ -1,9 +1,9 @@
 """A teacher for scripts and notebooks: `TeacherClient` without async.
 
 with Teacher("var/devices/local") as teacher:
-    teacher.take()
+    teacher.send(Take)
     asking = teacher.wait_for_question()
-    teacher.answer("forward", of=asking.tick)
+    teacher.send(Teach, action="forward", decision_tick=asking.tick)
 """
 
 import time
@@ -54,10 +54,9 @@ class Teacher:
     `patience_s`, and RuntimeError while the Teacher is not open.
 
     Its teacher counts as present during each call and for `attention_s` after it. Then it stands, and
-    drives on only after `resume`: if the script hangs or computes for longer, and between two notebook cells.
+    drives on only after `Resume`: if the script hangs or computes for longer, and between two notebook cells.
 
-    Use one Teacher from one thread at a time. Speeds are in metres per second. Lessons take the tick of
-    the state that is meant as `of`; None: the present decision.
+    Use one Teacher from one thread at a time. Speeds are in metres per second.
     """
 
     def __init__(
@@ -182,35 +181,14 @@ class Teacher:
     world = _blocking(TeacherClient.world)
     why = _blocking(TeacherClient.why)
 
-    # Session
+    # Commands
 
-    take = _blocking(TeacherClient.take)
-    hand_over = _blocking(TeacherClient.hand_over)
-    set_phase = _blocking(TeacherClient.set_phase)
-    set_lesson_speed = _blocking(TeacherClient.set_lesson_speed)
-    begin_session = _blocking(TeacherClient.begin_session)
-    end_session = _blocking(TeacherClient.end_session)
-    save = _blocking(TeacherClient.save)
-
-    # Lessons
-
-    lessons = _blocking(TeacherClient.lessons)
-    answer = _blocking(TeacherClient.answer)
-    correct = _blocking(TeacherClient.correct)
-    correct_earlier = _blocking(TeacherClient.correct_earlier)
-    reward = _blocking(TeacherClient.reward)
-    appraise = _blocking(TeacherClient.appraise)
-    undo = _blocking(TeacherClient.undo)
-    teach_shown = _blocking(TeacherClient.teach_shown)
-
-    # Motion
-
-    resume = _blocking(TeacherClient.resume)
+    send = _blocking(TeacherClient.send)
     stop = _blocking(TeacherClient.stop)
-    pursue = _blocking(TeacherClient.pursue)
     run = _blocking(TeacherClient.run)
-    place = _blocking(TeacherClient.place)
-
+    lessons = _blocking(TeacherClient.lessons)
+    correct_earlier = _blocking(TeacherClient.correct_earlier)
+    teach_shown = _blocking(TeacherClient.teach_shown)
     hold_for = _blocking(TeacherClient.hold_for)
 
     def drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:

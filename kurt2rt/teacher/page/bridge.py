@@ -8,16 +8,27 @@ from typing import Any
 import anyio
 import anyio.abc
 
+from kurt2rt.channel.protocol.requests import LoadRequest, NextRunRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.outcome_text import text_of as outcome_text_of
 from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.commands import Take
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.page.commands import COMMANDS, PageCommand, is_resumption, max_state_age_s
 from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
-from kurt2rt.teacher.page.messages import Hidden, HoldPress, PageHeartbeat, PageMessage, Press, Release, StopNow, Why
+from kurt2rt.teacher.page.messages import (
+    Hidden,
+    HoldPress,
+    PageCommand,
+    PageHeartbeat,
+    PageMessage,
+    Press,
+    Release,
+    StopNow,
+    Why,
+)
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.sent_states import SentState
 from kurt2rt.teacher.page.slow_state import SlowState
@@ -29,6 +40,9 @@ _POLL_S = 0.01
 """Longest delay until a silent page is noticed."""
 _SILENT_S = 0.5
 """A robot without a state for so long is reported as silent, and again after each such time."""
+_MOTION_S = 1.0
+_OTHER_S = 3.0
+"""Greatest age of the state that a command is given on: the robot's limits, for the page's own link."""
 _MAX_PENDING = 8
 """Largest number of commands of one page without an answer."""
 
@@ -175,26 +189,31 @@ class Bridge:
 
     def _on_command(self, connection: PageConnection, command: PageCommand) -> None:
         number = command.number
-        if command.name != "take" and not self._has_control(connection):
+        if command.kind is not Take and not self._has_control(connection):
             connection.send(refusal_view(number, "watching", text_of(PageNotice.NOT_IN_CONTROL)))
             return
         shown = connection.states.get(command.picture)
         if shown is None or self._newest is None or shown.boot != self._newest.boot:
             connection.send(refusal_view(number, "stale", text_of(PageNotice.NO_STATE)))
-        elif self._now() - shown.sent_s > max_state_age_s(command):
+        elif self._now() - shown.sent_s > (_MOTION_S if command.kind.moves else _OTHER_S):
             # The robot learns the tick of this server's newest state, so it cannot check the page's.
             connection.send(refusal_view(number, "stale", _page_text(RefusalCode.OLD_PICTURE)))
-        elif is_resumption(command) and shown.sent_s < self._stopped_s:
+        elif command.kind.moves and shown.sent_s < self._stopped_s:
             connection.send(refusal_view(number, "stopped", _page_text(RefusalCode.STOPPED_SINCE)))
-        elif command.name == "take" and self._claim_control(connection):
+        elif command.kind is Take and self._claim_control(connection):
             connection.send({**refusal_view(number, "", text_of(PageNotice.CONTROL_TAKEN)), "accepted": True})
         else:
             self._start(connection, number, self._answer, partial(self._send, command, shown))
 
     async def _send(self, command: PageCommand, shown: SentState) -> Answer:
-        kind = COMMANDS[command.name]
-        answer = await kind.send(self._robot, command.arguments, shown.tick)
-        if answer.accepted and kind.ends_run:
+        # A lesson without a tick of its own is about the state on the page's screen.
+        fields = (
+            {"decision_tick": shown.tick, **command.fields}
+            if hasattr(command.kind, "decision_tick")
+            else command.fields
+        )
+        answer = await self._robot.send(command.kind, **fields)
+        if answer.accepted and command.kind in (NextRunRequest, LoadRequest):  # no more states of this run come
             self._ended_boot = shown.boot
         return answer
 

@@ -2,27 +2,28 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import MISSING, dataclass, fields
+from typing import Annotated, Any, get_args
 
-from kurt2rt.core.teaching.message_fields import Check, Float, Int, OrNone, Text, WireError
-from kurt2rt.teacher.page.commands import COMMANDS, PageCommand
+from kurt2rt.channel.protocol.codec import PATHS
+from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.core.teaching.commands import Single
+from kurt2rt.core.teaching.message_fields import Bytes, Check, Float, Int, Name, OrNone, Speed, WireError, checks_of
 
 LONGEST_MESSAGE = 1024
 """Length limit, in characters."""
 
-_COUNTER = Int(1, 2**53)
-_PICTURE = OrNone(_COUNTER)
-_SPEED_M_S = Float(2.0, "m/s")
+Counter = Annotated[int, Int(1, 2**53)]
+Picture = Annotated[int | None, OrNone(Int(1, 2**53))]
+"""Number of the state on the page's screen; None before the first."""
 
 
 @dataclass(frozen=True, slots=True)
 class PageHeartbeat:
     """Sign of a visible page, ten times a second."""
 
-    picture: int | None
-    """Number of the state on its screen; None before the first."""
-    at_ms: float
+    picture: Picture
+    at_ms: Annotated[float, Float(1e15, "ms")]
     """The page's own clock, sent back to it for the round trip."""
 
 
@@ -35,21 +36,21 @@ class Hidden:
 class Press:
     """The deadman switch is held; 20 times a second."""
 
-    press_id: int
+    press_id: Counter
     """Number of the press; grows."""
-    left_m_s: float
-    right_m_s: float
-    picture: int | None
+    left_m_s: Speed
+    right_m_s: Speed
+    picture: Picture
 
 
 @dataclass(frozen=True, slots=True)
 class HoldPress:
     """A button of an action is held (hold to correct); 20 times a second."""
 
-    press_id: int
+    press_id: Counter
     """Number of the press, in one sequence with those of `Press`."""
-    action: str
-    picture: int | None
+    action: Name
+    picture: Picture
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +62,7 @@ class Release:
 class StopNow:
     """STOP of a page, also of one without control."""
 
-    number: int
+    number: Counter
     """The page's own number of this message, repeated in the answer."""
 
 
@@ -69,29 +70,39 @@ class StopNow:
 class Why:
     """Question for the facts of the newest decision, from any page."""
 
-    number: int
+    number: Counter
     """The page's own number of this message, repeated in the answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class PageCommand:
+    """Command for the robot, as a page with control sent it."""
+
+    number: Counter
+    """The page's own number of this message, repeated in the answer."""
+    kind: type[Single | CommandRequest]
+    fields: Mapping[str, Any]
+    """Checked fields that the page gave; the others have their defaults."""
+    picture: Picture
 
 
 PageMessage = PageHeartbeat | Hidden | Press | HoldPress | Release | StopNow | Why | PageCommand
 
-_FIELDS: Mapping[str, Mapping[str, Check]] = {
-    "beat": {"picture": _PICTURE, "at_ms": Float(1e15, "ms")},
-    "hidden": {},
-    "press": {"hold": _COUNTER, "left_m_s": _SPEED_M_S, "right_m_s": _SPEED_M_S, "picture": _PICTURE},
-    "hold": {"hold": _COUNTER, "action": Text(64, least=1), "picture": _PICTURE},
-    "release": {},
-    "stop": {"number": _COUNTER},
-    "why": {"number": _COUNTER},
-    "order": {"number": _COUNTER, "name": Text(64, least=1), "arguments": lambda _, value: value, "picture": _PICTURE},
-}
-_TYPES: Mapping[str, type[PageHeartbeat | Hidden | Release | StopNow | Why]] = {
+_TYPES: Mapping[str, type[PageHeartbeat | Hidden | Press | HoldPress | Release | StopNow | Why | PageCommand]] = {
     "beat": PageHeartbeat,
     "hidden": Hidden,
+    "press": Press,
+    "hold": HoldPress,
     "release": Release,
     "stop": StopNow,
     "why": Why,
+    "command": PageCommand,
 }
+
+COMMANDS: Mapping[str, type[Single | CommandRequest]] = {
+    path: kind for path, kind in PATHS.items() if issubclass(kind, (*get_args(Single), CommandRequest))
+}
+"""Class of each command that a page may send, by its path on the wire."""
 
 
 def parse(text: str) -> PageMessage:
@@ -105,23 +116,34 @@ def parse(text: str) -> PageMessage:
     if not isinstance(content, dict):
         raise WireError("message: has to be an object")
     kind = content.pop("kind", None)
-    if not isinstance(kind, str) or kind not in _FIELDS:
-        raise WireError(f"kind has to be one of {', '.join(_FIELDS)}")
-    fields = _checked(kind, _FIELDS[kind], content)
-    if kind == "press":
-        return Press(fields["hold"], fields["left_m_s"], fields["right_m_s"], fields["picture"])
-    if kind == "hold":
-        return HoldPress(fields["hold"], fields["action"], fields["picture"])
-    if kind != "order":
-        return _TYPES[kind](**fields)
-    name = fields["name"]
-    if name not in COMMANDS:
-        raise WireError(f"name of a command has to be one of {', '.join(COMMANDS)}")
-    fields["arguments"] = _checked(name, COMMANDS[name].fields, fields["arguments"])
-    return PageCommand(**fields)
+    if not isinstance(kind, str) or kind not in _TYPES:
+        raise WireError(f"kind has to be one of {', '.join(_TYPES)}")
+    own: dict[str, Any] = {}
+    if kind == "command":
+        path = content.pop("path", None)
+        if not isinstance(path, str) or path not in COMMANDS:
+            raise WireError(f"path of a command has to be one of {', '.join(COMMANDS)}")
+        own = {"kind": COMMANDS[path], "fields": _command_fields(COMMANDS[path], content.pop("fields", None))}
+    checks = checks_of(_TYPES[kind])
+    if content.keys() != checks.keys():
+        raise WireError(f"{kind} has the fields {', '.join(checks) or '(none)'}")
+    return _TYPES[kind](**{name: check(name, content[name]) for name, check in checks.items()}, **own)
 
 
-def _checked(what: str, checks: Mapping[str, Check], content: object) -> dict[str, Any]:
-    if not isinstance(content, dict) or content.keys() != checks.keys():
-        raise WireError(f"{what} has the fields {', '.join(checks) or '(none)'}")
-    return {name: check(name, content[name]) for name, check in checks.items()}
+def _command_fields(kind: type[Single | CommandRequest], content: object) -> dict[str, Any]:
+    """Check the fields that a page gave a command; bytes are hexadecimal. Raises WireError."""
+    own = checks_of(CommandRequest)
+    checks = {name: check for name, check in checks_of(kind).items() if name not in own}
+    needed = {each.name for each in fields(kind) if each.name in checks and each.default is MISSING}
+    if not isinstance(content, dict) or not needed <= content.keys() <= checks.keys():
+        raise WireError(f"{kind.path} has the fields {', '.join(checks) or '(none)'}")
+    return {name: checks[name](name, _bytes_in(checks[name], value)) for name, value in content.items()}
+
+
+def _bytes_in(check: Check, value: object) -> object:
+    if not isinstance(check, Bytes) or not isinstance(value, str):
+        return value
+    try:
+        return bytes.fromhex(value)
+    except ValueError:
+        return None

@@ -11,6 +11,7 @@ from anyio.abc import TaskGroup
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.teaching.commands import Correct, HandOver, Resume, Take, Teach, Undo
 from kurt2rt.ros.port import RosConnectionError, RosPort
 from kurt2rt.ros.settings import is_ros_name
 from kurt2rt.ros.topic import Topic, trigger_service
@@ -56,12 +57,9 @@ class Services:
 
         Raises RosConnectionError if the connection is closed.
         """
-        robot = self._robot
-        self._serve("stop", robot.stop, always=True)
-        self._serve("resume", robot.resume)
-        self._serve("take", robot.take)
-        self._serve("release", robot.hand_over)
-        self._serve("undo", robot.undo)
+        self._serve("stop", self._robot.stop, always=True)
+        for kind in (Resume, Take, HandOver, Undo):
+            self._serve(kind.path.strip("/"), partial(self._robot.send, kind))
         unnamed = []
         for action in hello.actions:
             if is_ros_name(action):
@@ -82,12 +80,12 @@ class Services:
         state = self._robot.state
         if state is not None and state.asks_at == MID and state.standing.asks:
             raise ValueError("the mid level asks for a way, and services teach actions alone; answer on the page")
-        return await self._robot.answer(action, of=None if state is None else state.tick)
+        return await self._robot.send(Teach, action=action, decision_tick=None if state is None else state.tick)
 
     async def _correct(self, action: str) -> Answer:
         """Correct the decision of the newest state. Raises NoAnswerError."""
         state = self._robot.state
-        return await self._robot.correct(action, of=None if state is None else state.tick)
+        return await self._robot.send(Correct, action=action, decision_tick=None if state is None else state.tick)
 
     def _serve(self, name: str, work: Work, *, always: bool = False) -> None:
         """Offer a service once; `always`: also while many requests are under way."""

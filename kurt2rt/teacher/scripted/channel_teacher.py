@@ -14,7 +14,7 @@ from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.decision.standing import stop_text
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.teaching.commands import BeginSession, EndSession, Resume, SetLessonSpeed, SetPhase, Take
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
@@ -61,7 +61,7 @@ async def teach_by_script(
     await _begin(robot, f"scripted, {profile.name}, seed {seed}")
     percent = round(100 * task.teaching.lesson_speed)
     if percent < 100:
-        await _must(robot, lambda: robot.set_lesson_speed(percent), lambda state: state.lesson_speed < 1.0)
+        await _must(robot, lambda: robot.send(SetLessonSpeed, percent=percent), lambda state: state.lesson_speed < 1.0)
         say(f"slow lessons: the robot drives at {percent} % of the speed of its actions in phases 1 and 2")
     if task.teaching.reposition_every_s:
         say(_reposition_notice(task))
@@ -77,9 +77,11 @@ async def teach_by_script(
 
 
 async def _begin(robot: TeacherClient, session: str) -> None:
-    await _must(robot, robot.take, lambda state: state.teacher == robot.name)
-    await _must(robot, lambda: robot.begin_session(session), lambda state: state.session == session)
-    await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
+    await _must(robot, lambda: robot.send(Take), lambda state: state.teacher == robot.name)
+    await _must(robot, lambda: robot.send(BeginSession, name=session), lambda state: state.session == session)
+    await _must(
+        robot, lambda: robot.send(SetPhase, phase=Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED
+    )
 
 
 async def _teach(
@@ -109,7 +111,9 @@ async def _teach(
         if teacher.phase is Phase.SUPERVISED and state.tick - first >= corrections_from:
             teacher.begin_phase(Phase.CORRECTIONS)
             await _must(
-                robot, lambda: robot.set_phase(Phase.CORRECTIONS), lambda state: state.phase == Phase.CORRECTIONS
+                robot,
+                lambda: robot.send(SetPhase, phase=Phase.CORRECTIONS),
+                lambda state: state.phase == Phase.CORRECTIONS,
             )
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
         await _resume_if_self_stopped(robot, state)
@@ -163,7 +167,7 @@ def _reposition_notice(task: TaskSettings) -> str:
 async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
     # Read before the session ends: its end gives the robot another reason to stand.
     stop = _person_stop(robot, await _state_at(robot, 0))
-    ended = await _must(robot, robot.end_session, lambda state: state.session is None)
+    ended = await _must(robot, lambda: robot.send(EndSession), lambda state: state.session is None)
     stop = stop or _person_stop(robot, await _state_at(robot, ended.tick))
     stopped = "" if stop is None else stop_text(stop)
 
@@ -175,7 +179,7 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
 
     if not stopped:
         say("now the robot drives alone (phase 5)")
-        for give in (lambda: robot.set_phase(Phase.AUTONOMOUS), robot.resume):
+        for give in (lambda: robot.send(SetPhase, phase=Phase.AUTONOMOUS), lambda: robot.send(Resume)):
             try:
                 got = await _must(robot, partial(unless_stopped, give), lambda _: False)
             except RefusedError as error:
@@ -191,7 +195,7 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
 async def _resume_if_self_stopped(robot: TeacherClient, state: State) -> None:
     if state.stopped is not None and state.stopped.is_automatic:
         with suppress(NoAnswerError):  # the next state shows whether it is still needed
-            await robot.resume()
+            await robot.send(Resume)
 
 
 def _person_stop(robot: TeacherClient, state: State) -> ActiveStop | None:

@@ -12,6 +12,7 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Undo,
 )
+from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 
@@ -44,11 +45,11 @@ class CommandSender:
                 case Stop(press_id=None):
                     await robot.stop()
                 case Resume():
-                    await robot.resume()
+                    await robot.send(Resume)
                 case Undo(lesson=own_id):
                     lesson = self._lessons.pop(own_id or "", None)
                     if lesson is not None:
-                        await robot.undo(lesson)
+                        await robot.send(Undo, lesson=lesson)
                 case Stop(press_id=int(press_id)):
                     return self._note(hold_id(SCRIPTED, press_id), await robot.let_go())
                 case Teach() | Correct() | DeleteRla():
@@ -60,16 +61,10 @@ class CommandSender:
         return 0
 
     async def _teach(self, command: Teach | Correct | DeleteRla, tick: int) -> Answer:
-        robot = self._robot
-        match command:
-            case Teach(action=action, decision_tick=of):
-                return await robot.answer(action, of=tick if of is None else of)
-            case Correct(action=action, late=True):
-                return await robot.correct(action, late=True)
-            case Correct(action=action, decision_tick=of):
-                return await robot.correct(action, of=tick if of is None else of)
-            case DeleteRla(rla_id=rla_id):
-                return await robot.delete(rla_id)
+        fields = {name: getattr(command, name) for name in checks_of(type(command))}
+        if fields.get("decision_tick", tick) is None and not fields.get("late"):
+            fields["decision_tick"] = tick
+        return await self._robot.send(type(command), **fields)
 
     def _note(self, own_id: str, answer: Answer | None) -> int:
         """Note the lesson of a press; return 1 if the robot accepted the press, else 0."""

@@ -7,10 +7,12 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.requests import PlaceRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 
@@ -151,14 +153,14 @@ class ScriptedSupervisor:
         place = self._repositioner.update(state, waits=stopped or not _should_move(state))
         if due and selected is not None:
             with suppress(NoAnswerError):  # the cycler repeats it after a second
-                await self._robot.pursue(selected)
+                await self._robot.send(Pursue, behaviour=selected)
         if place is not None:
             self._say(await self._reposition(place))
 
     async def _reposition(self, place: SimulatedPlace) -> str:
         text = f"no progress for {self._task.teaching.rescue_after_s:g} s: the robot is put where it drove before"
         try:
-            answer = await self._robot.place(place.x_m, place.y_m, place.heading_rad)
+            answer = await self._robot.send(PlaceRequest, x_m=place.x_m, y_m=place.y_m, heading_rad=place.heading_rad)
         except NoAnswerError as error:
             return f"{text}: {error}"
         return f"{text}, x {place.x_m:.2f} m, y {place.y_m:.2f} m: {answer.text}"

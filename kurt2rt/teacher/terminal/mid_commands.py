@@ -1,10 +1,12 @@
-"""Typed commands of the mid level: behaviours at junctions, names of places, goals."""
+"""Typed commands of the mid level: behaviours at junctions, and goals."""
 
 from collections.abc import Awaitable, Sequence
 
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.teaching.commands import Correct, Seek, StopSeeking, Teach
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.terminal_text import expects_mid_answer
@@ -20,7 +22,7 @@ def mid_command(
     `state`: the newest one when the line was typed. Awaiting the result raises NoAnswerError.
     """
     command = None if hello.mid is None else _lesson(robot, hello, words, state)
-    return _goal(robot, words, state) if command is None and hello.seeks else command
+    return _goal(robot, words) if command is None and hello.seeks else command
 
 
 def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
@@ -28,26 +30,21 @@ def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: Sta
     match words:
         case [behaviour] if _means_behaviour(behaviour, hello, state):
             if state is None or state.mid is None or expects_mid_answer(state.mid):
-                return robot.answer(behaviour, of=tick, level=MID)
-            return robot.correct(behaviour, of=tick, level=MID)
+                return robot.send(Teach, action=behaviour, decision_tick=tick, level=MID)
+            return robot.send(Correct, action=behaviour, decision_tick=tick, level=MID)
         case ["also", behaviour]:
-            return robot.answer(behaviour, of=tick, level=MID, alternative=True)
+            return robot.send(Teach, action=behaviour, decision_tick=tick, level=MID, alternative=True)
     return None
 
 
-def _goal(robot: TeacherClient, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
+def _goal(robot: TeacherClient, words: Sequence[str]) -> Awaitable[Answer] | None:
     match words:
-        case ["name", *name] if name:
-            return robot.name_situation(" ".join(name), of=None if state is None else state.tick)
-        case ["here", *name] if name:
-            return robot.set_location(" ".join(name))
         case ["seek"]:
-            return robot.stop_seeking()
+            return robot.send(StopSeeking)
         case ["seek", "rla", rla_id] if rla_id.isdecimal() and len(rla_id) <= _MOST_DIGITS:
-            return robot.seek_rla(int(rla_id))
+            return robot.send(Seek, goal=RlaGoal(int(rla_id)))
         case ["seek", *goal]:
-            like = _features_in(goal)
-            return robot.seek(" ".join(goal)) if like is None else robot.seek_like(*like)
+            return robot.send(Seek, goal=_features_in(goal) or NamedGoal(" ".join(goal)))
     return None
 
 
@@ -58,7 +55,7 @@ def _means_behaviour(name: str, hello: Hello, state: State | None) -> bool:
     return name not in hello.actions or (state is not None and state.asks_at == MID)
 
 
-def _features_in(words: Sequence[str]) -> tuple[dict[str, float], float] | None:
+def _features_in(words: Sequence[str]) -> PartialGoal | None:
     """Parse features and tolerance of a goal, such as x_m=1.8 wall_left=1 within 0.2; None for anything else."""
     tolerance = None
     if len(words) > 2 and words[-2] == "within":
@@ -72,7 +69,7 @@ def _features_in(words: Sequence[str]) -> tuple[dict[str, float], float] | None:
         if not name or not equals or number is None:
             return None
         features[name] = number
-    return (features, tolerance or 0.0) if features else None
+    return PartialGoal(tuple(features.items()), tolerance or 0.0) if features else None
 
 
 def _number_in(text: str) -> float | None:

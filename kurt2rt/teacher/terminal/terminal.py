@@ -3,8 +3,9 @@
 import asyncio
 import math
 import threading
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Sequence
-from typing import NamedTuple, TextIO
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, fields
+from typing import Any, NamedTuple, TextIO, get_args
 
 import anyio
 from anyio.abc import TaskGroup
@@ -13,11 +14,25 @@ from anyio.streams.memory import MemoryObjectSendStream
 from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.health_text import lines_of
 from kurt2rt.channel.protocol.hello import Hello
+from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.channel.protocol.requests import ExportRequest, SaveRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import ASKING
 from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import CRITIC, Phase
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeginSession,
+    Correct,
+    HandOver,
+    Resume,
+    Reward,
+    Single,
+    Take,
+    Teach,
+)
+from kurt2rt.core.teaching.message_fields import Check, checks_of
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.terminal.mid_commands import mid_command
@@ -46,6 +61,12 @@ _RETRY_S = 0.5
 _POLL_S = 0.5
 _SILENT_AFTER_S = 1.5
 _MOST_DIGITS = 15
+
+_KINDS: Mapping[str, type[Single | CommandRequest]] = {
+    **{kind.path.split("/")[-1]: kind for kind in (*get_args(Single), SaveRequest, ExportRequest)},
+    "go": Resume,
+}
+"""Class of each command by its word, the end of its path on the wire; its fields follow in their order."""
 
 Say = Callable[[str], None]
 
@@ -97,7 +118,7 @@ class TerminalTeacher:
                     await self._on_line(line)
                 await self._tried.wait()
                 if self._met and await self._attempt(self._send(self._robot.stop())):
-                    await self._attempt(self._send(self._robot.hand_over()))
+                    await self._attempt(self._send(self._robot.send(HandOver)))
                 tasks.cancel_scope.cancel()
 
     async def _listen(self, typed: MemoryObjectSendStream[_Line], tasks: TaskGroup) -> None:
@@ -131,7 +152,7 @@ class TerminalTeacher:
         if hello.what:
             self._say(hello.what)
         self._say_all(name_lines(hello))
-        await self._attempt(self._send(self._robot.take()))
+        await self._attempt(self._send(self._robot.send(Take)))
         self._met = True
         self._tried.set()
         tasks.start_soon(self._report_states)
@@ -165,7 +186,7 @@ class TerminalTeacher:
         state = self._robot.state
         teacher = None if state is None else state.teacher
         if teacher is None:
-            await self._send(self._robot.take())
+            await self._send(self._robot.send(Take))
         elif teacher != self._robot.name:
             self._say(f"{teacher} teaches now; type take to teach yourself")
 
@@ -266,49 +287,28 @@ class TerminalTeacher:
         """Return the command of a line, if it is one; `state` is the newest one when it was typed."""
         robot, tick = self._robot, None if state is None else state.tick
         match words:
-            case ["go"] | ["resume"]:
-                return robot.resume()
             case ["step", action]:
                 return robot.run(action, seconds=_STEP_S)
             case ["step", action, seconds] if _is_number(seconds):
                 return robot.run(action, seconds=float(seconds))
             case [("+" | "-") as sign]:
-                return robot.reward(1 if sign == "+" else -1, of=tick)
-            case ["undo", *lesson] if len(lesson) <= 1:
-                return robot.undo(lesson[0] if lesson else None)
-            case ["replace", rla_id, action] if _is_count(rla_id):
-                return robot.replace(int(rla_id), action)
-            case ["delete", rla_id] if _is_count(rla_id):
-                return robot.delete(int(rla_id))
-            case ["phase", ("1" | "2" | "3" | "4" | "5") as number]:
-                return robot.set_phase(Phase(int(number)))
-            case ["speed", percent] if _is_count(percent):
-                return robot.set_lesson_speed(int(percent))
-            case ["pursue", behaviour]:
-                return robot.pursue(behaviour)
-            case ["begin", *name]:
-                return robot.begin_session(" ".join(name) or "session")
-            case ["end"]:
-                return robot.end_session()
-            case ["save", *label]:
-                return robot.save(" ".join(label))
-            case ["export"]:
-                return robot.export()
-            case ["take"]:
-                return robot.take()
-            case ["release"]:
-                return robot.hand_over()
+                return robot.send(Reward, value=1 if sign == "+" else -1, decision_tick=tick)
+            case ["begin"]:
+                return robot.send(BeginSession, name="session")
             case [action] if action in hello.actions:
                 # The same word answers a question and corrects a robot that drives.
                 if expects_answer(state):
-                    return robot.answer(action, of=tick)
-                return robot.correct(action, of=tick, late=True)
+                    return robot.send(Teach, action=action, decision_tick=tick)
+                return robot.send(Correct, action=action, decision_tick=tick, late=True)
             case ["hold", action, seconds] if action in hello.actions and _is_number(seconds):
                 return robot.hold_for(action, float(seconds))
             case ["rewind", seconds, action] if action in hello.actions and _is_number(seconds):
                 return robot.correct_earlier(action, float(seconds))
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
-                return robot.appraise(appraisal, of=tick)
+                return robot.send(Appraise, appraisal=appraisal, decision_tick=tick)
+            case [word, *values] if word in _KINDS:
+                fields = _fields_in(_KINDS[word], values, tick)
+                return None if fields is None else robot.send(_KINDS[word], **fields)
         return None
 
     def _say_all(self, lines: Iterable[str]) -> None:
@@ -336,14 +336,30 @@ class TerminalTeacher:
 
 def _moves(text: str) -> bool:
     """Return whether a line may set the robot in motion."""
-    match text.split():
-        case ["go" | "resume" | "step" | "hold" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
-            return True
-    return False
+    word = text.split()[0]
+    return word in ("step", "hold") or (word in _KINDS and _KINDS[word].moves)
 
 
-def _is_count(text: str) -> bool:
-    return text.isdecimal() and len(text) <= _MOST_DIGITS
+def _fields_in(kind: type[Single | CommandRequest], values: Sequence[str], tick: int | None) -> dict[str, Any] | None:
+    """Return the fields of a typed command, the last one with all words that are left; None if one is missing.
+
+    `tick`: of the state that the teacher judged. A wrong value is refused by the client.
+    """
+    own = checks_of(CommandRequest)
+    checks = {name: check for name, check in checks_of(kind).items() if name not in (*own, "decision_tick")}
+    needed = sum(each.default is MISSING for each in fields(kind) if each.name in checks)
+    if not needed <= len(values) or (values and not checks):
+        return None
+    places = [*values[: len(checks) - 1], " ".join(values[len(checks) - 1 :])] if len(values) > len(checks) else values
+    typed = {name: _value(check, word) for (name, check), word in zip(checks.items(), places, strict=False)}
+    return {**typed, "decision_tick": tick} if hasattr(kind, "decision_tick") else typed
+
+
+def _value(check: Check, word: str) -> object:
+    try:
+        return check("", word)
+    except WireError:
+        return int(word) if word.isdecimal() and len(word) <= _MOST_DIGITS else word
 
 
 def _is_number(text: str) -> bool:

@@ -198,8 +198,8 @@ async def _teach_once(at_work: RobotAtWork) -> None:
     """Check that the channel still works."""
     now = asyncio.get_running_loop().time
     async with TeacherClient(at_work.other.device.folder, port=at_work.port, now=now) as teacher:
-        assert (await teacher.take()).accepted
-        assert (await teacher.answer("back")).accepted
+        assert (await teacher.send(Take)).accepted
+        assert (await teacher.send(Teach, action="back")).accepted
 
 
 def _strangers(folder: Path, count: int, *, seed: int) -> None:

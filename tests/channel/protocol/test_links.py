@@ -22,7 +22,7 @@ from kurt2rt.channel.protocol.request_types import CommandRequest, Request, Tick
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.events import TeachingEvent
-from kurt2rt.core.teaching.commands import Command, ReplaceAction, Reward, Teach
+from kurt2rt.core.teaching.commands import Command, ReplaceAction, Resume, Reward, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.transport import Exchange, OnResponse
@@ -163,8 +163,8 @@ class Story:
             await self._dies()
 
     async def _begin(self) -> None:
-        await self._insist(self._teacher.take)
-        await self._insist(lambda: self._teacher.answer("forward"))
+        await self._insist(lambda: self._teacher.send(Take))
+        await self._insist(lambda: self._teacher.send(Teach, action="forward"))
 
     async def _insist(self, say: Callable[[], Any]) -> None:
         """Say it until it is accepted."""
@@ -185,15 +185,17 @@ class Story:
             assert state is not None
             try:
                 if state.stopped:
-                    await teacher.resume()
+                    await teacher.send(Resume)
                 match number % 3:
                     case 0:
                         self._at_work.robot.counts = self._chance.randrange(60, 560)
-                        await teacher.answer(self._chance.choice(("forward", "back", "spin_left")))
+                        await teacher.send(Teach, action=self._chance.choice(("forward", "back", "spin_left")))
                     case 1:
-                        await teacher.reward(1)  # blame would have the robot ask, and stand
+                        await teacher.send(Reward, value=1)  # blame would have the robot ask, and stand
                     case _:
-                        await teacher.replace(self._chance.randint(1, state.rlas + 1), "spin_right")
+                        await teacher.send(
+                            ReplaceAction, rla_id=self._chance.randint(1, state.rlas + 1), action="spin_right"
+                        )
             except NoAnswerError:
                 pass
             await anyio.sleep(0.05)
@@ -279,7 +281,7 @@ class Story:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(self._keep_pressing, _HOLE_S)
             with pytest.raises(NoAnswerError):
-                await self._teacher.answer("back")
+                await self._teacher.send(Teach, action="back")
         # With nothing newer behind it OSCORE takes what comes now for new: the rules above it have to know better.
         self._teacher.die()
         await anyio.sleep(_HELD_S)
@@ -304,7 +306,7 @@ class Story:
     async def _until_rlas_drive(self) -> None:
         with anyio.fail_after(_LONGEST_S):
             while self._at_work.records[-1].decision.cause not in (DecisionCause.RLA, DecisionCause.HELD):
-                await self._insist(self._teacher.resume)
+                await self._insist(lambda: self._teacher.send(Resume))
                 with anyio.move_on_after(0.5):
                     await self._at_work.until(lambda: self._at_work.records[-1].decision.driving)
 

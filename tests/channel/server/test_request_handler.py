@@ -82,6 +82,9 @@ MOVING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
     Take: (),
     Seek: (NamedGoal("door"),),
     StopSeeking: (),
+    SetPhase: (Phase.CORRECTIONS,),
+    PlaceRequest: (1.0, 1.0, 0.0),
+    BackToStartRequest: (),
 }
 LASTING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
     Teach: ("forward", None),
@@ -94,7 +97,6 @@ LASTING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
     Undo: (None,),
     NameSituation: ("door", None),
     BeAt: ("door",),
-    SetPhase: (Phase.CORRECTIONS,),
     SetLessonSpeed: (60,),
     BeginSession: ("morning",),
     EndSession: (),
@@ -102,12 +104,10 @@ LASTING: dict[type[Single | CommandRequest], tuple[object, ...]] = {
     SaveRequest: ("label",),
     ExportRequest: (),
     MoveWallRequest: ("box", 0.1, 0.0),
-    PlaceRequest: (1.0, 1.0, 0.0),
     ExamRequest: (),
     NextRunRequest: (None, None, False),
     SpeedRequest: (2,),
     LoadRequest: (bytes(8), bytes(32)),
-    BackToStartRequest: (),
 }
 COMMANDS = {**MOVING, **LASTING}
 READING = {

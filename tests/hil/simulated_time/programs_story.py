@@ -21,6 +21,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.teaching.commands import Resume, Take, Teach
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.three_programs import (
@@ -62,7 +63,7 @@ async def at_work(bus: str, folder: Path, *words: str) -> AsyncIterator[AtWork]:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
         with runtime(bus, folder, "--settings", str(one_rule_for_all(folder)), *words) as robot:
             async with teacher_of(robot, folder) as we:
-                assert (await we.take()).accepted
+                assert (await we.send(Take)).accepted
                 await until_it_drives(we, "spin_left")
                 yield AtWork(sim, robot, we)
 
@@ -242,11 +243,11 @@ async def test_a_log_that_canplayer_plays_is_sensed_as_it_was_recorded(vcan0: st
 async def test_a_log_that_canplayer_plays_drives_the_runtime(vcan0: str, tmp_path: Path, recorded: Recorded) -> None:
     with doing("canplayer", "-l", "i", "-I", str(recorded.log)), runtime(vcan0, tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as we:
-            assert (await we.take()).accepted
-            assert (await we.resume()).accepted
+            assert (await we.send(Take)).accepted
+            assert (await we.send(Resume)).accepted
             asks = await state_where(we, lambda state: state.cause == "unknown")
             assert asks.infrared_counts in recorded.counts
-            assert (await we.answer("stand", of=asks.tick)).accepted
+            assert (await we.send(Teach, action="stand", decision_tick=asks.tick)).accepted
             with anyio.fail_after(LONG_ENOUGH_S):
                 seen = 0
                 async for state in we.states():

@@ -19,6 +19,7 @@ import yaml
 from config import CONFIG_DIR
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.standing import stop_text
+from kurt2rt.core.teaching.commands import Resume, Take
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running
@@ -75,7 +76,7 @@ def robot(folder: Path) -> Iterator[Running]:
 async def teacher() -> AsyncIterator[TeacherClient]:
     """Connect a teacher with the key of this machine's own programs, which root may read."""
     async with TeacherClient(STATE / "var/devices/local", port=PORT) as we:
-        assert (await we.take()).accepted
+        assert (await we.send(Take)).accepted
         yield we
 
 
@@ -86,7 +87,7 @@ async def until_up(unit: Unit) -> int:
 async def stands_until_go(we: TeacherClient) -> None:
     stopped = await state_where(we, lambda state: state.stopped is not None)
     assert (stopped.stopped, stopped.left_m_s, stopped.right_m_s) == (STARTED, 0.0, 0.0)
-    assert (await we.resume()).accepted
+    assert (await we.send(Resume)).accepted
     await state_where(we, lambda state: state.stopped is None)
 
 

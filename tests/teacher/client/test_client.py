@@ -16,11 +16,8 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
 from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.requests import (
-    PACKAGE,
-    ExportRequest,
     HelloRequest,
     LessonsRequest,
-    MoveWallRequest,
     PlaceRequest,
     SaveRequest,
     StopRequest,
@@ -28,32 +25,22 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
-from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.decision.goal import PartialGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import InfraredLaw
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import (
-    Appraise,
-    BeAt,
-    BeginSession,
     Correct,
-    DeleteRla,
     Drive,
-    EndSession,
-    HandOver,
-    NameSituation,
     Pursue,
-    ReplaceAction,
     Resume,
     Reward,
     RunBehaviour,
     Seek,
-    SetLessonSpeed,
     SetPhase,
     Single,
     SingleCommand,
-    StopSeeking,
     Take,
     Teach,
     Undo,
@@ -302,71 +289,19 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     robot.showing = False
     picture = robot.show()
     await seen(client, lambda: client.state == picture)
-    await client.answer("forward", of=88)
-    await client.correct("spin_right")
-    await client.reward(-1, of=80)
-    await client.appraise("bad", of=81)
-    await client.appraise("neutral")
-    await client.replace(7, "forward")
-    await client.delete(7)
-    await client.undo()
-    await client.undo("phone-01")
-    await client.set_phase(Phase.CORRECTIONS)
-    await client.set_lesson_speed(60)
-    await client.pursue("turn_left")
-    await client.answer("turn_left", level=MID, alternative=True)
-    await client.correct("turn_left", of=80, level=MID)
-    await client.name_situation("door", of=81)
-    await client.seek("door")
-    await client.seek_rla(12)
-    await client.seek_like({"x_m": 1.5}, 0.25)
-    await client.stop_seeking()
-    await client.set_location("door")
-    await client.begin_session("morning")
-    await client.end_session()
-    await client.resume()
-    await client.take()
-    await client.hand_over("laptop")
-    await client.save("after lunch")
-    await client.export()
-    await client.export(PACKAGE)
-    await client.run("quarter_turn_left", seconds=3.0)
-    await client.move_wall("north", 0.5, -0.25)
-    await client.place(1.0, 2.0, 0.5)
-    heard = [each for each in robot.orders() if isinstance(each, CommandRequest | SingleCommand)]
     expected: list[tuple[type[Any], dict[str, Any]]] = [
-        (Teach, {"action": "forward", "decision_tick": 88}),
-        (Correct, {"action": "spin_right", "decision_tick": None}),
-        (Reward, {"value": -1, "decision_tick": 80}),
-        (Appraise, {"appraisal": "bad", "decision_tick": 81}),
-        (Appraise, {"appraisal": "neutral", "decision_tick": None}),
-        (ReplaceAction, {"rla_id": 7, "action": "forward"}),
-        (DeleteRla, {"rla_id": 7}),
-        (Undo, {"lesson": None}),
+        (Teach, {"action": "turn_left", "decision_tick": 88, "level": MID, "alternative": True}),
         (Undo, {"lesson": "phone-01"}),
-        (SetPhase, {"phase": Phase.CORRECTIONS}),
-        (SetLessonSpeed, {"percent": 60}),
-        (Pursue, {"behaviour": "turn_left"}),
-        (Teach, {"action": "turn_left", "decision_tick": None, "level": MID, "alternative": True}),
-        (Correct, {"action": "turn_left", "decision_tick": 80, "level": MID}),
-        (NameSituation, {"name": "door", "decision_tick": 81}),
-        (Seek, {"goal": NamedGoal("door")}),
-        (Seek, {"goal": RlaGoal(12)}),
         (Seek, {"goal": PartialGoal((("x_m", 1.5),), 0.25)}),
-        (StopSeeking, {}),
-        (BeAt, {"name": "door"}),
-        (BeginSession, {"name": "morning"}),
-        (EndSession, {}),
-        (Resume, {}),
         (Take, {}),
-        (HandOver, {"to": "laptop"}),
         (SaveRequest, {"label": "after lunch"}),
-        (ExportRequest, {"form": "table"}),
-        (ExportRequest, {"form": "package"}),
-        (RunBehaviour, {"action": "quarter_turn_left", "ticks": 300}),
-        (MoveWallRequest, {"name": "north", "dx_m": 0.5, "dy_m": -0.25}),
         (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
     ]
+    for kind, fields in expected:
+        await client.send(kind, **fields)
+    await client.run("quarter_turn_left", seconds=3.0)
+    expected.append((RunBehaviour, {"action": "quarter_turn_left", "ticks": 300}))
+    heard = [each for each in robot.orders() if isinstance(each, CommandRequest | SingleCommand)]
     for (kind, fields), each in zip(expected, heard, strict=True):
         assert isinstance(each, kind)
         assert {name: getattr(each, name) for name in fields} == fields
@@ -387,7 +322,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
 )
 async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
     robot.mind = always(reply)
-    assert await client.answer("forward") == answer
+    assert await client.send(Teach, action="forward") == answer
 
 
 async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pairing, robot: StandInRobot) -> None:
@@ -401,7 +336,7 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
         answers: list[Answer] = []
 
         async def teach() -> None:
-            answers.append(await client.answer("forward"))
+            answers.append(await client.send(Teach, action="forward"))
 
         tasks.start_soon(teach)
         await robot.hears(Teach, 3, copies=True)
@@ -423,7 +358,7 @@ async def test_command_without_answer_raises_and_leaves_nothing(pairing: Pairing
         tasks_before = len(asyncio.all_tasks())
         link.cut()
         lost_before = link.up.lost
-        results = await asyncio.gather(*(client.reward(1) for _ in range(100)), return_exceptions=True)
+        results = await asyncio.gather(*(client.send(Reward, value=1) for _ in range(100)), return_exceptions=True)
         assert all(isinstance(each, NoAnswerError) for each in results)
         assert {each.code for each in results if isinstance(each, NoAnswerError)} == {NoAnswer.NO_REPLY}
         await link.until(lambda: link.up.lost - lost_before >= 100)
@@ -433,7 +368,7 @@ async def test_command_without_answer_raises_and_leaves_nothing(pairing: Pairing
         await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
         link.mend()
         be_patient(client)
-        assert (await client.reward(1)).accepted
+        assert (await client.send(Reward, value=1)).accepted
 
 
 async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> None:
@@ -442,7 +377,7 @@ async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> Non
         TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.1) as client,
     ):
         with pytest.raises(NoAnswerError) as caught:
-            await client.answer("forward")
+            await client.send(Teach, action="forward")
         assert caught.value.code is NoAnswer.NO_STATE
         assert robot.heard == []
         be_patient(client)
@@ -509,11 +444,11 @@ async def never_answers(_: object) -> Reply:
 
 
 MOVING: dict[str, tuple[type[Single], Callable[[TeacherClient], Awaitable[Answer]]]] = {
-    "go": (Resume, lambda client: client.resume()),
+    "resume": (Resume, lambda client: client.send(Resume)),
     "forward": (RunBehaviour, lambda client: client.run("forward", seconds=1.0)),
-    "phase 5": (SetPhase, lambda client: client.set_phase(Phase.AUTONOMOUS)),
-    "take": (Take, lambda client: client.take()),
-    "turn_left": (Pursue, lambda client: client.pursue("turn_left")),
+    "phase": (SetPhase, lambda client: client.send(SetPhase, phase=Phase.AUTONOMOUS)),
+    "take": (Take, lambda client: client.send(Take)),
+    "pursue": (Pursue, lambda client: client.send(Pursue, behaviour="turn_left")),
 }
 
 
@@ -560,7 +495,7 @@ async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, r
     answers: list[Answer] = []
 
     async def teach() -> None:
-        answers.append(await client.answer("forward"))
+        answers.append(await client.send(Teach, action="forward"))
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(teach)
@@ -581,10 +516,10 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
 
     robot.mind = stops_later
     await client.stop()
-    await client.resume()
-    await client.answer("forward")
+    await client.send(Resume)
+    await client.send(Teach, action="forward")
     # Other answers do not show that another teacher stopped the robot meanwhile.
-    await client.resume()
+    await client.send(Resume)
     resumes = robot.all_of(Resume)
     assert [each.seen_tick for each in resumes] == [stopped_tick, stopped_tick]
     assert robot.all_of(Teach)[0].seen_tick == stopped_tick + 20
@@ -644,7 +579,7 @@ async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, 
         assert client.stop_pending
         be_patient(client)
         if wish == "resume":
-            assert (await client.resume()).accepted
+            assert (await client.send(Resume)).accepted
         elif wish == "run":
             assert (await client.run("forward", seconds=1.0)).accepted
         else:
@@ -856,7 +791,7 @@ async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pai
                 await seen(client, lambda: client.state is not None and client.state.boot == b"next")
                 assert client.restarts == 1
                 assert not client.pressing
-                assert (await client.answer("forward")).accepted
+                assert (await client.send(Teach, action="forward")).accepted
                 boots = list(zip(robot.heard, robot.boots, strict=True))
                 assert {boot for each, boot in boots if isinstance(each, Teach)} == {b"next"}
                 assert {boot for each, boot in boots if isinstance(each, Drive)} <= {b"boot"}

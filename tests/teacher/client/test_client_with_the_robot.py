@@ -8,12 +8,13 @@ from pathlib import Path
 import anyio
 import pytest
 
-from kurt2rt.channel.protocol.requests import PACKAGE
+from kurt2rt.channel.protocol.requests import PACKAGE, ExportRequest, SaveRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach, Undo
 from kurt2rt.knowledge.exchange.package import read_package
 from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
@@ -82,9 +83,9 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             hello = await robot.hello()
             assert (hello.robot, hello.simulated, len(hello.sensors)) == (SETTINGS.name, True, 18)
             assert hello.phases == tuple(each.name.lower() for each in Phase)
-            assert (await robot.take()).accepted
+            assert (await robot.send(Take)).accepted
             asks = await state_where(robot, teacher="phone", cause="unknown")
-            answer = await robot.answer("forward", of=asks.tick)
+            answer = await robot.send(Teach, action="forward", decision_tick=asks.tick)
             assert answer.accepted
             assert answer.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward")
             drives = await state_where(robot, cause="rla", lessons=1, unsaved=0)
@@ -92,14 +93,14 @@ async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> No
             (line,) = await robot.lessons()
             assert (line.teacher, line.phase, line.undone) == ("phone", 1, False)
             assert line.stamp != ""
-            nonsense = await robot.correct("fly")
+            nonsense = await robot.send(Correct, action="fly")
             assert (nonsense.accepted, nonsense.why) == (False, "refused")
             assert nonsense.outcome is not None
             assert nonsense.outcome.code is RefusalCode.NO_ACTION
-            agreed = await robot.correct("forward", of=asks.tick)
+            agreed = await robot.send(Correct, action="forward", decision_tick=asks.tick)
             assert (agreed.accepted, agreed.lesson) == (True, None)
             assert answer.lesson == line.command_id
-            assert (await robot.undo(answer.lesson)).accepted
+            assert (await robot.send(Undo, lesson=answer.lesson)).accepted
             await state_where(robot, lessons=0)
             (line,) = await robot.lessons()
             assert line.undone
@@ -110,7 +111,7 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
     device = paired(tmp_path).device
     with rig() as live:
         async with listening_robot(live, tmp_path) as port, TeacherClient(device.folder, port=port) as robot:
-            assert (await robot.take()).accepted
+            assert (await robot.send(Take)).accepted
             await state_where(robot, teacher="phone")
             async with robot.driving() as drive:
                 assert drive.set(0.2, 0.2)
@@ -130,7 +131,7 @@ async def test_drive_by_hand_is_shown_taught_and_undone_as_one(tmp_path: Path) -
                     if state.lessons and not state.unsaved:
                         break
             assert [line.command_id for line in await robot.lessons()] == [lesson]
-            assert (await robot.undo(str(lesson))).accepted
+            assert (await robot.send(Undo, lesson=str(lesson))).accepted
             await state_where(robot, rlas=0)
 
 
@@ -142,10 +143,13 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
             LossyLink(port, up=A_BAD_LINK, down=A_BAD_LINK) as link,
             TeacherClient(device.folder, port=link.port) as robot,
         ):
-            assert (await robot.take()).accepted
+            assert (await robot.send(Take)).accepted
             asks = await state_where(robot, teacher="phone", cause="unknown")
-            assert (await robot.answer("forward", of=asks.tick)).accepted
-            for made, folder in ((await robot.save("noon"), "saved"), (await robot.export(PACKAGE), "exported")):
+            assert (await robot.send(Teach, action="forward", decision_tick=asks.tick)).accepted
+            for made, folder in (
+                (await robot.send(SaveRequest, label="noon"), "saved"),
+                (await robot.send(ExportRequest, form=PACKAGE), "exported"),
+            ):
                 assert made.accepted, made.text
                 parts = [part async for part in robot.file_parts(made.extra["name"])]
                 content = b"".join(part.content for part in parts)
@@ -166,10 +170,10 @@ async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
             listening_robot(live, tmp_path) as port,
             TeacherClient(device.folder, port=port) as robot,
         ):
-            assert (await robot.take()).accepted
+            assert (await robot.send(Take)).accepted
             for _ in range(10):
                 stop = await robot.stop()
-                go = await robot.resume()
+                go = await robot.send(Resume)
                 # Its readings are old if this machine stalled, and the answer says so.
                 assert (stop.code, go.code) == (ResultCode.STOPPED, ResultCode.RESUMED)
             await state_where(robot, stopped=None)

@@ -16,7 +16,7 @@ from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.teaching.commands import Watch
+from kurt2rt.core.teaching.commands import Correct, Resume, Take, Teach, Undo, Watch
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots
@@ -48,26 +48,26 @@ async def test_teacher_in_a_running_loop_teaches(robot: RobotProcess) -> None:
     with Teacher(robot.device) as teacher:
         assert "forward" in teacher.hello().actions
         assert teacher.world() is not None
-        assert teacher.take().accepted
-        teacher.resume()
+        assert teacher.send(Take).accepted
+        teacher.send(Resume)
         asking = teacher.wait_for_question()
-        assert teacher.answer("forward", of=asking.tick).outcome == Outcome.of(
+        assert teacher.send(Teach, action="forward", decision_tick=asking.tick).outcome == Outcome.of(
             ResultCode.RLA_TAUGHT, rla=1, action="forward"
         )
         drives = teacher.wait_until(lambda state: state.cause == "rla")
         assert (drives.rla, drives.teacher) == (1, "local")
-        refused = teacher.correct("fly")
+        refused = teacher.send(Correct, action="fly")
         assert (refused.accepted, refused.why) == (False, "refused")
         (line,) = teacher.lessons()
         assert "RLA 1 " in line.text
-        assert teacher.undo().accepted
+        assert teacher.send(Undo).accepted
         assert teacher.wait_for_question().rlas == 0
     assert robot.knowledge.is_file()
 
 
 def test_drive_interrupted_by_ctrl_c_stops_the_robot(robot: RobotProcess) -> None:
     with Teacher(robot.device, patience_s=10.0) as teacher:
-        teacher.take()
+        teacher.send(Take)
         # A device that stalls for a quarter of a second is silent: the robot ends its press.
         while teacher.drive(0.1, 0.1, seconds=0.1) != "":
             assert teacher.wait_until(lambda state: not state.by_hand).left_m_s == 0.0
@@ -99,9 +99,9 @@ def drive_for_ever(teacher: Teacher) -> None:
 def hold_forward(teacher: Teacher) -> Answer:
     """Hold from a question, with nothing taught; again if the robot ended the press because this program stalled."""
     while True:
-        teacher.resume()
+        teacher.send(Resume)
         while rlas := teacher.state.rlas:
-            assert teacher.undo().accepted
+            assert teacher.send(Undo).accepted
             teacher.wait_until(lambda state: state.rlas < rlas)
         teacher.wait_for_question()
         answer = teacher.hold_for("forward", seconds=0.3)
@@ -111,25 +111,25 @@ def hold_forward(teacher: Teacher) -> Answer:
 
 def test_hold_teaches_for_its_time_and_tells_how_many(robot: RobotProcess) -> None:
     with Teacher(robot.device, patience_s=10.0) as teacher:
-        teacher.take()
+        teacher.send(Take)
         answer = hold_forward(teacher)
         assert answer.outcome is not None
         assert answer.outcome.fields["lessons"] == 1
         teacher.wait_until(lambda state: state.cause == "rla")
         assert "forward" in teacher.lessons()[0].text
-        assert teacher.undo().accepted
+        assert teacher.send(Undo).accepted
         teacher.wait_until(lambda state: not state.rlas)
         teacher.stop()
         refused = teacher.hold_for("forward", seconds=10.0)
         while refused.code is RefusalCode.PICTURE_LOST:  # this program stalled before the robot could refuse the press
             refused = teacher.hold_for("forward", seconds=10.0)
         assert refused.code is RefusalCode.ROBOT_STOPPED
-        assert teacher.resume().accepted
+        assert teacher.send(Resume).accepted
 
 
 def test_drive_out_of_range_raises_and_leaves_the_robot(robot: RobotProcess) -> None:
     with Teacher(robot.device) as teacher:
-        teacher.take()
+        teacher.send(Take)
         with pytest.raises(WireError, match=r"left_m_s .*-2 .*2"):
             teacher.drive(9.0, 9.0, seconds=1.0)
         assert not teacher.state.by_hand

@@ -12,6 +12,7 @@ import pytest
 
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.requests import PlaceRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.pairing import Device, local_pairing
 from kurt2rt.channel.server.channel import Channel
@@ -57,7 +58,7 @@ class Classroom:
 
     def put_robot_in_the_open(self) -> None:
         """Place the robot where no wall makes the guard stop it."""
-        answer = self.time.pass_until(self.client.place, 2.2, 2.0, 0.0)
+        answer = self.time.pass_until(lambda: self.client.send(PlaceRequest, x_m=2.2, y_m=2.0, heading_rad=0.0))
         assert answer.accepted, answer.text
 
     def cut(self) -> None:

@@ -1,7 +1,7 @@
 """Client of a robot that answers as the test says and notes its calls."""
 
 import math
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import Any
 
@@ -15,13 +15,14 @@ from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello, SensorPlace
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.limits import VERSION
-from kurt2rt.channel.protocol.requests import TABLE
+from kurt2rt.channel.protocol.request_types import CommandRequest
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing import DRIVES, Standing
 from kurt2rt.core.perception.sensor_words import infrared_law
-from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.core.teaching.commands import Single
+from kurt2rt.core.teaching.message_fields import checks_of
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
@@ -202,78 +203,16 @@ class FakeRobot(TeacherClient):
         await self._answer("world")
         return A_WORLD
 
-    async def answer(
-        self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
-    ) -> Answer:
-        return await self._answer("answer", action, of, *(() if level == BASIC else (level, alternative)))
-
-    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC, late: bool = False) -> Answer:
-        return await self._answer("correct", action, of, *(() if level == BASIC else (level,)), *(("late",) * late))
-
-    async def reward(self, value: int, *, of: int | None = None) -> Answer:
-        return await self._answer("reward", value, of)
-
-    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
-        return await self._answer("appraise", appraisal, of)
-
-    async def teach_shown(self, segments: Sequence[int] | None = None, *, press_id: int | None = None) -> Answer:
-        return await self._answer("teach_shown", segments, press_id)
-
-    async def undo(self, lesson: str | None = None) -> Answer:
-        return await self._answer("undo", lesson)
-
-    async def set_phase(self, phase: Phase) -> Answer:
-        return await self._answer("set_phase", phase)
-
-    async def set_lesson_speed(self, percent: int) -> Answer:
-        return await self._answer("lesson_speed", percent)
-
-    async def pursue(self, behaviour: str) -> Answer:
-        return await self._answer("pursue", behaviour)
-
-    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
-        return await self._answer("name_situation", name, of)
+    async def send(self, kind: type[Single | CommandRequest], /, **fields: Any) -> Answer:
+        return await self._answer(kind.path, *(fields[name] for name in checks_of(kind) if name in fields))
 
     async def situations(self) -> tuple[str, ...]:
         await self._answer("situations")
         return self.named
 
-    async def seek(self, name: str) -> Answer:
-        return await self._answer("seek", name)
-
-    async def stop_seeking(self) -> Answer:
-        return await self._answer("stop_seeking")
-
-    async def set_location(self, name: str) -> Answer:
-        return await self._answer("be_at", name)
-
-    async def begin_session(self, name: str) -> Answer:
-        return await self._answer("begin_session", name)
-
-    async def end_session(self) -> Answer:
-        return await self._answer("end_session")
-
     async def stop(self) -> Answer:
         self.pressing = False
         return await self._answer("stop")
-
-    async def resume(self) -> Answer:
-        return await self._answer("resume")
-
-    async def take(self) -> Answer:
-        return await self._answer("take")
-
-    async def hand_over(self, to: str | None = None) -> Answer:
-        return await self._answer("hand_over", to)
-
-    async def save(self, label: str = "") -> Answer:
-        return await self._answer("save", label)
-
-    async def export(self, form: str = TABLE) -> Answer:
-        return await self._answer("export", form)
-
-    async def examine(self) -> Answer:
-        return await self._answer("examine")
 
     async def exam(self) -> ExamStatus | None:
         if self.silent:
@@ -288,34 +227,16 @@ class FakeRobot(TeacherClient):
         for offset in range(0, len(self.files[name]), 1000):
             yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
 
-    async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
-        return await self._answer("move_wall", name, dx_m, dy_m)
-
-    async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
-        return await self._answer("place", x_m, y_m, heading_rad)
-
-    async def put_back(self) -> Answer:
-        return await self._answer("put_back")
-
     async def simulation(self) -> SimulationView | None:
         if self.silent:
             raise NoAnswerError("no answer")
         await anyio.lowlevel.checkpoint()
         return self.simulated
 
-    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
-        return await self._answer("next_run", world, task, fresh)
-
-    async def set_speed(self, times: int) -> Answer:
-        return await self._answer("set_speed", times)
-
     async def upload(self, upload: bytes, content: bytes) -> None:
         answer = await self._answer("upload", upload, content)
         if not answer.accepted:
             raise RefusedError(answer.text)
-
-    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
-        return await self._answer("load", upload, sha256)
 
     async def _answer(self, *told: Any) -> Answer:
         self._hear(told)

@@ -9,14 +9,30 @@ import anyio
 import anyio.lowlevel
 import pytest
 
+from kurt2rt.channel.protocol.request_types import CommandRequest
+from kurt2rt.channel.protocol.requests import NextRunRequest, PlaceRequest
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import Surface, text_of
 from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    Correct,
+    HandOver,
+    Pursue,
+    Resume,
+    Reward,
+    Seek,
+    SetLessonSpeed,
+    SetPhase,
+    Single,
+    Take,
+    Teach,
+)
 from kurt2rt.teacher.client.answer import local_refusal
 from kurt2rt.teacher.page.bridge import Bridge
-from kurt2rt.teacher.page.commands import PageCommand
-from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow
+from kurt2rt.teacher.page.messages import Hidden, PageCommand, PageHeartbeat, PageMessage, Press, Release, StopNow
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.texts import PageNotice
 from kurt2rt.teacher.page.texts import text_of as page_text_of
@@ -26,7 +42,6 @@ from tests.teacher.stand_in_robot import in_a_task_of_its_own
 
 PLACE = "127.0.0.1:5683"
 CAUSE = " (connection refused)"
-NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over", "pursue")
 STALE = text_of(Outcome(RefusalCode.OLD_PICTURE), Surface.PAGE)
 STOPPED = Outcome.of(RefusalCode.STOPPED_MEANWHILE, command="go")
 
@@ -69,8 +84,8 @@ class Page:
     def press(self, press_id: int = 1, speed: float = 0.2) -> None:
         self.say(Press(press_id, speed, speed, self.picture))
 
-    async def command(self, name: str, /, **arguments: object) -> dict[str, Any]:
-        self.say(PageCommand(1, name, arguments, self.picture))
+    async def command(self, kind: type[Single | CommandRequest], /, **fields: object) -> dict[str, Any]:
+        self.say(PageCommand(1, kind, fields, self.picture))
         await settled()
         return self.last("answer")
 
@@ -133,15 +148,15 @@ async def test_take_gives_the_second_page_control(fixture: BridgeFixture) -> Non
     await first.see()
     await second.see(teacher="phone")
     assert second.last("page")["seat"] == "elsewhere"
-    assert (await second.command("answer", action="forward", level="basic", beside=False))["why"] == "watching"
+    assert (await second.command(Teach, action="forward"))["why"] == "watching"
     second.press()
     assert second.last("let_go")["text"]
-    assert fixture.told("press", "answer") == []
+    assert fixture.told("press", "/answer") == []
 
-    assert (await second.command("take"))["accepted"]
+    assert (await second.command(Take))["accepted"]
     assert second.last("page")["seat"] == "here"
     assert first.last("page")["seat"] == "elsewhere"
-    assert fixture.told("take") == []
+    assert fixture.told("/take") == []
     second.press()
     assert fixture.told("press") == [("press", 0.2, 0.2)]
 
@@ -151,7 +166,7 @@ async def test_take_from_a_driving_page_ends_its_press(fixture: BridgeFixture) -
     await first.see(teacher="phone")
     await second.see()
     first.press()
-    await second.command("take")
+    await second.command(Take)
     assert fixture.told("let_go") == [("let_go",)]
 
 
@@ -276,7 +291,7 @@ async def test_hiding_or_closing_the_page_stops_a_driving_robot(
 async def test_ended_run_is_not_stopped_as_unseen(fixture: BridgeFixture, page: Page, refuses: str) -> None:
     await page.see(**DRIVING)
     fixture.robot.refuses = refuses
-    await page.command("next_run", world="b", task=None, fresh=False)
+    await page.command(NextRunRequest, world="b", task=None, fresh=False)
     fixture.robot.refuses = ""
     page.say(Hidden())
     await settled()
@@ -328,55 +343,55 @@ async def test_command_has_the_tick_of_the_page_s_state(fixture: BridgeFixture, 
     shown = page.picture
     await page.see(tick=600)
     page.picture = shown
-    await page.command("correct", action="spin_left", level="basic")
-    await page.command("reward", value=-1)
-    await page.command("appraise", appraisal="bad")
-    assert fixture.told("correct", "reward", "appraise") == [
-        ("correct", "spin_left", 500, "late"),
-        ("reward", -1, 500),
-        ("appraise", "bad", 500),
+    await page.command(Correct, action="spin_left", late=True)
+    await page.command(Reward, value=-1)
+    await page.command(Appraise, appraisal="bad")
+    assert fixture.told("/correct", "/reward", "/appraise") == [
+        ("/correct", "spin_left", 500, True),
+        ("/reward", -1, 500),
+        ("/appraise", "bad", 500),
     ]
 
 
 async def test_command_on_no_or_an_earlier_start_s_state_is_refused(fixture: BridgeFixture, page: Page) -> None:
     page.beat()
-    assert (await page.command("answer", action="forward", level="basic", beside=False))["why"] == "stale"
+    assert (await page.command(Teach, action="forward"))["why"] == "stale"
     await page.see(boot=b"old!")
     fixture.robot.show(boot=b"new!")
     await settled()
-    assert (await page.command("answer", action="forward", level="basic", beside=False))["why"] == "stale"
-    assert fixture.told("answer") == []
+    assert (await page.command(Teach, action="forward"))["why"] == "stale"
+    assert fixture.told("/answer") == []
 
 
-MOVING: list[tuple[str, dict[str, object]]] = [
-    ("resume", {}),
-    ("take", {}),
-    ("phase", {"phase": Phase.AUTONOMOUS}),
-    ("place", {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
-    ("pursue", {"behaviour": "turn_left"}),
+MOVING: list[tuple[type[Single | CommandRequest], dict[str, object]]] = [
+    (Resume, {}),
+    (Take, {}),
+    (SetPhase, {"phase": Phase.AUTONOMOUS}),
+    (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+    (Pursue, {"behaviour": "turn_left"}),
 ]
-OTHERS: list[tuple[str, dict[str, object]]] = [
-    ("correct", {"action": "forward", "level": "basic"}),
-    ("appraise", {"appraisal": "bad"}),
-    ("phase", {"phase": Phase.CRITIC}),
-    ("hand_over", {"to": None}),
+OTHERS: list[tuple[type[Single | CommandRequest], dict[str, object]]] = [
+    (Correct, {"action": "forward"}),
+    (Appraise, {"appraisal": "bad"}),
+    (SetLessonSpeed, {"percent": 60}),
+    (HandOver, {"to": None}),
 ]
 
 
 @pytest.mark.parametrize(
-    ("name", "arguments", "longest_s"), [(*each, 1.0) for each in MOVING] + [(*each, 3.0) for each in OTHERS]
+    ("kind", "fields", "longest_s"), [(*each, 1.0) for each in MOVING] + [(*each, 3.0) for each in OTHERS]
 )
 async def test_command_on_an_old_state_is_refused(
-    fixture: BridgeFixture, page: Page, name: str, arguments: dict[str, object], longest_s: float
+    fixture: BridgeFixture, page: Page, kind: type[Single | CommandRequest], fields: dict[str, object], longest_s: float
 ) -> None:
     await page.see()
     fixture.clock.advance(longest_s - 0.01)
-    assert (await page.command(name, **arguments))["accepted"]
-    told = len(fixture.told(*NAMES))
+    assert (await page.command(kind, **fields))["accepted"]
+    told = len(fixture.told(kind.path))
     fixture.clock.advance(0.02)
-    answer = await page.command(name, **arguments)
+    answer = await page.command(kind, **fields)
     assert (answer["why"], answer["text"]) == ("stale", STALE)
-    assert len(fixture.told(*NAMES)) == told
+    assert len(fixture.told(kind.path)) == told
 
 
 async def test_take_on_an_old_state_is_refused(fixture: BridgeFixture) -> None:
@@ -384,7 +399,7 @@ async def test_take_on_an_old_state_is_refused(fixture: BridgeFixture) -> None:
     await first.see(teacher="phone")
     await second.see()
     fixture.clock.advance(1.1)
-    assert (await second.command("take"))["why"] == "stale"
+    assert (await second.command(Take))["why"] == "stale"
     assert second.last("page")["seat"] == "elsewhere"
 
 
@@ -394,63 +409,30 @@ async def test_resume_on_a_state_before_a_stop_is_refused(fixture: BridgeFixture
     fixture.clock.advance(0.1)
     await page.see(stopped=ActiveStop(StopReason.SAID_STOP, "anna"))
     page.picture = shown
-    assert (await page.command("resume"))["why"] == "stopped"
+    assert (await page.command(Resume))["why"] == "stopped"
     fixture.clock.advance(0.1)
     await page.see()
     fixture.clock.advance(0.1)
     page.say(StopNow(7))
-    await page.command("resume")
-    assert fixture.told("resume") == []
+    await page.command(Resume)
+    assert fixture.told("/resume") == []
     await page.see()
-    assert (await page.command("resume"))["accepted"]
+    assert (await page.command(Resume))["accepted"]
 
 
-COMMANDS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
-    ("answer", {"action": "forward", "level": "basic", "beside": False}, ("answer", "forward", 102)),
-    ("answer", {"action": "turn_left", "level": "mid", "beside": True}, ("answer", "turn_left", 102, "mid", True)),
-    ("correct", {"action": "turn_left", "level": "mid"}, ("correct", "turn_left", 102, "mid")),
-    ("correct_at", {"action": "spin_left", "tick": 40}, ("correct", "spin_left", 40)),
-    ("teach_shown", {"press_id": 91, "segments": [0, 2]}, ("teach_shown", [0, 2], 91)),
-    ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
-    ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
-    ("lesson_speed", {"percent": 60}, ("lesson_speed", 60)),
-    ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),
-    ("name", {"name": "door"}, ("name_situation", "door", 102)),
-    ("seek", {"name": "door"}, ("seek", "door")),
-    ("stop_seeking", {}, ("stop_seeking",)),
-    ("be_at", {"name": "door"}, ("be_at", "door")),
-    ("begin_session", {"name": "morning"}, ("begin_session", "morning")),
-    ("end_session", {}, ("end_session",)),
-    ("resume", {}, ("resume",)),
-    ("hand_over", {"to": "anna"}, ("hand_over", "anna")),
-    ("save", {"label": ""}, ("save", "")),
-    ("export", {}, ("export", "package")),
-    ("examine", {}, ("examine",)),
-    ("load", {"upload": bytes(8), "sha256": b"\xab" * 32}, ("load", bytes(8), b"\xab" * 32)),
-    ("speed", {"times": 5}, ("set_speed", 5)),
-    ("put_back", {}, ("put_back",)),
-    ("next_run", {"world": "b", "task": None, "fresh": False}, ("next_run", "b", None, False)),
-    ("move", {"name": "tongue", "dx_m": 0.1, "dy_m": -0.2}, ("move_wall", "tongue", 0.1, -0.2)),
-    ("place", {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}, ("place", 1.0, 2.0, 0.5)),
-]
-
-
-@pytest.mark.parametrize(("name", "arguments", "told"), COMMANDS)
-async def test_command_calls_the_robot(
-    fixture: BridgeFixture, page: Page, name: str, arguments: dict[str, object], told: tuple[Any, ...]
-) -> None:
+async def test_command_keeps_the_tick_that_the_page_gave(fixture: BridgeFixture, page: Page) -> None:
     await page.see(tick=102)
-    answer = await page.command(name, **arguments)
-    assert answer["accepted"]
-    assert told in fixture.robot.told
+    assert (await page.command(Correct, action="spin_left", decision_tick=40))["accepted"]
+    assert (await page.command(Seek, goal=NamedGoal("door")))["accepted"]
+    assert fixture.told("/correct", "/seek") == [("/correct", "spin_left", 40), ("/seek", NamedGoal("door"))]
 
 
 async def test_refusal_and_missing_answer_reach_the_page(fixture: BridgeFixture, page: Page) -> None:
     await page.see()
     fixture.robot.refuses = "refused"
-    assert (await page.command("resume"))["text"] == "refused"
+    assert (await page.command(Resume))["text"] == "refused"
     fixture.robot.silent = True
-    assert (await page.command("resume"))["why"] == "unknown"
+    assert (await page.command(Resume))["why"] == "unknown"
     page.press()
     page.say(Release())
     await settled()
@@ -461,14 +443,14 @@ async def test_ninth_pending_command_is_busy_and_a_stop_is_sent(fixture: BridgeF
     await page.see()
     never = anyio.Event()
 
-    async def wait_for_ever() -> Any:
+    async def wait_for_ever(*_: object) -> Any:
         await never.wait()
 
-    fixture.robot.resume = wait_for_ever  # type: ignore[method-assign]
+    fixture.robot.send = wait_for_ever  # type: ignore[method-assign, assignment]
     for _ in range(8):
-        page.say(PageCommand(1, "resume", {}, page.picture))
+        page.say(PageCommand(1, Resume, {}, page.picture))
         await settled()
-    assert (await page.command("resume"))["why"] == "busy"
+    assert (await page.command(Resume))["why"] == "busy"
     page.say(StopNow(2))
     await settled()
     assert fixture.told("stop") == [("stop",)]

@@ -1,10 +1,12 @@
 """The page in a real browser, with the real client and a simulated robot: what a teacher with a phone lives through."""
 
 import itertools
+from functools import partial
 
 import pytest
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.teaching.commands import Resume, Undo
 from tests.teacher.page.classroom import Classroom
 from tests.teacher.page.phone import LAPTOP, PORTRAIT, Phone
 from tests.teacher.page.screens import on_each_screen
@@ -230,7 +232,7 @@ def test_two_quick_touches_while_it_asks_are_one_lesson(a_phone: Phone, room: Cl
     phone = a_phone
     begin(phone, room)
     for _ in range(room.state().lessons):
-        assert room.time.pass_until(room.client.undo).accepted
+        assert room.time.pass_until(lambda: room.client.send(Undo)).accepted
     phone.wait(lambda: lessons_shown(phone) == 0, "the page knows")
     stand(phone, room)
     phone.touch("#go")
@@ -267,7 +269,7 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
     phone.wait(lambda: not room.client.watching, "its server knows that no teacher looks")
     # A page that went may have left a stop on its way, also behind the first resume.
-    resumed = room.client.resume
+    resumed = partial(room.client.send, Resume)
     phone.wait(lambda: room.time.pass_until(resumed).accepted and room.state().stopped is None, "the robot may drive")
     phone.touch("#stop")
     phone.wait(lambda: "no link" in phone.text("#said"), "the page says that STOP waits")

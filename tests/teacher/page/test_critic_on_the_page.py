@@ -49,8 +49,8 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> 
     phone.touch("[data-appraisal=bad]")
     lesson.reads("#said", "appraise done")
     phone.key("keyDown", "0")
-    phone.wait(lambda: lesson.told("appraise") == ["bad", "neutral"], "a key teaches it, too")
-    assert lesson.told("reward") == []
+    phone.wait(lambda: lesson.told("/appraise") == ["bad", "neutral"], "a key teaches it, too")
+    assert lesson.told("/reward") == []
 
     lesson.show(opinion=None, opinion_of=None, agreement=0.61, signals_missing=(0, 0))
     lesson.reads("#opinion", "critic: does not know this")
@@ -70,4 +70,4 @@ def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> 
     lesson.show(value=-0.08)
     lesson.reads("#gauge-text", "value \N{MINUS SIGN}0.08")
     phone.touch("#blame")
-    phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
+    phone.wait(lambda: lesson.told("/reward") == [-1], "a signal is the robot's reward again")

@@ -50,7 +50,7 @@ def test_an_exam_ends_in_a_picture_and_a_verdict(lesson: Lesson) -> None:
     lesson.robot.examined = DRIVES
     phone.touch("#examine")
     lesson.reads("#exam-says", "42 %: exam without teacher, world b")
-    assert ("examine",) in lesson.robot.told
+    assert ("/exam",) in lesson.robot.told
     assert phone.run("return document.querySelector('#examine').disabled;")
     phone.show("21-exam-runs")
     later(lesson, OVER)

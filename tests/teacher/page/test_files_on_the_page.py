@@ -35,7 +35,7 @@ def test_a_copy_is_downloaded_whole(lesson: Lesson, tmp_path: Path) -> None:
     phone.touch("#export")
     phone.wait((tmp_path / NAME).exists, "the browser has stored it")
     assert (tmp_path / NAME).read_bytes() == CONTENT
-    assert ("export", "package") in lesson.robot.told
+    assert ("/export", "package") in lesson.robot.told
     assert f"{NAME} (5 kB)" in phone.text("#saved")
 
 
@@ -45,7 +45,7 @@ def test_a_file_is_uploaded_and_loaded(lesson: Lesson, tmp_path: Path) -> None:
     phone.write("#load-file", str(file))
     lesson.reads("#said", "load done")
     (uploaded,) = (each for each in lesson.robot.told if each[0] == "upload")
-    (loaded,) = (each for each in lesson.robot.told if each[0] == "load")
+    (loaded,) = (each for each in lesson.robot.told if each[0] == "/load")
     assert uploaded[2] == CONTENT
     assert loaded[1:] == (uploaded[1], hashlib.sha256(CONTENT).digest())
     phone.show("24-loaded")

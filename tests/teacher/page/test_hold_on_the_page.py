@@ -37,15 +37,15 @@ def test_held_button_holds_its_action_until_the_finger_lifts(lesson: Lesson) -> 
     lesson.phone.pass_time(0.2)
     assert set(lesson.told("hold")) == {"spin_left"}
     assert len(lesson.told("hold")) == count
-    assert lesson.told("correct") == [], "a hold is no tap"
+    assert lesson.told("/correct") == [], "a hold is no tap"
     assert not lesson.phone.has(f"{BUTTON}.held")
 
 
 def test_tap_on_a_button_is_a_late_correction(lesson: Lesson) -> None:
     lesson.phone.touch(BUTTON)
-    lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "a correction")
-    (told,) = lesson.robot.told_of("correct")
-    assert (told[1], told[3]) == ("spin_left", "late")
+    lesson.phone.wait(lambda: lesson.robot.told_of("/correct"), "a correction")
+    (told,) = lesson.robot.told_of("/correct")
+    assert (told[1], told[3]) == ("spin_left", True)
     lesson.phone.pass_time(0.4)
     assert lesson.told("hold") == []
 
@@ -59,9 +59,9 @@ def test_standing_is_taught_by_a_second_touch_and_never_held(a_lesson: Lesson) -
     phone, stand = a_lesson.phone, "[data-action=stand]"
     phone.touch(stand)
     phone.wait(lambda: phone.has("#said.asks"), "the page asks for another touch")
-    assert a_lesson.told("correct") == []
+    assert a_lesson.told("/correct") == []
     phone.touch(stand)
-    phone.wait(lambda: a_lesson.told("correct") == ["stand"], "the second touch teaches")
+    phone.wait(lambda: a_lesson.told("/correct") == ["stand"], "the second touch teaches")
     phone.wait(lambda: not phone.has(".pending, .turned, [aria-busy=true]"), "it may be taught again")
     phone.finger_down(*phone.middle(stand))
     phone.pass_time(0.6)
@@ -81,7 +81,7 @@ def test_page_counts_the_lessons_and_undoes_them_together(lesson: Lesson) -> Non
     with lesson.phone.in_the_dark():
         lesson.phone.show("17-lessons-by-holding-dark")
     lesson.phone.touch("#undo-hold")
-    lesson.phone.wait(lambda: lesson.told("undo") == ["local-hold-7"], "all are undone")
+    lesson.phone.wait(lambda: lesson.told("/undo") == ["local-hold-7"], "all are undone")
     assert not lesson.phone.shows("#undo-hold")
 
 
@@ -111,7 +111,7 @@ def test_long_touch_on_a_stopped_robot_is_a_tap(lesson: Lesson) -> None:
     lesson.phone.finger_down(*lesson.phone.middle(BUTTON))
     lesson.phone.pass_time(0.5)
     lesson.phone.finger_up()
-    lesson.phone.wait(lambda: lesson.told("correct") == ["spin_left"], "a correction")
+    lesson.phone.wait(lambda: lesson.told("/correct") == ["spin_left"], "a correction")
     assert lesson.told("hold") == []
 
 
@@ -122,8 +122,8 @@ def test_digit_key_held_holds_and_tapped_corrects(lesson: Lesson) -> None:
     lesson.phone.wait(lambda: lesson.told("hold"), "the action is held")
     lesson.phone.key("keyUp", "Digit1")
     lesson.phone.wait(lambda: lesson.robot.told_of("let_go"), "it is released")
-    assert lesson.told("correct") == []
+    assert lesson.told("/correct") == []
     lesson.phone.key("keyDown", "Digit1")
     lesson.phone.key("keyUp", "Digit1")
-    lesson.phone.wait(lambda: lesson.told("correct") == [first], "a correction")
+    lesson.phone.wait(lambda: lesson.told("/correct") == [first], "a correction")
     assert set(lesson.told("hold")) == {first}

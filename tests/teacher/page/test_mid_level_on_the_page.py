@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 
 from kurt2rt.channel.protocol.hello import MidIntroduction
+from kurt2rt.core.decision.goal import NamedGoal
 from tests.channel.states import COMMANDS
 from tests.teacher.page.classroom import classroom
 from tests.teacher.page.fake_robot import A_HELLO, FakeRobot
@@ -89,27 +90,27 @@ def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
     assert not phone.shows("#actions")
     on_each_screen(phone, "13-which-way")
     junction.touch_way("turn_right")
-    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", False)], "an answer to the mid level")
-    assert junction.told("correct") == []
+    phone.wait(lambda: junction.told("/answer") == [("turn_right", "mid", False)], "an answer to the mid level")
+    assert junction.told("/correct") == []
 
 
 def test_mid_level_is_corrected_extended_and_overridden(junction: Junction) -> None:
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left because")
     junction.touch_way("straight_on")
-    phone.wait(lambda: junction.told("correct") == [("straight_on", "mid")], "a correction of the mid level")
+    phone.wait(lambda: junction.told("/correct") == [("straight_on", "mid")], "a correction of the mid level")
     phone.touch("[data-meant=also]")
     junction.touch_way("turn_right")
-    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", True)], "an alternative")
+    phone.wait(lambda: junction.told("/answer") == [("turn_right", "mid", True)], "an alternative")
     phone.touch("[data-meant=once]")
     phone.show("13-once")
     junction.touch_way("turn_right")
-    phone.wait(lambda: junction.told("pursue") == [("turn_right",)], "no lesson")
+    phone.wait(lambda: junction.told("/pursue") == [("turn_right",)], "no lesson")
     pressed = phone.text("#meant [aria-pressed=true]")
     assert pressed.startswith("right")  # the next touch is a lesson again
     junction.show(mid=replace(COMMANDS, behaviour="turn_right", rla=None, overridden=True))
     junction.reads("#mid-sentence", "turn right by the teacher's choice, until it has finished")
-    assert junction.told("correct") == [("straight_on", "mid")]
+    assert junction.told("/correct") == [("straight_on", "mid")]
 
 
 def test_question_of_the_basic_level_changes_the_buttons(junction: Junction) -> None:
@@ -123,7 +124,7 @@ def test_question_of_the_basic_level_changes_the_buttons(junction: Junction) -> 
     phone.wait(lambda: phone.shows("#actions"), "the teacher wants to teach actions")
     phone.wait(lambda: phone.run(READY), "it may be taught")
     phone.touch("[data-action=back]")
-    phone.wait(lambda: ("back", "late") in junction.told("correct"), "a correction of the basic level")
+    phone.wait(lambda: ("back", True) in junction.told("/correct"), "a correction of the basic level")
 
 
 def test_places_get_names_and_are_sought(junction: Junction) -> None:
@@ -133,12 +134,12 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     junction.reads("#goal-now", "no goal")
     phone.write("#situation-name", "lift")
     phone.touch("#name-situation")
-    phone.wait(lambda: junction.told("name_situation") == [("lift",)], "this place has a name")
+    phone.wait(lambda: junction.told("/name") == [("lift",)], "this place has a name")
     junction.robot.named = ("door", "lift", "window")
     junction.show(lessons=2)
     junction.reads("#goal-list", "lift")
     phone.touch("[data-name=door] [aria-label='Seek door']")
-    phone.wait(lambda: junction.told("seek") == [("door",)], "it is to go there")
+    phone.wait(lambda: junction.told("/seek") == [(NamedGoal("door"),)], "it is to go there")
     junction.show(goal="door", plan=("turn_left", "straight_on"), plan_says="on the way to door: 2 ways left")
     junction.reads("#goal-now", "on the way to door: 2 ways left")
     junction.reads("#mid-sentence", "turn left because it leads to door, mid-level RLA 12")
@@ -146,11 +147,11 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     phone.wait(lambda: phone.run(CALM), "the colours of an answer are gone")
     on_each_screen(phone, "13-goals")
     phone.touch("[data-name=lift] [aria-label^='Is here']")
-    assert junction.told("be_at") == []
+    assert junction.told("/here") == []
     phone.touch("[data-name=lift] [aria-label^='Is here']")
-    phone.wait(lambda: junction.told("be_at") == [("lift",)], "it was set down there")
+    phone.wait(lambda: junction.told("/here") == [("lift",)], "it was set down there")
     phone.touch("#stop-seeking")
-    phone.wait(lambda: any(each[0] == "stop_seeking" for each in junction.robot.told), "no goal any more")
+    phone.wait(lambda: any(each[0] == "/seek/stop" for each in junction.robot.told), "no goal any more")
     phone.touch("#tab-teach")
     assert phone.complaints() == []
 

@@ -61,9 +61,9 @@ def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> 
     lesson.show(tick=DRIVE_TO + MINUTE)  # the teacher thinks
     lesson.phone.run(_PICK, -3)
     lesson.phone.touch("[data-action=spin_left]")
-    lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "the correction is sent")
-    (name, action, tick), *more = lesson.robot.told_of("correct")
-    assert (name, action, more) == ("correct", "spin_left", [])
+    lesson.phone.wait(lambda: lesson.robot.told_of("/correct"), "the correction is sent")
+    (name, action, tick), *more = lesson.robot.told_of("/correct")
+    assert (name, action, more) == ("/correct", "spin_left", [])
     assert abs(tick - 1300) < EACH / 2
     assert lesson.phone.shows("#rewind-bar"), "another moment may be wrong, too"
 
@@ -88,9 +88,9 @@ def test_then_go_lets_the_robot_drive_on_after_the_lesson(lesson: Lesson) -> Non
     enter(lesson)
     lesson.phone.touch("#rewind-go")
     lesson.phone.touch("[data-action=spin_left]")
-    lesson.phone.wait(lambda: lesson.robot.told_of("resume"), "the robot is told to drive on")
+    lesson.phone.wait(lambda: lesson.robot.told_of("/resume"), "the robot is told to drive on")
     names = [command[0] for command in lesson.robot.told]
-    assert names.index("correct") < names.index("resume")
+    assert names.index("/correct") < names.index("/resume")
     lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
 
 
@@ -100,7 +100,7 @@ def test_then_go_does_not_lift_a_stop_after_the_touch(lesson: Lesson) -> None:
     before = len(lesson.robot.told_of("stop"))
     # Both in one turn of the page's loop, so that the stop comes before the answer to the lesson.
     lesson.phone.run(_TOUCH_AND_STOP)
-    lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "the lesson is given")
+    lesson.phone.wait(lambda: lesson.robot.told_of("/correct"), "the lesson is given")
     lesson.phone.wait(lambda: len(lesson.robot.told_of("stop")) > before, "STOP is sent")
     lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].pending"), "the lesson is answered")
     lesson.phone.wait(lambda: not lesson.phone.has("[data-action=spin_left].saved"), "the page has gone on")

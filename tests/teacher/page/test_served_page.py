@@ -202,8 +202,7 @@ async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
     async with served() as page, page.websocket() as socket:
         assert (await hear(socket, "page"))["seat"] == "here"
         number = await see(page, socket)
-        lesson = {"action": "forward", "level": "basic", "beside": False}
-        order = {"kind": "order", "number": 7, "name": "answer", "arguments": lesson, "picture": number}
+        order = {"kind": "command", "number": 7, "path": "/answer", "fields": {"action": "forward"}, "picture": number}
         await socket.send(json.dumps(order))
         answer = await hear(socket, "answer")
         assert (answer["number"], answer["accepted"]) == (7, True)
@@ -220,7 +219,7 @@ async def test_a_page_that_is_gone_lets_go_of_the_robot() -> None:
     async with served() as page:
         async with page.websocket() as socket:
             number = await see(page, socket)
-            press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+            press = {"kind": "press", "press_id": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
             await socket.send(json.dumps(press))
             await page.robot.is_told("press")
         await page.robot.is_told("let_go")
@@ -229,7 +228,7 @@ async def test_a_page_that_is_gone_lets_go_of_the_robot() -> None:
 async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
     async with served() as page, page.websocket() as socket:
         number = await see(page, socket)
-        press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+        press = {"kind": "press", "press_id": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
         await socket.send(json.dumps(press))
         await page.robot.is_told("press")
         page.end.set()

@@ -28,8 +28,8 @@ def test_shown_segments_are_taught_but_for_those_left_out(lesson: Lesson) -> Non
     phone.touch("#shown-list button:nth-child(2)")
     assert phone.text("#teach-shown") == "Teach 2 of 3"
     phone.touch("#teach-shown")
-    phone.wait(lambda: lesson.robot.told_of("teach_shown"), "the confirmation is sent")
-    assert lesson.robot.told_of("teach_shown") == [("teach_shown", (0, 2), 91)]
+    phone.wait(lambda: lesson.robot.told_of("/shown"), "the confirmation is sent")
+    assert lesson.robot.told_of("/shown") == [("/shown", 91, (0, 2))]
 
 
 def test_not_now_is_not_asked_again_at_the_next_stand(lesson: Lesson) -> None:

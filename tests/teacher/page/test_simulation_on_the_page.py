@@ -32,14 +32,14 @@ def test_another_world_and_task_are_two_choices_and_a_touch(lesson: Lesson) -> N
     choose(phone, "#sim-task", "eight")
     lesson.reads("#sim-what", "Teach it to drive an eight round the two columns")
     phone.touch("#sim-change")
-    lesson.reads("#said", "next_run done")
+    lesson.reads("#said", "/simulation/run done")
     choose(phone, "#sim-task", "wall_following")
     choose(phone, "#sim-world", "rooms")
     choose(phone, "#sim-number", "9007")
     on_each_screen(phone, "23-simulation")
     phone.touch("#sim-change")
-    phone.wait(lambda: len(lesson.told("next_run")) == 2, "both were told")
-    assert [each[1:] for each in lesson.robot.told if each[0] == "next_run"] == [
+    phone.wait(lambda: len(lesson.told("/simulation/run")) == 2, "both were told")
+    assert [each[1:] for each in lesson.robot.told if each[0] == "/simulation/run"] == [
         (None, "eight", False),
         ("rooms-9007", None, False),
     ]
@@ -48,9 +48,9 @@ def test_another_world_and_task_are_two_choices_and_a_touch(lesson: Lesson) -> N
 def test_back_to_start_is_one_touch_and_new_knowledge_two(lesson: Lesson) -> None:
     phone = lesson.phone
     phone.touch("#sim-back")
-    phone.wait(lambda: ("put_back",) in lesson.robot.told, "the robot is put back")
+    phone.wait(lambda: ("/world/start",) in lesson.robot.told, "the robot is put back")
     phone.touch("#sim-fresh")
     assert "Sure?" in phone.text("#sim-fresh")
-    assert not lesson.told("next_run")
+    assert not lesson.told("/simulation/run")
     phone.touch("#sim-fresh")
-    phone.wait(lambda: ("next_run", None, None, True) in lesson.robot.told, "the next run is wanted")
+    phone.wait(lambda: ("/simulation/run", None, None, True) in lesson.robot.told, "the next run is wanted")

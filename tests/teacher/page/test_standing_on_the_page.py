@@ -39,7 +39,7 @@ def test_a_latched_guard_goes_before_the_rule_that_would_drive(lesson: Lesson) -
     assert phone.run(_GO) == [False, "solid"]
     look(lesson, "latched")
     phone.touch("#go")
-    phone.wait(lambda: lesson.robot.told.count(("resume",)) == 1, "the robot may drive on")
+    phone.wait(lambda: lesson.robot.told.count(("/resume",)) == 1, "the robot may drive on")
     lesson.show(standing=Standing())
     lesson.reads("#sentence", "RLA 1")
     assert phone.run(_GO) == [True, "none"]
@@ -55,5 +55,5 @@ def test_robot_at_a_bumper_asks_and_is_corrected(lesson: Lesson) -> None:
     assert phone.run(_GO) == [True, "none"]
     look(lesson, "touches")
     phone.touch("[data-action=spin_left]")
-    phone.wait(lambda: lesson.told("correct") == ["spin_left"], "a correction")
-    assert lesson.told("answer") == []
+    phone.wait(lambda: lesson.told("/correct") == ["spin_left"], "a correction")
+    assert lesson.told("/answer") == []

@@ -18,7 +18,7 @@ def test_first_touch_tells_a_press_that_taught_nothing(a_lesson: Lesson) -> None
     a_lesson.phone.wait(lambda: a_lesson.phone.has("#said.asks"), "the page asks for another touch")
     assert "taught nothing" in a_lesson.phone.text("#said")
     a_lesson.phone.touch("#undo-last")
-    a_lesson.phone.wait(lambda: a_lesson.told("undo") == [A_LESSON.command_id], "the named lesson is undone")
+    a_lesson.phone.wait(lambda: a_lesson.told("/undo") == [A_LESSON.command_id], "the named lesson is undone")
 
 
 def test_lesson_that_contradicts_is_shown_and_undone_alone(a_lesson: Lesson) -> None:
@@ -35,5 +35,5 @@ def test_lesson_that_contradicts_is_shown_and_undone_alone(a_lesson: Lesson) -> 
     a_lesson.phone.show("a-slip")
     a_lesson.phone.touch("#lesson-list .contradicts button")
     a_lesson.phone.touch("#lesson-list .contradicts button")
-    a_lesson.phone.wait(lambda: a_lesson.told("undo") == [slip.command_id], "the one lesson is undone")
+    a_lesson.phone.wait(lambda: a_lesson.told("/undo") == [slip.command_id], "the one lesson is undone")
     a_lesson.phone.touch("#tab-teach")

@@ -8,6 +8,7 @@ from pathlib import Path
 import anyio
 
 from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.core.teaching.commands import Take
 from kurt2rt.ros import messages as ros
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.ros.services import MOST_REQUESTS
@@ -152,7 +153,7 @@ async def test_stop_of_another_teacher_holds_against_twists(desk: RobotInRos) ->
 async def test_robot_that_another_teacher_took_refuses_twists(desk: RobotInRos) -> None:
     await desk.call("take")
     async with TeacherClient(desk.at_work.other.device.folder, port=desk.at_work.port) as other:
-        assert (await other.take()).accepted
+        assert (await other.send(Take)).accepted
         taken = desk.at_work.tick
         await desk.drive(0.2, 0.0, 1.0)
         assert desk.moved_after(taken) == 0

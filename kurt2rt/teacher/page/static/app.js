@@ -42,7 +42,7 @@ const decision = new Decision();
 const hold = new HoldToCorrect(link);
 const buttonPress = new TapOrHold(hold, mayHold);
 const actionPad = new ActionPad($("actions"), teach, buttonPress);
-const lessons = new Lessons((lesson) => sendCommand("undo", { lesson }));
+const lessons = new Lessons((lesson) => sendCommand("/undo", { lesson }));
 const midPad = new MidLevelPad(teachBehaviour);
 const goals = new Goals(sendCommand);
 const critic = new Critic(appraise);
@@ -52,29 +52,29 @@ const session = new SessionPanel(sendCommand);
 const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
 const simulation = new Simulation(sendCommand);
-const shownDrive = new Shown((pressId, segments) => sendCommand("teach_shown", { press_id: pressId, segments }, "teach what was shown"));
+const shownDrive = new Shown((pressId, segments) => sendCommand("/shown", { press_id: pressId, segments }, "teach what was shown"));
 const rewind = new Rewind({ stop, onChange: draw, onOpen: showPath });
-const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args), rewind);
+const world = new WorldView($("world-view"), (path, fields) => sendCommand(path, fields), rewind);
 
 let hello = null;
 let page = { seat: "elsewhere", device: "", robot: "" };
 
 // ---- Commands
 
-const TEACHES = ["answer", "correct", "correct_at", "teach_shown", "reward", "appraise", "undo", "name"];
+const TEACHES = ["/answer", "/correct", "/shown", "/reward", "/appraise", "/undo", "/name"];
 let pendingLessons = 0; // commands of TEACHES without an answer
 let answered = 0; // number of the newest answered one
 let taughtNothing = false; // whether the newest of them but undo was accepted and gave no lesson
 
 // Sends a command and shows its outcome: pending, then saved or refused. Resolves with the answer.
-async function sendCommand(name, args = {}, doing = words(name)) {
+async function sendCommand(path, fields = {}, doing = path.split("/").pop()) {
   showMessage("pending", `${doing} …`);
-  if (!TEACHES.includes(name)) return showAnswer(await link.command(name, args));
+  if (!TEACHES.includes(path)) return showAnswer(await link.command(path, fields));
   pendingLessons += 1;
-  const answer = await link.command(name, args);
+  const answer = await link.command(path, fields);
   pendingLessons -= 1;
   answered = Math.max(answered, answer.done ?? 0);
-  if (name !== "undo") taughtNothing = answer.accepted && !answer.extra.lesson;
+  if (path !== "/undo") taughtNothing = answer.accepted && !answer.extra.lesson;
   return showAnswer(answer);
 }
 
@@ -127,7 +127,7 @@ function showHold({ hold: told }) {
     heldHere = undefined;
     showMessage("saved", text("held", fields));
     $("undo-hold").hidden = !told.lessons;
-    $("undo-hold").onclick = () => sendCommand("undo", { lesson: told.lesson });
+    $("undo-hold").onclick = () => sendCommand("/undo", { lesson: told.lesson });
   }
 }
 
@@ -145,7 +145,8 @@ function teach(action) {
   const { nearest, nearest_action: its, distance, radius, asks_at: at, cause } = link.state;
   // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
   const asks = at === BASIC && (cause === "doubt" || nearest === null || its === WITHDRAWN || distance === null || distance > radius);
-  sendLesson(actionPad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
+  // A person corrects late; the robot knows by how much.
+  sendLesson(actionPad, action, asks ? "/answer" : "/correct", asks ? {} : { late: true }, asks);
 }
 
 let standTouchedMs = -Infinity;
@@ -160,9 +161,9 @@ function touchedAgain() {
 // Corrects the picked moment; with "then go" the robot drives on, unless it was stopped since this touch.
 async function correctEarlier(action) {
   const { picture, stops } = link;
-  const answer = await sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
+  const answer = await sendLesson(actionPad, action, "/correct", { decision_tick: rewind.state.tick }, false);
   if (!answer?.accepted || !rewind.open || !rewind.drivesOn || link.stops !== stops) return;
-  const went = await link.command("resume", {}, picture);
+  const went = await link.command("/resume", {}, picture);
   if (went.accepted) rewind.leave();
   else showAnswer(went);
 }
@@ -171,22 +172,22 @@ async function correctEarlier(action) {
 function teachBehaviour(behaviour, meant) {
   if (!link.state?.mid) return;
   if (meant === "once") {
-    if (!refuseEarly(behaviour)) sendCommand("pursue", { behaviour }, `${words(behaviour)}, this once`);
+    if (!refuseEarly(behaviour)) sendCommand("/pursue", { behaviour }, `${words(behaviour)}, this once`);
     return;
   }
   const { nearest, nearest_behaviour: its, distance, radius } = link.state.mid;
   const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
   const alternative = !asks && meant === "also";
-  if (asks || alternative) sendLesson(midPad, behaviour, "answer", { level: MID, beside: alternative }, asks);
-  else sendLesson(midPad, behaviour, "correct", { level: MID }, false);
+  if (asks || alternative) sendLesson(midPad, behaviour, "/answer", { level: MID, alternative }, asks);
+  else sendLesson(midPad, behaviour, "/correct", { level: MID }, false);
 }
 
 // Sends a lesson of a pad's button and returns the answer; `asks`: it answers a question.
-async function sendLesson(pad, action, name, args, asks) {
+async function sendLesson(pad, action, path, fields, asks) {
   if (refuseEarly(action)) return null;
   if (asks) setAnswering(true);
   pad.markOutcome(action, "pending");
-  const answer = await sendCommand(name, { action, ...args }, `${name}: ${words(action)}`);
+  const answer = await sendCommand(path, { action, ...fields }, `${path.slice(1)}: ${words(action)}`);
   pad.markOutcome(action, answer.accepted ? "saved" : "refused");
   setTimeout(() => pad.markOutcome(action, null), 900);
   if (!asks) return answer;
@@ -245,7 +246,7 @@ async function prepareUndo() {
 
 async function undoLast() {
   const lesson = await undoCandidate;
-  if (lesson) sendCommand("undo", { lesson: lesson.command_id });
+  if (lesson) sendCommand("/undo", { lesson: lesson.command_id });
   else showMessage("refused", text("nothingToUndo"));
 }
 
@@ -255,17 +256,17 @@ function reward(value) {
     const name = critic.nameOf(value);
     if (name !== undefined) appraise(name);
   } else if (value) {
-    sendCommand("reward", { value }, value > 0 ? "right" : "wrong");
+    sendCommand("/reward", { value }, value > 0 ? "right" : "wrong");
   }
 }
 
 function appraise(appraisal) {
-  sendCommand("appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
+  sendCommand("/appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
 }
 
 const resume = () => {
   rewind.leave();
-  return sendCommand("resume", {}, "go");
+  return sendCommand("/resume", {}, "go");
 };
 
 function releaseAll() {
@@ -452,7 +453,7 @@ function showControl() {
   setText($("claim-button"), text(another ? "takeOver" : page.seat === "here" ? "takeRobot" : "takeControl", { teacher }));
 }
 
-const take = () => sendCommand("take", {}, "take");
+const take = () => sendCommand("/take", {}, "take");
 $("claim-button").addEventListener("click", take);
 $("take-here").addEventListener("click", take);
 

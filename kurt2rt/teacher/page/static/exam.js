@@ -38,7 +38,7 @@ export class Exam {
   }
 
   async #begin() {
-    const answer = await this.#sendCommand("examine", {}, "exam");
+    const answer = await this.#sendCommand("/exam", {}, "exam");
     this.#own = answer.accepted;
   }
 

@@ -18,8 +18,8 @@ export class Files {
     this.#showMessage = showMessage;
     $("load").addEventListener("click", () => $("load-file").click());
     $("load-file").addEventListener("change", () => this.#load());
-    $("save").addEventListener("click", () => this.#save("save", { label: $("save-label").value.trim() }));
-    $("export").addEventListener("click", () => this.#save("export", {}));
+    $("save").addEventListener("click", () => this.#save("/save", { label: $("save-label").value.trim() }));
+    $("export").addEventListener("click", () => this.#save("/export", { form: "package" }));
   }
 
   // Only a simulated robot loads knowledge: a real one would leave its bus meanwhile.
@@ -35,7 +35,7 @@ export class Files {
     this.#showMessage("pending", text("uploading", { name: file.name }));
     try {
       const response = await fetch("/upload", { method: "POST", body: file });
-      if (response.ok) await this.#sendCommand("load", await response.json(), `load ${file.name}`);
+      if (response.ok) await this.#sendCommand("/load", await response.json(), `load ${file.name}`);
       else this.#showMessage("refused", `${file.name}: ${await response.text()}`);
     } catch {
       this.#showMessage("refused", text("uploadBroke", { name: file.name }));
@@ -44,8 +44,8 @@ export class Files {
     }
   }
 
-  async #save(name, args) {
-    const answer = await this.#sendCommand(name, args);
+  async #save(path, fields) {
+    const answer = await this.#sendCommand(path, fields);
     if (!answer.accepted || !answer.extra.name) return;
     const { name: file, size: bytes } = answer.extra;
     const link = document.createElement("a");

@@ -15,7 +15,7 @@ export class Goals {
   constructor(sendCommand) {
     this.#sendCommand = sendCommand;
     $("name-situation").addEventListener("click", () => this.#name());
-    $("stop-seeking").addEventListener("click", () => sendCommand("stop_seeking", {}, "stop seeking"));
+    $("stop-seeking").addEventListener("click", () => sendCommand("/seek/stop", {}, "stop seeking"));
   }
 
   build(hello) {
@@ -61,12 +61,12 @@ export class Goals {
     here.type = "button";
     here.textContent = "Is here";
     here.setAttribute("aria-label", `Is here: the robot stands at ${name}`);
-    twice(here, "Sure?", () => this.#sendCommand("be_at", { name }, `robot is at ${name}`));
+    twice(here, "Sure?", () => this.#sendCommand("/here", { name }, `robot is at ${name}`));
     const seek = document.createElement("button");
     seek.type = "button";
     seek.textContent = "Seek";
     seek.setAttribute("aria-label", `Seek ${name}`);
-    seek.addEventListener("click", () => this.#sendCommand("seek", { name }, `seek ${name}`));
+    seek.addEventListener("click", () => this.#sendCommand("/seek", { goal: name }, `seek ${name}`));
     row.append(label, here, seek);
     return row;
   }
@@ -77,7 +77,7 @@ export class Goals {
       $("situation-name").focus();
       return;
     }
-    const answer = await this.#sendCommand("name", { name }, `this is ${name}`);
+    const answer = await this.#sendCommand("/name", { name }, `this is ${name}`);
     if (answer.accepted) $("situation-name").value = "";
   }
 }

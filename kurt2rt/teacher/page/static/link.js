@@ -66,11 +66,11 @@ export class Link extends EventTarget {
     return this.open && this.stateAgeMs < STALE_MS;
   }
 
-  // Sends a command, given on the state `picture`; resolves with its answer, or with a refusal without one.
-  command(name, args = {}, picture = this.picture) {
+  // Sends a command to its path on the wire, given on the state `picture`; resolves with its answer, or with a refusal without one.
+  command(path, fields = {}, picture = this.picture) {
     if (!this.fresh) return Promise.resolve({ accepted: false, why: "no picture", text: text("commandWithoutPicture") });
-    if (name === "resume") this.#setStopPending(false);
-    return this.#request({ kind: "order", name, arguments: args, picture });
+    if (path === "/resume") this.#setStopPending(false);
+    return this.#request({ kind: "command", path, fields, picture });
   }
 
   // Asks for the facts of the newest decision; allowed without control.
@@ -87,13 +87,13 @@ export class Link extends EventTarget {
   // Sends a message of a held action; false without a fresh state.
   hold(pressId, action) {
     if (!this.fresh) return false;
-    this.#send({ kind: "hold", hold: pressId, action, picture: this.picture });
+    this.#send({ kind: "hold", press_id: pressId, action, picture: this.picture });
     return true;
   }
 
   press(pressId, left, right) {
     if (!this.fresh) return false;
-    this.#send({ kind: "press", hold: pressId, left_m_s: left, right_m_s: right, picture: this.picture });
+    this.#send({ kind: "press", press_id: pressId, left_m_s: left, right_m_s: right, picture: this.picture });
     return true;
   }
 

@@ -39,10 +39,10 @@ export class SessionPanel {
   constructor(sendCommand) {
     this.#sendCommand = sendCommand;
     $("session-button").addEventListener("click", () => this.#beginOrEnd());
-    $("hand-over").addEventListener("click", () => sendCommand("hand_over", { to: null }, "hand over"));
+    $("hand-over").addEventListener("click", () => sendCommand("/release", { to: null }, "hand over"));
     $("lesson-speed").replaceChildren(...LESSON_SPEEDS.map(lessonSpeed));
     $("lesson-speed").addEventListener("input", () => {
-      sendCommand("lesson_speed", { percent: Number($("lesson-speed").value) }, "lesson speed");
+      sendCommand("/lesson/speed", { percent: Number($("lesson-speed").value) }, "lesson speed");
     });
   }
 
@@ -88,7 +88,7 @@ export class SessionPanel {
     label.className = "word";
     label.textContent = name;
     button.append(digit, label);
-    const setPhase = () => this.#sendCommand("phase", { phase: number }, `phase ${number}`);
+    const setPhase = () => this.#sendCommand("/phase", { phase: number }, `phase ${number}`);
     // Phase 5 needs a second tap: from then on the robot drives without supervision.
     if (number === AUTONOMOUS) twice(button, "sure?", setPhase);
     else button.addEventListener("click", setPhase);
@@ -101,16 +101,16 @@ export class SessionPanel {
     button.type = "button";
     button.dataset.behaviour = name;
     button.textContent = words(name);
-    button.addEventListener("click", () => this.#sendCommand("pursue", { behaviour: name }, words(name)));
+    button.addEventListener("click", () => this.#sendCommand("/pursue", { behaviour: name }, words(name)));
     return button;
   }
 
   async #beginOrEnd() {
     if (this.#session !== null) {
-      const answer = await this.#sendCommand("end_session");
+      const answer = await this.#sendCommand("/session/end", {}, "end session");
       if (answer.accepted) $("session-name").value = newSession();
     } else {
-      this.#sendCommand("begin_session", { name: $("session-name").value.trim() || newSession() });
+      this.#sendCommand("/session/begin", { name: $("session-name").value.trim() || newSession() }, "begin session");
     }
   }
 }

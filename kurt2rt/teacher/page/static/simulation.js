@@ -23,9 +23,9 @@ export class Simulation {
     $("sim-change").addEventListener("click", () => this.#change());
     const speeds = Array.from({ length: FASTEST }, (_, i) => i + 1);
     $("sim-speed").replaceChildren(...speeds.map((times) => option(String(times), times === 1 ? "Real time" : `${times} times as fast`)));
-    $("sim-speed").addEventListener("input", () => sendCommand("speed", { times: Number($("sim-speed").value) }, "speed"));
-    $("sim-back").addEventListener("click", () => sendCommand("put_back", {}, "back to the start"));
-    const fresh = () => sendCommand("next_run", { world: null, task: null, fresh: true }, "a new knowledge file");
+    $("sim-speed").addEventListener("input", () => sendCommand("/simulation/speed", { times: Number($("sim-speed").value) }, "speed"));
+    $("sim-back").addEventListener("click", () => sendCommand("/world/start", {}, "back to the start"));
+    const fresh = () => sendCommand("/simulation/run", { world: null, task: null, fresh: true }, "a new knowledge file");
     twice($("sim-fresh"), "Sure? The old file is kept", fresh);
   }
 
@@ -82,7 +82,7 @@ export class Simulation {
     const chosen = $("sim-task").value;
     // Without a chosen world, the task brings its own.
     const args = { world: this.#world === world ? null : this.#world, task: chosen === task ? null : chosen, fresh: false };
-    this.#sendCommand("next_run", args, "the next run");
+    this.#sendCommand("/simulation/run", args, "the next run");
   }
 }
 

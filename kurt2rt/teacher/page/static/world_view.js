@@ -219,8 +219,8 @@ export class WorldView {
     this.#grab = null;
     if (!grab || Math.hypot(event.clientX - grab.px, event.clientY - grab.py) < CLICK_PX) return;
     const round = (value) => Math.round(value * 1000) / 1000;
-    if (grab.what === "wall") this.#sendCommand("move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
-    else this.#sendCommand("place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
+    if (grab.what === "wall") this.#sendCommand("/world/move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
+    else this.#sendCommand("/world/place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
   }
 }
 
