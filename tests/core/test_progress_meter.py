@@ -10,7 +10,6 @@ DESK = ChannelFixture()
 RECORD: TickRecord = DESK.run()
 DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
 ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
-STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_resume=True))
 
 
 class Run:
@@ -31,17 +30,3 @@ def test_progress_share_is_that_of_ticks_driven_by_an_rla() -> None:
     run = Run()
     run.lasts(5, ASKS)
     assert run.lasts(15, DRIVES) == Progress(20, 75, 1)
-
-
-def test_progress_forgets_what_is_older_than_a_minute() -> None:
-    run = Run()
-    run.lasts(10, ASKS)
-    assert run.lasts(50, DRIVES) == Progress(60, 83, 1)
-    assert run.lasts(10, DRIVES) == Progress(60, 100, 0)
-
-
-def test_progress_after_missed_ticks_forgets_by_time() -> None:
-    run = Run()
-    run.lasts(1, ASKS)
-    run.tick += 100 * 3600  # the program was held for an hour
-    assert run.lasts(1, STANDS) == Progress(60, 0, 0)

@@ -183,18 +183,6 @@ def test_a_lesson_acts_in_the_very_tick_that_takes_it(corridor: Corridor) -> Non
     assert corridor.run().results == ()
 
 
-def test_tick_history_grows_driving_and_freezes_asking(driving: Corridor) -> None:
-    moving = [driving.run(110) for _ in range(4)]
-    assert not any(record.situation.history_frozen for record in moving)
-    assert averages(moving[-1])[0] == pytest.approx(110)
-    last_driven = driving.run(400)  # the step that brought it here still belongs to the journey
-    assert last_driven.decision.asking
-    assert not last_driven.situation.history_frozen
-    waiting = [driving.run(count) for count in (400, 500, 600)]
-    assert all(record.situation.history_frozen for record in waiting)
-    assert {tuple(averages(record)) for record in waiting} == {tuple(averages(last_driven))}
-
-
 def test_an_unknown_situation_stops_the_wheels_in_the_same_tick(driving: Corridor) -> None:
     driving.run(400)
     assert driving.robot.driven[-2:] == [FORWARD, STANDSTILL]
@@ -274,18 +262,6 @@ def test_tick_stop_in_the_tick_of_a_resume_needs_another(driving: Corridor) -> N
     driving.robot.relatches = False
     assert driving.run(100, Resume("2", "Ann", seen)).guard_result.latched
     assert not driving.run(100, Resume("3", "Ann", again.tick)).guard_result.latched
-
-
-def test_tick_counts_uses_and_standstill_ends_transitions(driving: Corridor) -> None:
-    driving.run(115, teach("back", "second"))
-    for counts in [115] * 10 + [100] * 10:
-        driving.run(counts)
-    assert driving.statistics.uses == {1: 2, 2: 1}
-    assert driving.statistics.transitions == {(1, 2): 1, (2, 1): 1}
-    driving.run(100, stop())
-    driving.run(100, resume())
-    assert driving.statistics.uses == {1: 3, 2: 1}
-    assert driving.statistics.transitions == {(1, 2): 1, (2, 1): 1}
 
 
 def journey(seed: int) -> tuple[list[TickRecord], str, Sequence[TeachingEvent]]:

@@ -1,6 +1,5 @@
 """The tick as a story, continued: a robot that touches something, and is to drive on toward it, asks."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -8,18 +7,16 @@ import pytest
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.simulation import Pose
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, StandReason
-from kurt2rt.core.outcome import Outcome, ResultCode
-from kurt2rt.core.rla.rla import Phase
-from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
+from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, Standing, StandReason
+from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from tests.core.test_tick import BACK, Corridor, averages
+from tests.core.test_tick import BACK, Corridor
 from tests.core.test_tick_by_hand import watch
 from tests.runs.replay.stories import NAME, Scene, record_story
-from tests.teacher.helpers import correct, set_phase, teach
+from tests.teacher.helpers import teach
 
 
 def held(corridor: Corridor, ticks: int = ASKS_AFTER_TICKS) -> TickRecord:
@@ -49,58 +46,6 @@ def test_bumper_blocked_robot_asks_after_half_a_second(corridor: Corridor) -> No
     assert decision.match is not None
     assert decision.match.rla.rla_id == 1  # who goes on toward it
     assert all(corridor.run().decision.cause is DecisionCause.TOUCHES for _ in range(100))
-
-
-def test_a_brush_is_no_question(corridor: Corridor) -> None:
-    held(corridor, ASKS_AFTER_TICKS - 1)
-    corridor.robot.touches_in_front = False
-    assert corridor.run().standing == DRIVES
-    corridor.robot.touches_in_front = True
-    assert corridor.run().decision.cause is DecisionCause.TOUCHES  # it was only a bumper that sprang back
-    corridor.robot.touches_in_front = False
-    for _ in range(ASKS_AFTER_TICKS):
-        corridor.run()
-    corridor.robot.touches_in_front = True
-    assert corridor.run().decision.cause is DecisionCause.RLA
-
-
-@pytest.mark.parametrize("say", [teach, correct])
-def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
-    corridor: Corridor, say: Callable[[str, str], Command]
-) -> None:
-    held(corridor)
-    record = corridor.run(None, say("back", "answer"))
-    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
-    assert (record.decision.cause, record.decision.action) == (DecisionCause.RLA, "back")
-    assert record.guard_result.wheel_speeds == BACK
-    assert record.standing == DRIVES
-    assert len(corridor.system) == 1
-
-
-def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor) -> None:
-    held(corridor)
-    asked = averages(corridor.run(115))
-    assert averages(corridor.run(115)) == asked
-    corridor.run(100, set_phase(Phase.AUTONOMOUS))
-    corridor.run(100)
-    moved = averages(corridor.run(115))
-    assert averages(corridor.run(115)) != moved  # no teacher is waited for
-
-
-def test_bumper_pushing_rla_can_be_punished(corridor: Corridor) -> None:
-    for phase in (Phase.SUPERVISED, Phase.AUTONOMOUS):
-        corridor = Corridor()
-        corridor.run(100, set_phase(phase))
-        record = held(corridor)
-        assert record.decision.cause is DecisionCause.TOUCHES  # in phase 5, too: it does not stand without saying why
-        assert corridor.school.recent.answering_rla(record.tick) == 1
-
-
-def test_it_asks_nobody_in_an_exam_nor_where_it_is_told_not_to() -> None:
-    for other in (Corridor(asked=False), Corridor(asks_when_held=False)):
-        record = held(other)
-        assert (record.decision.cause, record.decision.rla_id) == (DecisionCause.RLA, 1)
-        assert record.standing == Standing(StandReason.FRONT_BUMPER)
 
 
 def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:

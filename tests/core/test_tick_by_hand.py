@@ -113,14 +113,6 @@ def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by:
     assert driving.run(100, press(driving, hold=3)).decision.cause is DecisionCause.TEACHER
 
 
-def test_manual_drive_enters_history_and_credits_no_rla(driving: Corridor) -> None:
-    driving.run(100, press(driving))
-    uses = dict(driving.statistics.uses)
-    record = driving.run(110)
-    assert not record.situation.history_frozen
-    assert driving.statistics.uses == uses
-
-
 def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkeypatch: pytest.MonkeyPatch) -> None:
     decide = BasicLevel.decide
 
@@ -156,13 +148,6 @@ def test_attended_robot_that_lost_its_teacher_needs_resume(attended: Corridor) -
     assert attended.run(100, watch(attended), resume()).decision.cause is DecisionCause.RLA
 
 
-def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:
-    attended.run(400, watch(attended))
-    assert causes(attended, 60, 400) == [DecisionCause.UNKNOWN] * 60
-    assert causes(attended, 2, 100) == [DecisionCause.UNATTENDED] * 2
-    assert attended.run(100, watch(attended)).decision.cause is DecisionCause.RLA
-
-
 def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corridor) -> None:
     attended.run(100, watch(attended))
     record = attended.run(100, watch(attended), Take("take", "Ben"))
@@ -175,12 +160,6 @@ def test_phase_5_needs_no_teacher_and_its_end_stops_the_robot(attended: Corridor
     attended.run(100, set_phase(Phase.AUTONOMOUS))
     assert causes(attended, 200) == [DecisionCause.RLA] * 200
     assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is DecisionCause.STOPPED
-
-
-@pytest.mark.parametrize("phase", [phase for phase in Phase if phase is not Phase.AUTONOMOUS])
-def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> None:
-    attended.run(100, set_phase(phase))
-    assert attended.run(100).decision.cause is DecisionCause.UNATTENDED
 
 
 def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:

@@ -137,18 +137,6 @@ def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
     assert events(driving) == []
 
 
-def test_first_lesson_is_about_the_noticed_mistake(driving: Corridor) -> None:
-    for counts in (130, 135):
-        for _ in range(NOTICED):
-            driving.run(counts)
-    meant = condition(driving, driving.ticks + 1 - NOTICED)
-    driving.run(135, hold(driving))
-    (lesson,) = driving.notebook.events[1:]
-    assert isinstance(lesson, RlaCreated)
-    assert (lesson.rla.condition, lesson.rla.action) == (meant, "back")
-    assert lesson.origin.command_id == f"Ann-hold-7/{driving.ticks}"
-
-
 def test_no_lesson_near_a_change_of_the_held_action(driving: Corridor) -> None:
     held(driving, 40, 100, "forward")
     before = len(events(driving))
@@ -162,67 +150,12 @@ def test_no_lesson_near_a_change_of_the_held_action(driving: Corridor) -> None:
     assert match.rla.action == "back"
 
 
-def test_lag_of_the_link_is_added_to_the_delay(driving: Corridor) -> None:
-    for tick in range(130):
-        driving.run(128 + tick // 20)
-    meant = condition(driving, driving.ticks + 1 - NOTICED - 15)
-    driving.run(135, hold(driving, age=15))
-    lesson = driving.notebook.events[1]
-    assert isinstance(lesson, RlaCreated)
-    assert lesson.rla.condition == meant
-
-
-def test_hold_teaches_each_tenth_of_a_second_unless_agreed(driving: Corridor) -> None:
-    held(driving, DELAY + STEADY, 115)  # the situations of two seconds at 100 counts come first
-    assert events(driving) == [(f"Ann-hold-7/{203 - 1}", 1)]
-    assert actions(driving) == {1: "back"}
-    for counts in range(120, 520, 4):
-        held(driving, 2, counts)
-    held(driving, DELAY + 2 * STEADY, 520)
-    ticks = [int(each.rpartition("/")[2]) for each, _ in events(driving)]
-    assert all((tick - ticks[1]) % 10 == 0 for tick in ticks[1:])
-    assert len(ticks) > 4
-    match = driving.system.match(driving.school.recent.situation(driving.ticks))
-    assert match is not None
-    assert (match.known, match.rla.action) == (True, "back")
-
-
 def test_hold_of_what_the_robot_does_teaches_nothing(driving: Corridor) -> None:
     held(driving, 200, 105, "forward")
     outcome = driving.run(105, release()).results[0].outcome
     assert outcome == Outcome.of(ResultCode.HOLD_RELEASED, lessons=0, lesson=None)
     assert "already" in text_of(outcome)
     assert events(driving) == []
-
-
-def test_hold_answers_a_question(driving: Corridor) -> None:
-    asked = [driving.run(300) for _ in range(30)]
-    assert asked[-1].decision.asking
-    assert driving.run(300, hold(driving)).decision.action == "back"
-    lesson = driving.notebook.events[1]
-    assert isinstance(lesson, RlaCreated)
-    assert lesson.rla.condition == condition(driving, asked[0].tick)
-    driving.run(300, release())
-    assert driving.run(300).decision.action == "back"
-
-
-def test_hold_skips_ticks_by_hand_and_at_standstill(driving: Corridor) -> None:
-    for _ in range(100):
-        driving.run(110, Drive("Ann", driving.ticks, 3, 0.1, 0.1))
-    driving.run(110, release(3, "let the wheel go"))
-    for _ in range(30):
-        driving.run(110)
-    driving.run(110, resume())
-    held(driving, DELAY, 110)
-    assert events(driving) == []
-
-
-def test_hold_lessons_replace_the_action_of_a_near_rla(driving: Corridor) -> None:
-    driving.run(100, hold(driving))
-    event = driving.notebook.events[-1]
-    assert isinstance(event, ActionReplaced)
-    assert (event.rla_id, event.action, event.instead_of) == (1, "back", "forward")
-    assert driving.school.corrections == 1
 
 
 @pytest.mark.parametrize("lesson", [None, "Ann-hold-7"])

@@ -7,7 +7,6 @@ import pytest
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Origin, Phase
@@ -81,15 +80,6 @@ def driving() -> Drive:
     drive.run(Teach("far", "Ann", "bear_left"), counts=FAR)
     assert drive.run(counts=NEAR, ticks=20).decision.action == "forward"
     return drive
-
-
-def test_its_answer_acts_in_the_tick_that_takes_it(driving: Drive) -> None:
-    driving.blame_until_it_sinks()
-    asked = driving.run()
-    record = driving.run(Teach("again", "Ann", "spin_right", asked.tick))
-    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_ANSWERED, rla=1, action="spin_right")
-    assert (record.decision.action, record.decision.rla_id) == ("spin_right", 1)
-    assert len(driving.runtime.level.system) == 2
 
 
 def test_a_robot_that_the_guard_has_stopped_is_not_blamed(driving: Drive) -> None:

@@ -3,8 +3,7 @@
 import pytest
 
 from hal.guard_reason import GuardReason
-from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, hindrance_after_resume
+from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.outcome_text import text_of
 from tests.core.test_tick import Corridor
@@ -40,20 +39,3 @@ def test_tick_resume_tells_what_holds_a_blind_robot(driving: Corridor) -> None:
     assert text_of(result.outcome) == (
         "the robot still stands: its range sensors are silent; check its power and cable"
     )
-
-
-@pytest.mark.parametrize(
-    ("standing", "reasons", "told"),
-    [
-        (DRIVES, (), None),
-        (DRIVES, (GuardReason.SLEW_LIMIT,), None),
-        (DRIVES, (GuardReason.ENCODER_STALE,), Standing(StandReason.ENCODERS_SILENT)),
-        (Standing(StandReason.ASKS, asks=True), (), None),
-        (Standing(StandReason.AT_GOAL, says="at the door"), (), None),
-        (Standing(StandReason.UNATTENDED), (), Standing(StandReason.UNATTENDED)),
-    ],
-)
-def test_hindrance_is_what_a_resume_cannot_end(
-    standing: Standing, reasons: tuple[GuardReason, ...], told: Standing | None
-) -> None:
-    assert hindrance_after_resume(standing, GuardResult(STANDSTILL, reasons, latched=False)) == told

@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import DecisionCause, GoalStatus, PlanStep
-from kurt2rt.core.decision.goal import Goal, NamedGoal, goal_text
+from kurt2rt.core.decision.goal import Goal, NamedGoal
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.events import SituationNamed, TeachingEvent
@@ -91,25 +91,6 @@ def block() -> Block:
     return town
 
 
-def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
-    record = block.seek()
-    assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status="planning")
-    step = block.plan()
-    assert (step.course, step.rla_id) == (GoalStatus.UNDER_WAY, 4)
-    assert step.behaviours == ("turn_left", "turn_left")
-    record = block.go()
-    assert record.decision.driving
-    record = block.go()
-    plan = record.decision.plan
-    assert plan is not None
-    assert (plan.course, plan.says) == (GoalStatus.ARRIVED, goal_text(GoalStatus.ARRIVED, "door"))
-    assert plan.surprises == 0
-    assert (record.decision.cause, record.decision.wheel_speeds) == (DecisionCause.AT_GOAL, STANDSTILL)
-    record = block.say(StopSeeking)
-    assert record.decision.plan is None
-    assert record.decision.driving
-
-
 def test_seek_while_standing_stands_until_the_plan_is_ready(block: Block) -> None:
     block.say(NameSituation, "here")
     block.seek(NamedGoal("here"))
@@ -178,16 +159,6 @@ def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> Non
     assert block.run().decision.driving
 
 
-def test_restarted_robot_is_lost_until_its_location_is_set(block: Block) -> None:
-    known = [*block.taught_before, *block.notebook.events]
-    again = Block(known)
-    assert again.run().decision.asks_at == MID
-    assert told(again.say(Teach, "turn_left", None, MID)) == Outcome(RefusalCode.PLACE_UNKNOWN)
-    assert told(again.say(BeAt, "door")).accepted
-    assert again.run().behaviour == "turn_left"
-    assert not again.run().decision.asking
-
-
 def test_place_without_name_is_named_by_its_rla() -> None:
     town = Block()
     town.teach("turn_left")
@@ -203,20 +174,6 @@ def test_a_stop_goes_before_all(block: Block) -> None:
     late = block.run(Seek("late", "Ann", DOOR, block.tick - 1))
     assert not told(late).accepted
     assert late.decision.cause is DecisionCause.STOPPED
-
-
-def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:
-    block.teach("straight_on", next_to=True)
-    block.say(Pursue, "straight_on")
-    block.street(0.5)
-    record = block.seek()
-    assert record.behaviour == "straight_on"
-    assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, goal="door", status="under way")
-
-
-@pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
-def test_name_situation_invalid_name_is_refused(block: Block, name: str) -> None:
-    assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
 
 
 def test_late_goal_does_not_replace_a_newer_one(block: Block) -> None:
@@ -246,21 +203,6 @@ def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -
     assert [result.accepted for result in record.results] == [True] + [False] * 199
     assert record.results[-1].outcome == Outcome(RefusalCode.GOAL_IN_SAME_TICK)
     assert told(block.seek()).accepted
-
-
-def test_lesson_at_known_place_adds_a_way_and_no_place(block: Block) -> None:
-    assert block.runtime.mid is not None
-    known = block.runtime.level.system.get(4)
-    assert known is not None
-    assert tuple(block.runtime.mid.vector) != known.condition  # not quite where it was the first time
-    record = block.say(Teach, "straight_on", None, MID)
-    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=8, level=MID, action="straight_on", next_to=4)
-    added = block.runtime.level.system.get(8)
-    assert added is not None
-    assert added.condition == known.condition
-    assert record.behaviour == "straight_on"  # so it goes now, as it was told
-    assert record.mid is not None
-    assert (record.mid.rla_id, record.mid.overridden) == (8, False)
 
 
 def test_correction_to_a_known_way_selects_it_without_a_lesson(

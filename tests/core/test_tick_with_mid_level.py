@@ -5,18 +5,16 @@ from collections.abc import Sequence
 
 import pytest
 
-from hal.robot import STANDSTILL, SensorReadings
+from hal.robot import SensorReadings
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.event_store import InMemoryEventStore
-from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.outcome import Field, Outcome, RefusalCode
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import (
     Command,
     Correct,
-    DeleteRla,
-    Drive,
     Pursue,
     ReplaceAction,
     Resume,
@@ -144,57 +142,6 @@ def town() -> Town:
     return town
 
 
-def test_mid_level_asks_at_once_and_the_answer_drives() -> None:
-    town = Town()
-    record = town.run()
-    decision = record.decision
-    assert (decision.wheel_speeds, decision.cause, decision.asks_at) == (STANDSTILL, DecisionCause.UNKNOWN, MID)
-    assert town.robot.driven[-1] == STANDSTILL
-
-    record = town.run(the_way("turn_left"))
-    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left")
-    assert (record.behaviour, record.decision.rla_id, record.decision.action) == ("turn_left", 2, "forward")
-    assert record.mid is not None
-    assert (record.mid.behaviour, record.mid.rla_id) == ("turn_left", 4)
-    (event,) = town.notebook.events
-    assert isinstance(event, RlaCreated)
-    assert (event.rla.level, event.rla.behaviour, event.rla.condition) == (MID, "", (0.0,) * LENGTH)
-
-
-def test_mid_correction_replaces_on_equal_history_else_inserts(
-    town: Town,
-) -> None:
-    assert told(town.run(another_way("turn_left", "c-1"))) == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on"
-    )
-    town.junction(1)
-    record = town.run(another_way("turn_right", "c-2"))
-    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=5, level=MID, action="turn_right")
-    assert record.behaviour == "turn_right"
-    record = town.run(another_way("straight_on", "c-3"))
-    assert told(record) == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=5, level=MID, action="straight_on", was="turn_right"
-    )
-    assert record.behaviour == "straight_on"
-    assert town.ways == {4: "turn_left", 5: "straight_on"}
-    assert isinstance(town.notebook.events[-1], ActionReplaced)
-    assert (town.runtime.handler.corrections_at(MID), town.runtime.handler.corrections) == (3, 0)
-
-
-def test_mid_lesson_about_an_old_junction_is_taken(town: Town) -> None:
-    meant = town.tick
-    for quarters in (1, 0, -1):
-        town.junction(quarters)
-    for _ in range(1500):
-        town.run()
-    assert not town.runtime.handler.recent.contains(meant)
-    record = town.run(another_way("turn_left", of=meant))
-    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on")
-    assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == Outcome.of(
-        RefusalCode.TICK_FORGOTTEN, tick=town.tick + 99
-    )
-
-
 def test_pursue_from_before_a_junction_is_refused(town: Town) -> None:
     seen = town.tick
     town.junction()
@@ -208,22 +155,6 @@ def test_mid_lesson_about_the_past_keeps_the_override(town: Town) -> None:
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
     assert town.run(another_way("turn_right", of=past)).behaviour == "turn_left"
-
-
-def test_mid_rla_is_replaced_deleted_and_undone(town: Town) -> None:
-    assert told(town.run(ReplaceAction("r", "Ann", 4, "turn_right"))).accepted
-    assert town.run().behaviour == "turn_right"
-    record = town.run(DeleteRla("d", "Ann", 4))
-    assert told(record) == Outcome.of(ResultCode.RLA_DELETED, rla=4, level=MID)
-    assert (record.decision.wheel_speeds, record.decision.asks_at) == (STANDSTILL, MID)
-    assert told(town.run(Undo("u-1", "Ann"))).code is ResultCode.LESSON_UNDONE
-    assert town.run().behaviour == "turn_right"
-    town.run(Undo("u-2", "Ann"))
-    assert town.run().behaviour == "straight_on"
-    town.run(Undo("u-3", "Ann"))
-    assert town.run().decision.asks_at == MID
-    kinds = [type(event) for event in town.notebook.events]
-    assert kinds == [RlaCreated, ActionReplaced, RlaDeleted, LessonUndone, LessonUndone, LessonUndone]
 
 
 @pytest.mark.parametrize(
@@ -263,19 +194,6 @@ def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
     assert record.decision.cause is DecisionCause.BLIND
 
 
-def test_manual_drive_passes_junctions_without_counting_uses(town: Town) -> None:
-    uses = dict(town.runtime.statistics.uses)
-    town.robot.counts = OPEN
-    for counts, steps in ((OPEN, 30), (WALL, 20)):
-        town.robot.counts = counts
-        town.robot.left_m = town.robot.right_m = STEP_M
-        for _ in range(steps):
-            record = town.run(Drive("Ann", town.tick, 1, 0.1, 0.1))
-            assert record.decision.cause is DecisionCause.TEACHER
-    assert town.history == ("straight",)
-    assert town.runtime.statistics.uses == uses
-
-
 def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     town.junction()
     town.junction()
@@ -287,16 +205,6 @@ def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     assert (saved.uses[4], saved.uses[5]) == (2, 1)
     assert {edge: saved.transitions[edge] for edge in saved.transitions if min(edge) > 3} == {(4, 4): 1, (4, 5): 1}
     assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
-
-
-def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
-    town.junction()
-    town.run(Pursue("p", "Ann", "turn_left"))
-    town.junction(1)
-    town.junction()
-    saved = town.runtime.snapshot()
-    assert saved.uses[4] == 2
-    assert (4, 4) not in saved.transitions
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,11 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import DecisionCause, UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.decision import DecisionCause, UnknownBehaviourError
 from kurt2rt.core.rla.events import RlaCreated
-from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, SmallLevel, sensed, situation
-from tests.core.rla.helpers import created, deleted, replaced, withdrawn
+from tests.core.rla.helpers import created
 
 A_AT_0 = created(1, (0.0,), "a")
 B_AT_8 = created(2, (8.0,), "b")
@@ -51,18 +50,6 @@ def test_unknown_situation_stops_a_held_action_at_once() -> None:
     assert decision.match.rla.rla_id == 2
 
 
-def test_after_standing_the_next_action_begins_at_once_and_anew() -> None:
-    small = SmallLevel(A_AT_0, B_AT_8)
-    small.at(0.0)
-    small.at(0.0)
-    small.at(100.0)
-    again = small.at(0.0)
-    assert again.wheel_speeds == WheelSpeeds(0.001, 0.001)
-    assert small.actions["a"].starts == 2
-    small.at(100.0)
-    assert small.at(8.0).action == "b"  # nothing is held over a stop
-
-
 def test_blocking_cause_stands_and_keeps_the_match() -> None:
     cause = DecisionCause.STOPPED
     small = SmallLevel(A_AT_0)
@@ -74,37 +61,6 @@ def test_blocking_cause_stands_and_keeps_the_match() -> None:
     assert not decision.asking
     assert small.at(0.0).action == "a"
     assert small.actions["a"].starts == 2
-
-
-def test_correction_ends_the_minimum_time() -> None:
-    small = SmallLevel(A_AT_0, B_AT_8)
-    small.at(0.0)
-    small.level.apply(replaced(1, "c", "a"))
-    decision = small.at(0.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "c", 1)
-    assert small.at(8.0).cause is DecisionCause.HELD  # the corrected action has a minimum time of its own
-
-
-def test_deleting_the_held_rla_hands_over_to_the_winner_at_once() -> None:
-    small = SmallLevel(A_AT_0, B_AT_8)
-    small.at(0.0)
-    assert small.at(7.0).cause is DecisionCause.HELD
-    small.level.apply(deleted(1))
-    assert small.at(7.0).action == "b"
-
-
-def test_neighbour_with_equal_action_continues_it() -> None:
-    small = SmallLevel(A_AT_0, created(2, (8.0,), "a"))
-    small.at(0.0)
-    decision = small.at(8.0)
-    assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (DecisionCause.RLA, 2, 0.002)
-
-
-def test_rla_with_action_outside_the_repertoire_is_refused() -> None:
-    system = RlaSystem(1, 10.0)
-    system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
-    with pytest.raises(UnknownActionError, match=r"RLA 2 .*\bfly\b.*: a, b$"):
-        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, ActiveBehaviour())
 
 
 TURNS = ("straight_on", "turn_left")
@@ -121,16 +77,6 @@ def test_rlas_of_inactive_behaviours_never_answer() -> None:
     small.wanted.select("turn_left")
     decision = small.at(0.0)
     assert (decision.action, decision.rla_id) == ("b", 2)
-
-
-def test_held_action_ends_at_once_on_another_active_behaviour() -> None:
-    small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
-    small.at(0.0)
-    small.wanted.select("turn_left")
-    decision = small.at(0.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "b", 2)
-    small.wanted.select("straight_on")  # and back again, in the very next tick
-    assert small.at(0.0).action == "a"
 
 
 @pytest.mark.parametrize(
@@ -154,31 +100,6 @@ def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
 ) -> None:
     with pytest.raises(UnknownBehaviourError, match=problem):
         SmallLevel(*events, behaviours=behaviours)
-
-
-def test_skipped_withdrawn_rla_lets_neighbours_answer() -> None:
-    small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
-    small.level.skip_withdrawn = True
-    assert small.at(1.0).action == "b"
-    assert small.at(-5.0).asking  # farther than the radius of the neighbour
-
-
-@pytest.mark.parametrize(("radius", "answers"), [(2.0, False), (3.0, True), (None, True)])
-def test_a_held_action_answers_only_inside_the_radius_of_its_rla(radius: float | None, answers: bool) -> None:
-    small = SmallLevel(created(1, (0.0,), "a", radius), created(2, (4.0,), "b"))
-    assert small.at(1.0).answers
-    held = small.at(3.0)
-    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, answers)
-
-
-def test_critic_lesson_keeps_the_held_action() -> None:
-    small = SmallLevel(created(1, (0.0,), "a"), created(2, (4.0,), "b"))
-    small.at(1.0)
-    small.level.apply(created(3, (0.0,), "bad", level=CRITIC))
-    small.level.apply(replaced(3, "good", "bad"))
-    assert small.at(3.0).cause is DecisionCause.HELD
-    small.level.apply(replaced(2, "c", "b"))
-    assert small.at(3.0).action == "c"
 
 
 def test_chosen_competitor_drives_else_the_oldest() -> None:

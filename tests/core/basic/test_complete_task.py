@@ -2,12 +2,10 @@
 
 from pathlib import Path
 
-import pytest
 import yaml
 
 from config import CONFIG_DIR
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
@@ -16,7 +14,6 @@ from tests.core.basic.helpers import condition_at, keep, repertoire
 from tests.core.rla.helpers import created
 
 WALLS, FREE = counts(**dict.fromkeys(("s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"), 0.1)), counts()
-AT_FIRST = (0.0,) * 12
 LEFT, RIGHT = WheelSpeeds(-0.20, 0.20), WheelSpeeds(0.20, -0.20)
 BASIC_LEVEL = (
     created(1, condition_at(WALLS), "spin_left", behaviour="turn_left"),
@@ -36,41 +33,8 @@ def patrol(folder: Path, *mid_level: TeachingEvent, mid: str | None = "turns") -
     return f"kind: task, name: patrol, task: {path}, knowledge: patrol.knowledge"
 
 
-@pytest.mark.parametrize(("behaviour", "drives"), [("turn_right", RIGHT)])
-def test_its_mid_level_says_which_behaviour_drives(behaviour: str, drives: WheelSpeeds, tmp_path: Path) -> None:
-    action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, behaviour, level=MID)))["patrol"]
-    action.start()
-    assert [action.step(sensed(WALLS)) for _ in range(20)] == [drives] * 20
-    assert not action.lost
-    assert not action.finished
-
-
 def test_it_is_lost_where_the_mid_level_knows_no_answer(tmp_path: Path) -> None:
     action = repertoire(tmp_path, patrol(tmp_path, created(3, (9.0,) * 12, "turn_left", level=MID)))["patrol"]
     action.start()
     assert action.step(sensed(WALLS)) == STANDSTILL
     assert action.lost
-
-
-def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match=r"\(patrol\): .*\bmid level"):
-        repertoire(tmp_path, patrol(tmp_path, mid=None))
-
-
-def test_task_with_places_is_refused_as_an_action(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match=r"\bpatrol\b.*\bplaces\b"):
-        repertoire(tmp_path, patrol(tmp_path, mid="places"))
-
-
-def test_mid_level_knowledge_of_other_junctions_is_refused(tmp_path: Path) -> None:
-    action = patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID))
-    task = load_task(str(tmp_path / "patrol.yaml"))
-    mid = yaml.safe_load((CONFIG_DIR / "mid_levels" / "turns.yaml").read_text(encoding="utf-8"))
-    mid["junctions"]["wall_m"] += 0.05
-    (tmp_path / "mid.yaml").write_text(yaml.safe_dump(mid), encoding="utf-8")
-    content = yaml.safe_load((tmp_path / "patrol.yaml").read_text(encoding="utf-8"))
-    content["mid"] = mid
-    (tmp_path / "patrol.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-    assert load_task(str(tmp_path / "patrol.yaml")) != task
-    with pytest.raises(SettingsError, match="level mid "):
-        repertoire(tmp_path, action)

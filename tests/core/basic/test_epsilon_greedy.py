@@ -28,46 +28,6 @@ def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: boo
     return made
 
 
-def test_best_value_answers_and_of_equals_the_newest() -> None:
-    group = competitors("a", "b", "c")
-    assert choice(Worths({2: 0.4, 3: 0.1})).choose(group, 1).rla_id == 2
-    assert choice(Worths()).choose(group, 1).rla_id == 3
-
-
-def test_choice_holds_until_its_group_was_not_nearest() -> None:
-    worths = Worths({1: 0.5})
-    group = competitors("a", "b")
-    chosen = choice(worths)
-    assert chosen.choose(group, 1).rla_id == 1
-    worths[2] = 0.9
-    for tick in range(2, 1002):
-        assert chosen.choose(group, tick).rla_id == 1
-    assert chosen.choose(group, 1001 + HOLD).rla_id == 1
-    assert chosen.choose(group, 1001 + HOLD + HOLD + 1).rla_id == 2
-
-
-def test_blame_makes_all_groups_choose_anew() -> None:
-    worths = Worths({1: 0.5})
-    group = competitors("a", "b")
-    chosen = choice(worths)
-    chosen.choose(group, 1)
-    worths[1] = -0.5
-    chosen.reset()
-    assert chosen.choose(group, 2).rla_id == 2
-
-
-def test_one_that_was_deleted_is_not_held() -> None:
-    worths = Worths({2: 0.5})
-    chosen = choice(worths)
-    assert chosen.choose(competitors("a", "b", "c"), 1).rla_id == 2
-    left = (competitors("a", "b", "c")[0], competitors("a", "b", "c")[2])
-    assert chosen.choose(left, 2).rla_id == 3
-
-
-def test_one_whose_action_was_withdrawn_does_not_compete() -> None:
-    assert choice(Worths({2: 0.9})).choose(competitors("a", ASK, "c"), 1).rla_id == 3
-
-
 def picks(seed: int, epsilon: float, *, explores: bool = True) -> list[int]:
     chosen = choice(Worths({1: 0.5}), epsilon, seed, explores=explores)
     group = competitors("a", "b", "c")
@@ -80,7 +40,3 @@ def test_now_and_then_chance_chooses_and_the_same_seed_the_same() -> None:
     assert 300 < counted[2] + counted[3] < 500  # two thirds of 30 %
     assert drawn == picks(1, 0.3)
     assert drawn != picks(2, 0.3)
-
-
-def test_while_nothing_is_learnt_chance_has_no_part() -> None:
-    assert set(picks(1, 0.3, explores=False)) == {1}

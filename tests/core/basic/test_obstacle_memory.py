@@ -10,7 +10,7 @@ from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.doubt import DoubtMeter, DoubtSettings, actions_ahead, set_points
 from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, DecisionCause
+from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -51,16 +51,6 @@ def memory_of(settings: ContactSettings = SETTINGS) -> ObstacleMemory:
     return ObstacleMemory(settings, ROBOT, ACTIONS)
 
 
-def test_obstacle_ahead_is_met_by_an_action_that_drives_there() -> None:
-    memory = memory_of()
-    assert not memory.meets("forward")
-    look(memory, s11=0.15)
-    assert not memory.meets("forward")  # 12 cm in 0.4 s
-    look(memory, way_m=0.07, s11=0.10)
-    assert memory.meets("forward")
-    assert not memory.meets("back")
-
-
 def test_obstacle_between_two_beams_is_remembered() -> None:
     memory = memory_of()
     look(memory, s9=0.12)
@@ -82,15 +72,6 @@ def test_obstacle_near_the_outline_is_remembered_there() -> None:
     assert memory.remembers_within(0.05)
 
 
-def test_corner_of_a_turning_robot_meets_what_it_has_passed() -> None:
-    memory = memory_of(SETTINGS.model_copy(update={"margin_m": 0.02, "within_s": 0.6}))
-    look(memory, s1=0.10)
-    assert not memory.meets("spin")
-    look(memory, way_m=0.16)
-    assert memory.meets("spin")
-    assert not memory.meets("forward")
-
-
 def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
     memory = memory_of(SETTINGS.model_copy(update={"memory_s": 0.2}))
     look(memory, s11=0.10)
@@ -99,18 +80,6 @@ def test_obstacle_is_forgotten_after_driving_for_the_memory() -> None:
         look(memory, way_m=0.001)
         looks.append(memory.meets("forward"))
     assert looks == [True, True, True, False]
-
-
-def test_standing_robot_forgets_nothing_until_it_is_told() -> None:
-    memory = memory_of()
-    look(memory, way_m=0.01, s11=0.10)
-    look(memory, way_m=0.01)
-    for _ in range(100):
-        look(memory)
-    assert memory.meets("forward")
-    memory.clear()
-    assert not memory.meets("forward")
-    assert memory.contact("forward") is None
 
 
 def test_far_readings_and_unknown_actions_meet_nothing() -> None:
@@ -161,11 +130,6 @@ LESSONS = (
     created(2, (400.0, 70.0), "spin"),
     created(3, (500.0, 70.0), "back"),
 )
-
-
-def test_robot_that_asks_stands_instead() -> None:
-    decision = Doubter(*LESSONS, asks=True).after_a_look()
-    assert decision.cause is DecisionCause.DOUBT
 
 
 def test_restarted_level_remembers_no_obstacle() -> None:

@@ -21,12 +21,6 @@ def driven(level: PolicyLevel, readings: SensorReadings, stand_because: Decision
     return level.decide(situation(0.0), readings, stand_because)
 
 
-def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
-    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, ActiveBehaviour())
-    assert driven(level, FAR)[1:5] == (DecisionCause.TEACHER, "a", None, None)
-    assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
-
-
 def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     actions = {"a": Counted(), "b": Counted()}
     level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, ActiveBehaviour())

@@ -27,54 +27,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_it_does_what_its_own_rlas_say(folder: Path) -> None:
-    follow = repertoire(folder, FOLLOW)["follow_wall"]
-    follow.start()
-    assert [follow.step(sensed(WALL)) for _ in range(20)] == [FORWARD] * 20
-    assert follow.step(sensed(CORNER)) == SPIN_RIGHT
-    assert not follow.finished
-    assert not follow.lost
-
-
-def test_taught_action_is_lost_while_its_situation_is_unknown(folder: Path) -> None:
-    follow = repertoire(folder, FOLLOW)["follow_wall"]
-    follow.start()
-    follow.step(sensed(WALL))
-    for _ in range(300):
-        assert follow.step(sensed(FREE)) == STANDSTILL
-        assert follow.lost
-    assert follow.step(sensed(WALL)) == FORWARD
-    assert not follow.lost
-
-
-def test_its_past_is_its_own_and_begins_where_it_is_started(tmp_path: Path) -> None:
-    past = load_task("wall_following", changes={"learning.history_weight": "1.0", "name": "with_past"})
-    path = tmp_path / "with_past.yaml"
-    path.write_text(past.model_dump_json(exclude_unset=True))
-    keep(tmp_path / "taught.knowledge", past, created(1, condition_at(WALL), "forward", radius=20.0))
-    follow = repertoire(tmp_path, f"kind: taught, name: follow, task: {path}, knowledge: taught.knowledge")["follow"]
-    follow.start()
-    follow.step(sensed(CORNER))
-    assert follow.step(sensed(WALL)) == STANDSTILL  # it comes from a corner
-    follow.start()
-    assert follow.step(sensed(WALL)) == FORWARD  # it comes from a wall
-
-
-def test_only_the_behaviour_that_is_named_acts(tmp_path: Path) -> None:
-    left = created(1, condition_at(WALL), "spin_left", behaviour="turn_left")
-    right = created(2, condition_at(WALL), "spin_right", behaviour="turn_right")
-    keep(tmp_path / "streets.knowledge", load_task("streets"), left, right)
-    street = "kind: taught, task: streets, knowledge: streets.knowledge"
-    actions = repertoire(
-        tmp_path, f"{street}, name: r, behaviour: turn_right", f"{street}, name: s, behaviour: straight_on"
-    )
-    for action in actions.values():
-        action.start()
-    assert actions["r"].step(sensed(WALL)) == SPIN_RIGHT
-    assert actions["s"].step(sensed(WALL)) == STANDSTILL  # nothing was taught of it
-    assert actions["s"].lost
-
-
 def test_a_taught_action_may_be_made_of_taught_ones(folder: Path) -> None:
     outer = with_repertoire(WALL_FOLLOWING, folder, FOLLOW).model_copy(update={"name": "patrol"})
     (folder / "patrol.yaml").write_text(outer.model_dump_json(exclude_unset=True))
@@ -87,14 +39,6 @@ def test_a_taught_action_may_be_made_of_taught_ones(folder: Path) -> None:
     assert action.step(sensed(WALL)) == FORWARD
     assert action.step(sensed(FREE)) == STANDSTILL
     assert action.lost
-
-
-def test_a_repertoire_that_is_a_part_of_itself_is_refused(folder: Path) -> None:
-    itself = f"kind: taught, name: again, task: {folder / 'loop.yaml'}, knowledge: loop.knowledge"
-    task = with_repertoire(WALL_FOLLOWING, folder, itself).model_copy(update={"name": "loop"})
-    (folder / "loop.yaml").write_text(task.model_dump_json(exclude_unset=True))
-    with pytest.raises(SettingsError, match=r"repertoire\.yaml -> repertoire\.yaml;"):
-        repertoire(folder, itself)
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,9 @@ import pytest
 
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.rla.condition import Space
-from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
-from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
+from tests.core.critic.helpers import FREE, SETTINGS, appraisal
 
 CLOSE = FREE._replace(front_m=0.12)
 
@@ -41,27 +40,3 @@ def test_critic_far_situation_is_unknown() -> None:
     assert said is not None
     assert (said.value, said.appraisal, said.known, said.said) == (0, "", False, None)
     assert said.distance > said.radius == SETTINGS.learning.radius
-
-
-def test_critic_withdrawn_or_unknown_appraisal_no_opinion() -> None:
-    knowledge = system()
-    critic = Critic(knowledge, SETTINGS)
-    knowledge.apply_all([appraisal(1, "splendid", FREE), appraisal(2, "bad", CLOSE)])
-    knowledge.apply(ActionWithdrawn(2, "bad", origin()))
-    for circumstances in (FREE, CLOSE):
-        said = critic.opinion(critic.to_vector(circumstances))
-        assert said is not None
-        assert said.said is None
-
-
-def test_critic_searches_every_few_ticks_and_after_lessons() -> None:
-    knowledge = system()
-    critic = Critic(knowledge, SETTINGS.model_copy(update={"think_every_ticks": 5}))
-    assert critic.appraise(10, FREE) is None
-    knowledge.apply_all([appraisal(1, "good", FREE), appraisal(2, "bad", CLOSE)])
-    thought = [critic.appraise(tick, FREE if tick == 11 else CLOSE) for tick in range(11, 18)]
-    assert [opinion.value for opinion in thought if opinion is not None] == [1, 1, 1, 1, 1, -1, -1]
-    knowledge.apply(ActionReplaced(2, "neutral", "bad", origin()))
-    now = critic.appraise(18, CLOSE)
-    assert now is not None
-    assert now.appraisal == "neutral"

@@ -56,24 +56,6 @@ def test_rollback_worse_window_undoes_newest_first() -> None:
     assert len({each.origin.command_id for each in undone}) == 3
 
 
-def test_rollback_within_margin_or_better_keeps() -> None:
-    kept = best()
-    window(kept, good=5)
-    kept.on_event(created(1, "first"))
-    assert window(kept, good=4) == ()
-    assert window(kept, good=7) == ()
-    assert (kept.best, kept.score) == (0.7, 0.7)
-    kept.on_event(created(2, "second"))
-    assert [each.lesson for each in window(kept, good=2)] == ["second"]
-
-
-def test_rollback_without_changes_undoes_nothing() -> None:
-    kept = best()
-    window(kept, good=9)
-    assert window(kept, good=0) == ()
-    assert kept.best == 0.9
-
-
 def test_rollback_standstill_does_not_count() -> None:
     kept = best()
     for tick in range(1000):
@@ -81,15 +63,6 @@ def test_rollback_standstill_does_not_count() -> None:
     assert kept.score is None
     window(kept, good=3)
     assert kept.score == 0.3
-
-
-def test_rollback_asking_counts_as_bad() -> None:
-    kept = best()
-    window(kept, good=1)
-    kept.on_event(created(1, "first"))
-    undone = [event for tick in range(10) for event in kept.update(tick, 1, False, asking=True)]
-    assert [each.lesson for each in undone] == ["first"]
-    assert kept.score == -1.0
 
 
 def test_rollback_skips_lessons_undone_by_hand() -> None:
@@ -110,80 +83,6 @@ def test_rollback_keeps_lessons_below_a_teachers() -> None:
     kept.on_event(created(2, "second"))
     kept.on_event(replaced(1, "by ada", teacher="ada"))
     assert [each.lesson for each in window(kept, good=0)] == ["second"]
-
-
-def test_rollback_is_followed_by_a_measured_window() -> None:
-    kept = best()
-    window(kept, good=10)  # by chance
-    kept.on_event(created(1, "first"))
-    for undone in window(kept, good=5):
-        kept.on_event(undone)
-    assert window(kept, good=5) == ()
-    assert kept.best == 0.5
-    kept.on_event(created(2, "second"))
-    assert window(kept, good=6) == ()
-    assert window(kept, good=5) == ()
-    assert kept.best == 0.6
-
-
-def test_rollback_won_window_proves_earlier_lessons_only() -> None:
-    kept = best()
-    window(kept, good=5)
-    kept.on_event(created(1, "before"))
-    for tick in range(8):
-        kept.update(tick, 1, True)
-    kept.on_event(created(2, "late"))
-    for tick in range(2):
-        kept.update(tick, None, True)
-    assert kept.best == 0.8
-    assert [each.lesson for each in window(kept, good=3)] == ["late"]
-
-
-def test_rollback_next_won_window_proves_the_rest() -> None:
-    kept = best()
-    window(kept, good=5)
-    for tick in range(5):
-        kept.update(tick, 1, True)
-    kept.on_event(created(1, "late"))
-    for tick in range(5):
-        kept.update(tick, None, True)
-    window(kept, good=6)
-    assert window(kept, good=0) == ()
-
-
-def test_rollback_slow_decline_is_noticed() -> None:
-    """Each window a little worse than the one before: none of them becomes what the next is held against."""
-    kept = best(margin=0.1)
-    window(kept, good=6)
-    scores: list[int] = []
-    for number in range(1, 20):
-        kept.on_event(created(number, f"change-{number}"))
-        scores.append(6 - len(scores))
-        undone = window(kept, good=scores[-1])
-        if undone:
-            break
-    assert scores == [6, 5, 4]
-    assert [each.lesson for each in undone] == ["change-3", "change-2"]
-
-
-def test_rollback_restart_discards_the_open_window() -> None:
-    kept = best()
-    for tick in range(9):
-        kept.update(tick, -1, True)
-    kept.restart()
-    window(kept, good=7)
-    assert kept.best == 0.7
-
-
-def test_rollback_restart_measures_unless_unproven() -> None:
-    kept = best()
-    window(kept, good=9)
-    kept.restart()
-    window(kept, good=3)
-    assert kept.best == 0.3
-    kept.on_event(created(1, "first"))
-    kept.restart()
-    assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
 def test_rollback_restore_continues_from_best_window() -> None:

@@ -10,22 +10,7 @@ from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
-from kurt2rt.core.critic.sides import critic_of, sides_of
-
-
-def test_sides_of_kurt2_look_where_the_shipped_critic_says() -> None:
-    shipped, found = load_critic("basic").perception.sensors, sides_of(load_robot().infrared)
-    assert shipped is not None
-    for side in ("left", "right", "front", "rear", "ahead_left", "ahead_right"):
-        assert set(getattr(found, side)) == set(getattr(shipped, side)), side
-
-
-def test_sides_without_a_sensor_take_the_nearest_headings() -> None:
-    sides = sides_of(load_robot("school").infrared)
-    assert set(sides.front) == {"p1", "p2", "p3"}
-    assert (sides.ahead_left, sides.ahead_right) == (("p0",), ("p4",))
-    assert set(sides.left) == {"p0", "p1"}
-    assert set(sides.rear) == {"p5", "p6"}
+from kurt2rt.core.critic.sides import critic_of
 
 
 @pytest.mark.parametrize("robot", ["school", "turtlebot"])
@@ -46,16 +31,6 @@ def in_sectors(**changed: object) -> CriticSettings:
     }
     content["perception"] |= {"sensors": None, "sectors": {**sectors, **changed}}
     return CriticSettings.model_validate_json(json.dumps(content))
-
-
-def test_sectors_take_the_sensors_that_look_into_them() -> None:
-    found = critic_of(in_sectors(), load_robot())
-    headings = sides_of(load_robot().infrared)
-    assert found.perception.sensors is not None
-    for side in ("left", "right", "front", "rear", "ahead_left", "ahead_right"):
-        assert getattr(found.perception.sensors, side) == getattr(headings, side), side
-    assert found.perception.sectors is None
-    assert critic_of(found, load_robot()) is found
 
 
 def test_sector_without_a_sensor_is_refused_by_its_side() -> None:

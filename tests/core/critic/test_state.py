@@ -36,14 +36,3 @@ def test_state_measures_then_not_needed_then_acts() -> None:
     assert standing(track)[0] is CriticState.ACTS
     track.go(0.0, 5, CALM)
     assert standing(track)[0] is CriticState.ACTS
-
-
-def test_state_before_phase_5_or_untrusted_listens() -> None:
-    track = alone()
-    track.go(0.0)
-    track.school.phase = Phase.CRITIC
-    track.go(0.0)
-    assert standing(track) == (CriticState.LISTENS, None)
-    nobodys = alone(False)
-    nobodys.go(0.0, 10)
-    assert standing(nobodys) == (CriticState.LISTENS, None)

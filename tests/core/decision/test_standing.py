@@ -13,7 +13,6 @@ from kurt2rt.core.decision.standing import (
     DRIVES,
     GO_IN_TERMINAL,
     GO_ON_PAGE,
-    HELD_TICKS,
     LATCHED,
     Standing,
     StandingWatch,
@@ -36,8 +35,6 @@ from kurt2rt.teacher.scripted.channel_teacher import view_of_state
 from kurt2rt.teacher.terminal.terminal_text import build_question, expects_answer, format_state
 from tests.channel.channel_fixture import ChannelFixture
 
-FORWARD = WheelSpeeds(0.3, 0.3)
-BY_RLA = Decision(FORWARD, DecisionCause.RLA, "forward", 1, None, True)
 ASKS = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
 
@@ -149,15 +146,6 @@ def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReas
             assert reason_text(standing) in text
             assert (GO_ON_PAGE in text) is needs_go
             assert short_text(standing) or (not needs_go and reason in _ASK)
-
-
-def test_one_late_tick_is_no_standing_and_many_are() -> None:
-    watch = StandingWatch()
-    late = GuardResult(STANDSTILL, (GuardReason.COMMAND_TOO_OLD,), latched=False)
-    told = [watch.update(BY_RLA, late, 0.01 * tick, None, None).reason for tick in range(HELD_TICKS + 1)]
-    assert told == [*[StandReason.DRIVES] * HELD_TICKS, StandReason.LATE]
-    assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, None, None) == DRIVES
-    assert watch.update(BY_RLA, late, 0.21, None, None) == DRIVES
 
 
 def test_a_question_waits_while_the_guard_has_latched() -> None:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.rla.statistics import pack
 from tests.core.expectations.helpers import Small
-from tests.core.rla.helpers import deleted, replaced, undone
+from tests.core.rla.helpers import deleted, undone
 
 PLACES = st.tuples(st.floats(-1000, 1000), st.floats(-1000, 1000))
 
@@ -39,23 +39,6 @@ def test_surprise_only_for_distant_ends() -> None:
     assert (off.rla_id, off.follow_up, off.ends) == (1, 2, 21)
 
 
-def test_surprise_needs_enough_ends() -> None:
-    small = Small()
-    assert [small.ends(1, 2, 1000.0 * number, 0.0) for number in range(5)] == [None] * 5
-    assert small.ends(1, 2, 0.0, 0.0) is not None
-
-
-def test_surprise_constant_ends_have_a_least_distance() -> None:
-    small = Small()
-    for _ in range(10):
-        small.ends(1, 2, 50.0, 20.0)
-    near = small.ends(1, 2, 50.9, 20.0)  # R is 10
-    far = small.ends(1, 2, 52.0, 20.0)
-    assert near is not None
-    assert far is not None
-    assert [near.surprising, far.surprising] == [False, True]
-
-
 def test_surprise_new_follow_up_is_marked() -> None:
     small = Small()
     for _ in range(5):
@@ -65,25 +48,6 @@ def test_surprise_new_follow_up_is_marked() -> None:
     assert again is not None
     assert [new.new_follow_up, again.new_follow_up] == [True, False]
     assert (again.seen, again.ends) == (1, 6)
-
-
-def test_learn_symbols_most_frequent_wins() -> None:
-    small = Small("hamming")
-    for symbols in [(4, 1, 2)] + 7 * [(1, 2, 2)] + [(3, 2, 4)]:
-        small.ends(1, 2, *map(float, symbols))
-    assert small.expected(1).mean.tolist() == [1.0, 2.0, 2.0]
-
-
-def test_on_event_new_action_drops_expectation() -> None:
-    small = Small()
-    small.ends(1, 2, 5.0, 5.0)
-    small.ends(2, 1, 7.0, 7.0)
-    assert small.happens(replaced(1, "backward", "forward")) == 1
-    assert small.expectations.get(1) is None
-    assert small.expectations.get(2) is not None
-    small.ends(1, 2, 9.0, 9.0)
-    assert small.happens(undone("correction-1")) == 1
-    assert small.expectations.get(1) is None
 
 
 def test_on_event_restored_rla_has_no_expectation() -> None:
@@ -115,29 +79,6 @@ def test_snapshot_restores_expectations(metric: str) -> None:
     for situation in situations[7:]:
         second.ends(1, 2, *situation)
     assert second.expected(1) == whole.expected(1)  # to the last bit
-
-
-def test_restore_drops_deleted_or_changed_rlas() -> None:
-    before = Small()
-    for rla_id in (1, 2, 3):
-        before.ends(rla_id, 2, 5.0, 5.0)
-    saved = before.expectations.snapshot()
-    again = Small()
-    again.system.apply(deleted(1))
-    again.system.apply(replaced(2, "backward", "forward"))
-    expectations = type(again.expectations)(again.level, again.system, again.space, {}, saved)
-    assert expectations.snapshot() == {3: saved[3]}
-
-
-def test_snapshot_shares_unchanged_expectations() -> None:
-    small = Small()
-    for rla_id in (1, 2, 3):
-        small.ends(rla_id, 2, 5.0, 5.0)
-    first = small.expectations.snapshot()
-    small.ends(2, 3, 6.0, 5.0)
-    second = small.expectations.snapshot()
-    assert [second[rla_id] is first[rla_id] for rla_id in (1, 2, 3)] == [True, False, True]
-    assert first[2].count == 1  # what was handed over does not change any more
 
 
 def test_restore_other_dimensions_is_refused() -> None:

@@ -27,58 +27,6 @@ class RobotWithLearner:
         self.level.teach(np.array([place]), self.active.behaviour, action, Why.ANSWER, command_id)
 
 
-def test_it_asks_outside_of_all_lessons_and_drives_inside() -> None:
-    robot = RobotWithLearner()
-    assert robot.at(0.0) == Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
-    robot.teach(0.0, "a", "t-1")
-    drives = robot.at(9.0)
-    assert (drives.cause, drives.action, drives.asking) == (DecisionCause.LEARNER, "a", False)
-    assert robot.at(11.0).asking
-
-
-def test_it_asks_sooner_while_it_is_taught() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.level.taught = True
-    assert robot.at(4.0).action == "a"
-    assert robot.at(6.0).asking  # beyond half of R
-
-
-def test_action_is_held_for_its_minimum_time() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.teach(5.0, "b", "t-2")
-    actions = [robot.at(place).action for place in (0.0, *[5.0] * MINIMUM_TICKS)]
-    assert actions == [*"a" * MINIMUM_TICKS, "b"]
-
-
-def test_slow_ticks_do_not_count_for_the_minimum_time() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.teach(5.0, "b", "t-2")
-    robot.level.counts = False
-    assert {robot.at(place).action for place in (0.0, *[5.0] * 3 * MINIMUM_TICKS)} == {"a"}
-
-
-def test_lesson_acts_at_once_also_against_a_held_action() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.at(0.0)
-    robot.teach(3.0, "b", "t-2")
-    assert robot.at(3.0).action == "b"
-
-
-def test_blocking_cause_stands_and_restarts_the_action() -> None:
-    robot = RobotWithLearner()
-    robot.teach(0.0, "a", "t-1")
-    robot.at(0.0)
-    robot.at(0.0)
-    stands = robot.at(0.0, DecisionCause.STOPPED)
-    assert stands == Decision(STANDSTILL, DecisionCause.STOPPED, None, None, None)
-    robot.at(0.0)
-    assert robot.actions["a"].starts == 2
-
-
 def test_action_that_is_lost_asks() -> None:
     robot = RobotWithLearner()
     robot.teach(0.0, "a", "t-1")

@@ -61,12 +61,6 @@ def test_learner_with_a_gate_asks_far_from_all_labels(name: str) -> None:
     assert says(learner, 0.0, -9.0, teacher=True) is None  # inside R, beyond half of it
 
 
-@pytest.mark.parametrize("name", NEVER_ASK)
-def test_learner_without_a_gate_never_asks_again(name: str) -> None:
-    learner = taught(name, *GROUPS)
-    assert says(learner, 500.0, 500.0) is not None
-
-
 @pytest.mark.parametrize("name", ["k-nn", "weighted-vote"])
 def test_gate_of_neighbours_is_a_multiple_of_r(name: str) -> None:
     near, wide = taught(name, *GROUPS), taught(name, *GROUPS, setting=FLAT._replace(gate=3.0))

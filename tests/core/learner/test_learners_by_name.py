@@ -10,11 +10,6 @@ from tests.plugin_packages import install
 MINE = "from kurt2rt.core.learner.rla_learner import RlaLearner\n\n\nclass Mine(RlaLearner):\n    pass\n"
 
 
-def test_find_learner_by_name_and_by_module() -> None:
-    assert find_learner("rla-door") is RlaLearner
-    assert find_learner("kurt2rt.core.learner.rla_learner:RlaLearner") is RlaLearner
-
-
 def test_find_learner_by_entry_point(plugin_folder: Path) -> None:
     install(plugin_folder, "theirs", {"learners": {"theirs": "kurt2rt.core.learner.rla_learner:RlaLearner"}})
     assert find_learner("theirs") is RlaLearner

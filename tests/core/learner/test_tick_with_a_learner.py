@@ -17,7 +17,7 @@ from kurt2rt.core.learner.learner import LearnerSetting, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, HoldAction, ReplaceAction, Reward, Teach, Undo
+from kurt2rt.core.teaching.commands import Command, DeleteRla, HoldAction, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.explain.collect import collect_facts
@@ -89,27 +89,6 @@ def robot() -> Iterator[TaughtRobot]:
     robot = TaughtRobot()
     yield robot
     robot.close()
-
-
-def test_answer_drives_on_the_tick_that_takes_it(robot: TaughtRobot) -> None:
-    assert robot.go_on(20).decision.asking
-    drives = robot.go_on(1, Teach("t-1", "Ann", "spin_left"))
-    assert (drives.decision.cause, drives.decision.action) == (DecisionCause.LEARNER, "spin_left")
-    assert (drives.decision.rla_id, drives.decision.match) == (None, None)
-    assert drives.standing.reason is StandReason.DRIVES
-    assert np.array_equal(robot.team.labels[0].situation, drives.situation.vector)
-    assert [event.origin.command_id for event in robot.store.events] == ["t-1"]  # the lesson is kept as ever
-
-
-def test_late_press_is_about_a_decision_of_before(robot: TaughtRobot) -> None:
-    robot.go_on(20)
-    robot.go_on(100, Teach("t-1", "Ann", "spin_left"))
-    pressed = robot.go_on(1, Correct("c-1", "Ann", "spin_right", late=True, seen_tick=robot.records[-1].tick))
-    fields = pressed.results[0].outcome.fields
-    meant = next(each for each in robot.records if each.tick == fields["decision_tick"])
-    assert meant.tick < pressed.tick - 10
-    assert np.array_equal(robot.team.labels[-1].situation, meant.situation.vector)
-    assert robot.team.labels[-1].why is Why.LATE
 
 
 def test_undo_of_a_hold_takes_all_of_its_labels_back(robot: TaughtRobot) -> None:

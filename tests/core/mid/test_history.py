@@ -54,14 +54,3 @@ def test_history_vector_is_never_changed() -> None:
     after = led.situation.vector
     led.go(0.3)
     assert led.situation.vector is after
-
-
-def test_history_reports_a_junction_in_its_tick_only() -> None:
-    situation = load_mid_level("turns").build(ROBOT)
-    seen = []
-    for away_m, steps in ((STREET_M, 100), (OPEN_M, 160), (STREET_M, 100)):
-        for _ in range(steps):
-            changed = situation.perceive(sensed(away_m, away_m, 0.005))
-            assert changed == (situation.passed is not None)
-            seen.append(situation.passed)
-    assert [each.name for each in seen if each is not None] == ["straight"]

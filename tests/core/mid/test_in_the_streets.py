@@ -1,6 +1,5 @@
 """Detection of junctions in simulated streets."""
 
-import math
 import random
 from collections.abc import Iterator
 
@@ -12,10 +11,8 @@ from behaviors.repertoire import load_repertoire
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import SensorReadings
 from hal.robot_settings import InfraredSettings
-from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
@@ -49,28 +46,6 @@ class Drive:
             self.simulation.robot.drive(self._level.decide(ANYWHERE, readings, None).wheel_speeds, now_s, now_s)
             yield readings
         self.simulation.close()
-
-
-def test_detector_corners_ts_and_crossings_in_simulation() -> None:
-    drive = Drive(1)
-    drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
-    detector = JunctionDetector(load_mid_level("turns").junctions, ROBOT)
-    way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
-    drive.wanted.select(next(way))
-    passed: list[JunctionEvent] = []
-    for readings in drive.ticks(39.0):
-        event = detector.perceive(readings)
-        if event is not None:
-            passed.append(event)
-            drive.wanted.select(next(way))
-    assert [(each.name, each.left_open, each.right_open) for each in passed] == [
-        ("straight", False, True),  # along a T, past its stem
-        ("right", False, True),  # out of it through its stem
-        ("straight", True, True),
-        ("left", True, True),
-        ("right", True, True),  # at the end of a stem
-        ("right", False, True),  # round a corner
-    ]
 
 
 class Truth:

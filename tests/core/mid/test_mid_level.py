@@ -4,7 +4,7 @@ import pytest
 
 from kurt2rt.core.decision.decision import UnknownBehaviourError
 from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
-from tests.core.rla.helpers import created, deleted, replaced, undone
+from tests.core.rla.helpers import created
 
 
 def test_mid_level_nearest_rla_commands() -> None:
@@ -23,31 +23,6 @@ def test_mid_level_reports_a_junction_once() -> None:
     assert [small.commanded(symbol).event for symbol in (None, 1.0, None)] == [None, STRAIGHT, None]
 
 
-def test_mid_level_outside_radius_asks() -> None:
-    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    assert not small.commanded(1.0).asks
-    asked = small.commanded(1.0)
-    assert asked.asks
-    assert asked.rla_id is None
-    assert asked.match is not None
-    assert (asked.match.rla.rla_id, asked.match.distance) == (4, 2.0)
-    assert asked.behaviour == small.wanted.behaviour == "turn_left"
-
-
-def test_mid_level_lesson_counts_at_once() -> None:
-    small = SmallStack()
-    assert small.commanded().asks
-    small.system.apply(taught(4, (0.0, 0.0, 0.0), "turn_left"))
-    assert small.commanded().behaviour == "turn_left"
-    small.system.apply(replaced(4, "turn_right", "turn_left"))
-    assert small.commanded().behaviour == "turn_right"
-    small.system.apply(deleted(4))
-    assert small.commanded().asks
-    small.system.apply(undone("deletion-4"))
-    small.system.apply(undone("correction-4"))
-    assert small.commanded().behaviour == "turn_left"
-
-
 def test_mid_level_override_lasts_to_next_junction() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     small.commanded()
@@ -58,16 +33,6 @@ def test_mid_level_override_lasts_to_next_junction() -> None:
     passed = small.commanded(1.0)
     assert (passed.behaviour, passed.overridden, passed.event) == ("turn_left", False, STRAIGHT)
     assert small.wanted.behaviour == "turn_left"
-
-
-def test_mid_level_override_answers_a_question() -> None:
-    small = SmallStack(taught(4, (1.0, 0.0, 0.0), "turn_left"), radius=0.0)
-    assert small.commanded().asks
-    small.mid.override("straight_on")
-    led = small.commanded()
-    assert (led.behaviour, led.asks, led.overridden) == ("straight_on", False, True)
-    assert small.commanded(1.0).behaviour == "turn_left"
-    assert small.commanded(1.0).asks
 
 
 def test_mid_level_restart_forgets_the_situation() -> None:

@@ -94,38 +94,12 @@ def test_place_tracks_pose_behind_each_junction(drive: Drive) -> None:
     assert (drive.place.vector[WALL_LEFT], drive.place.vector[WALL_RIGHT]) == (0.0, 1.0)
 
 
-def test_place_known_place_corrects_position(drive: Drive) -> None:
-    drive.lead("turn_right")
-    known: Condition = (3.0, 4.1, 1.0, 0.0, 0.0, 0.0)
-    drive.place.known_place = lambda vector: known if np.hypot(vector[X] - 4.9, vector[Y] - 4.1) < 0.6 else None
-    drive.lead("straight_on")
-    reckoned = drive.place.vector.copy()
-    assert math.hypot(reckoned[X] - 4.8, reckoned[Y] - 4.0) < 0.3  # it says what it found, not what it knew
-    drive.lead("turn_left")
-    assert drive.place.vector[X] - known[X] < 1.5  # but goes on from what it knew
-
-
 def test_place_is_constant_between_junctions(drive: Drive) -> None:
     before = drive.place.vector
     while not drive.step():
         pass
     assert drive.place.vector is not before
     assert tuple(before) == AT_START
-
-
-def test_place_restart_is_lost_until_localised(drive: Drive) -> None:
-    drive.lead("turn_right")
-    drive.place.restart()
-    assert drive.place.lost
-    assert drive.place.perceive(drive.simulation.robot.sense(0.0))
-    drive.simulation.simulated_robot.place(NORTHWARD)
-    while not drive.simulation.pose.y_m > 4.0:
-        drive.step()
-    assert drive.place.lost
-    drive.simulation.simulated_robot.place(NORTHWARD)
-    drive.place.localise(AT_START)
-    drive.lead("turn_right")
-    assert drive.off_m < 0.15
 
 
 def test_place_opposite_headings_are_distinct() -> None:

@@ -10,7 +10,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import load_robot
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.perception import FeatureExtractor
-from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, WHEELS, definition
+from tests.core.perception.helpers import ALL_KINDS, EXTREMES, ORIENTATIONS, READINGS, SENSORS, definition
 
 Features = Sequence[Mapping[str, object]]
 
@@ -35,10 +35,6 @@ def test_features_of_each_kind_in_configured_order(
     features: Features, counts: tuple[int, ...], by_hand: list[int]
 ) -> None:
     assert extracted(features, counts) == by_hand
-
-
-def test_features_wheel_speeds_are_whole_counts() -> None:
-    assert extracted(WHEELS, (0, 0, 0, 0), WheelSpeeds(0.30, -0.156)) == [-16, 30]
 
 
 @given(st.permutations(ALL_KINDS), st.tuples(*[st.integers(0, 1023)] * 4))

@@ -1,7 +1,6 @@
 """Weights of features in a distance."""
 
 import anyio
-import numpy as np
 import pytest
 
 from hal.settings import SettingsError
@@ -17,25 +16,6 @@ from tests.experiments.helpers import ROBOT, STAGE
 
 DEFINITION = load_situation("basic", ROBOT.infrared.names)
 NAMES = DEFINITION.names
-
-
-def test_feature_weights_averages_have_a_share() -> None:
-    weights = feature_weights(DEFINITION, (), 0.25, "mine")
-    assert weights.tolist() == [1.0] * 36 + [0.25] * 36
-
-
-def test_feature_weights_changed_in_both_halves() -> None:
-    weights = dict(
-        zip(
-            NAMES,
-            feature_weights(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5, "mine"),
-            strict=True,
-        )
-    )
-    assert weights["s15"] == weights["maximum front"] == 3.0
-    assert weights["s15 (10 s average)"] == 1.5
-    assert weights["s2"] == weights["s2 (10 s average)"] == 0.0
-    assert np.isclose(sum(weights.values()), (33 + 6) * 1.5)
 
 
 @pytest.mark.parametrize(
@@ -88,22 +68,3 @@ def test_feature_weights_decide_which_rla_drives() -> None:
     assert first_tick(*taught, weights=(heavy,)).decision.action == "back"
     light = FeatureWeight(weight=0.0, features=("s2",))
     assert first_tick(*taught, weights=(light,)).decision.action == "back"
-
-
-MIRRORED = {"s1": "s5", "s2": "s6", "s3": "s7", "s4": "s8", "s9": "s10", "s12": "s13", "s15": "s16", "s17": "s18"}
-"""Sensors that the robot has on both sides, left to right."""
-
-
-def mirrored(feature: str) -> str:
-    """Return the feature that a robot sees in place of another one in the mirrored world."""
-    swap = {**MIRRORED, **{right: left for left, right in MIRRORED.items()}, "left": "right", "right": "left"}
-    return " ".join(">".join(swap.get(name, name) for name in word.split(">")) for word in feature.split(" "))
-
-
-def test_weights_of_fleeing_are_symmetric() -> None:
-    learning = load_task("fleeing").learning
-    changed = [(each.features, each.weight) for each in learning.weights]
-    values = feature_weights(DEFINITION, changed, learning.history_weight, "fleeing")
-    weights = dict(zip(NAMES[:34], values, strict=False))
-    assert {feature: weights[mirrored(feature)] for feature in weights} == weights
-    assert len(set(weights.values())) > 1

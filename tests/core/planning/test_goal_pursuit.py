@@ -1,11 +1,9 @@
 """Pursuit of a goal: plan, surprise, arrival, missing path."""
 
 import numpy as np
-import pytest
 
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 from kurt2rt.core.planning.goal_pursuit import PIECES, GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, make_target
 from kurt2rt.core.planning.topological_map import build_map
@@ -64,25 +62,6 @@ def chosen(town: Town, seeks: GoalPursuit, place: str) -> str | None:
     return None if rla is None else rla.action
 
 
-def test_pursuit_follows_the_plan_to_the_goal() -> None:
-    town = grid()
-    seeks = seeking(town)
-    arrive(seeks, town.at("a"))
-    assert seeks.plan is not None
-    assert [edge.rla_id for edge in seeks.plan.edges] == [1, 2, 4]
-    assert seeks.plan.edges[0].action == "straight_on"
-    assert chosen(town, seeks, "a") == "straight_on"
-    arrive(seeks, town.at("b"))
-    assert chosen(town, seeks, "b") == "straight_on"
-    arrive(seeks, town.at("c"))
-    assert chosen(town, seeks, "c") == "turn_left"
-    assert not seeks.stands
-    arrive(seeks, town.at("e"))
-    assert course(seeks) is GoalStatus.ARRIVED
-
-    assert seeks.surprises == 0
-
-
 def test_pursuit_other_place_is_surprise_and_new_plan() -> None:
     town = grid()
     seeks = seeking(town)
@@ -93,18 +72,6 @@ def test_pursuit_other_place_is_surprise_and_new_plan() -> None:
     assert chosen(town, seeks, "d") == "turn_right"
     arrive(seeks, town.at("e"))
     assert course(seeks) is GoalStatus.ARRIVED
-
-
-def test_pursuit_no_path_stands() -> None:
-    town = grid()
-    seeks = seeking(town)
-    arrive(seeks, town.at("e"))
-    assert course(seeks) is GoalStatus.ARRIVED
-    back = RlaGoal(1)
-    seeks.seek(back, target(town, back))
-    arrive(seeks, town.at("e"))
-    assert seeks.stands
-    assert course(seeks) is GoalStatus.NO_WAY
 
 
 def test_pursuit_unknown_place_is_lost() -> None:
@@ -169,24 +136,6 @@ def test_pursuit_without_goal_chooses_none() -> None:
     assert seeks.text == ""
     assert chosen(town, seeks, "b") is None
     assert not seeks.stands
-
-
-@pytest.mark.parametrize(
-    ("goal", "outcome"),
-    [
-        (NamedGoal("attic"), Outcome.of(RefusalCode.NOT_NAMED, name="attic", known=("door",))),
-        (RlaGoal(99), Outcome.of(RefusalCode.NO_RLA, rla=99)),
-        (
-            PartialGoal((("smell", 1.0),)),
-            Outcome.of(RefusalCode.NO_FEATURE, features=("smell",), level=MID, known=FEATURES),
-        ),
-        (PartialGoal(()), Outcome.of(RefusalCode.NO_FEATURE, features=(), level=MID, known=FEATURES)),
-    ],
-)
-def test_make_target_unknown_goal_is_refused(goal: Goal, outcome: Outcome) -> None:
-    with pytest.raises(CommandRefusedError) as refused:
-        target(grid(), goal)
-    assert refused.value.outcome == outcome
 
 
 def test_pursuit_large_town_plans_over_many_ticks() -> None:

@@ -54,28 +54,6 @@ def test_plan_takes_the_quicker_chain() -> None:
     assert actions(plan(town, "sw", "nw")) == ["straight_on", "turn_left"]
 
 
-def test_plan_cost_includes_failed_attempts() -> None:
-    town = block()
-    risky = town.way("sw", "straight_on", "ne", ticks=1500.0)
-    town.follow_ups[risky, place_id(town, "ne")] = 3
-    town.follow_ups[risky, place_id(town, "nw")] = 7
-    assert actions(plan(town, "sw", "ne")) == ["turn_left", "turn_left"]
-
-
-def test_plan_unreachable_goal_is_none() -> None:
-    town = Town(home=(0.0, 0.0), door=(2.0, 0.0))
-    town.way("door", "straight_on", "home")
-    town.teach("home", "straight_on")  # taught, but never driven: no expectation
-    assert plan(town, "home", "door") is None
-
-
-def test_plan_goal_may_be_untaught() -> None:
-    town = block()
-    town.places["yard"] = (4.0, 0.0)
-    town.way("se", "straight_on", "yard")
-    assert actions(plan(town, "sw", "yard")) == ["turn_left", "straight_on"]
-
-
 def test_map_follow_ups_replace_distant_expectation() -> None:
     town = block()
     torn = town.way("sw", "straight_on", "ne")

@@ -35,25 +35,6 @@ def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = Non
     return make_trace(recent, tick, trace_ticks=TRACE_TICKS, since=since or {})
 
 
-def test_trace_standstill_and_unknown_have_no_share() -> None:
-    assert trace(drives(None, None, None), 3) == {}
-    assert trace(drives(7, 8, 7, answers=False), 3) == {}
-
-
-def test_trace_starts_with_the_present_action() -> None:
-    recent = drives(*[7] * 100)
-    assert trace(recent, 100, {7: 91, 8: 500}) == {7: pytest.approx(1 - D**10)}
-    assert trace(recent, 90, {7: 91}) == {}
-
-
-def test_trace_forgotten_or_missed_ticks_have_no_share() -> None:
-    recent = drives(*[7] * 10)
-    remember(recent, 20, 8)
-    shares = trace(recent, 20)
-    assert shares == {7: pytest.approx((1 - D**10) * D**10), 8: pytest.approx(1 - D)}
-    assert trace(recent, 1015) == {}
-
-
 @given(st.lists(st.sampled_from([None, 1, 2, 3]), min_size=1, max_size=200), st.integers(0, 199))
 def test_trace_equals_the_sum_over_ticks(rlas: list[int | None], back: int) -> None:
     tick = max(1, len(rlas) - back)

@@ -1,16 +1,13 @@
 """Values after steps and rewards."""
 
-import math
-
 import pytest
 
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtValues
-from kurt2rt.core.reinforcement.td_lambda import CreditUpdate, TdLambda
+from kurt2rt.core.reinforcement.td_lambda import TdLambda
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
 ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
-D = math.exp(-0.01 / TRACE_S)
 WORTHS = TaughtValues(first_value=V0, highest_value=None)
 SETTINGS = ReinforcementSettings(alpha=ALPHA, gamma=GAMMA, trace_s=TRACE_S, step_s=0.1, with_teacher=WORTHS)
 HALF_EACH = {1: 0.5, 2: 0.25}
@@ -33,50 +30,11 @@ def test_td_lambda_signal_is_shared_by_the_trace() -> None:
     assert (learner.value(1), learner.value(2), learner.value(3)) == pytest.approx((0.35, 0.425, V0))
 
 
-def test_td_lambda_unrewarded_value_decays() -> None:
-    learner = rule()
-    drive(learner, 1, 1, 10)
-    assert learner.value(1) == V0  # one step is no difference in time
-    drive(learner, 1, 11, 20)
-    trace = 1 - D**10  # as it was one step ago
-    assert learner.value(1) == pytest.approx(V0 + ALPHA * (GAMMA - 1) * V0 * trace)
-    drive(learner, 1, 21, 3000)
-    assert 0.0 <= learner.value(1) < 0.01
-
-
-def test_td_lambda_standstill_makes_no_step() -> None:
-    learner = rule()
-    drive(learner, 1, 1, 15)
-    drive(learner, None, 16, 25)
-    drive(learner, 2, 26, 30)
-    assert (learner.value(1), learner.value(2)) == (V0, V0)
-
-
 def test_td_lambda_pause_ends_step_and_trace() -> None:
     learner = rule()
     drive(learner, 1, 1, 15)
     drive(learner, 2, 1_000_000, 1_000_020)
     assert learner.value(1) == V0
-
-
-def test_td_lambda_reset_and_restore_previous() -> None:
-    learner = rule()
-    learner.learn(-1, {1: 1.0})
-    assert learner.depth(1) == 0
-    learner.reset(1)
-    assert (learner.value(1), learner.depth(1)) == (V0, 1)
-    learner.learn(1, {1: 1.0})
-    learner.apply_credits([CreditUpdate(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
-    assert learner.value(1) == pytest.approx(V0 + ALPHA)
-    learner.restore_previous(1)
-    assert (learner.value(1), learner.depth(1)) == pytest.approx((V0, 0))
-
-
-def test_td_lambda_trace_size_is_bounded() -> None:
-    learner = rule()
-    for tick in range(1, 20_001):
-        learner.update(tick // 10, tick)
-    assert len(learner._trace) < 60
 
 
 CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
@@ -90,34 +48,6 @@ def test_td_lambda_teacher_reward_stops_at_highest() -> None:
     assert learner.credits_for(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
     learner.learn(1, HALF_EACH)
     assert (learner.value(1), learner.value(2)) == (0.0, 0.0)
-
-
-def test_td_lambda_autonomous_reward_raises_value() -> None:
-    learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
-    learner.learn(-1, {1: 0.5})
-    assert (learner.value(1), learner.value(2)) == pytest.approx((0.35, 0.5))
-    learner.learn(1, {1: 0.5, 2: 1.0})
-    assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
-
-
-def test_td_lambda_restore_only_some() -> None:
-    learner = rule()
-    learner.learn(-1, {1: 1.0, 2: 1.0})
-    then = Statistics(values=dict(learner.values))
-    learner.learn(-1, {1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0})
-    learner.restore(then, {1, 3, 5})
-    assert [learner.value(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
-
-
-def test_td_lambda_punishment_counts_from_highest() -> None:
-    learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
-    learner.restore(Statistics(values={1: 0.3}))
-    assert learner.credits_for(1, {1: 1.0}) == ()
-    (credit,) = learner.credits_for(-1, {1: 1.0})
-    learner.learn(-1, {1: 1.0})
-    assert learner.value(1) == pytest.approx(-ALPHA)
-    learner.apply_credits([CreditUpdate(credit, 0)], -1)
-    assert learner.value(1) == pytest.approx(0.3)
 
 
 def test_td_lambda_step_stops_at_highest() -> None:

@@ -7,7 +7,7 @@ from behaviors.action_groups import action_groups
 from kurt2rt.core.rla.contradiction import GuessedLessons
 from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
 from kurt2rt.core.rla.rla_system import RlaSystem
-from tests.core.rla.helpers import created, replaced, withdrawn
+from tests.core.rla.helpers import created
 
 GUESS = 6
 HELD = f"{hold_id('Ann', 1)}{DERIVED}700"
@@ -36,40 +36,6 @@ def nearest(system: RlaSystem, place: float, *, taught: bool = False) -> tuple[i
     return match.rla.rla_id, match.distance, match.runner_up.rla_id
 
 
-def test_robot_without_a_teacher_passes_over_a_guess(system: RlaSystem) -> None:
-    assert nearest(system, 4.25) == (3, 1.25, 4)
-
-
-def test_robot_with_a_teacher_drives_by_a_guess(system: RlaSystem) -> None:
-    assert nearest(system, 4.25, taught=True) == (GUESS, 0.25, 3)
-
-
-def test_answer_is_never_a_guess() -> None:
-    assert nearest(system_with("Ann-7"), 4.25) == (GUESS, 0.25, 3)
-
-
-def test_system_without_the_predicate_passes_over_nothing(system: RlaSystem) -> None:
-    system.is_guess = None
-    assert nearest(system, 4.25) == (GUESS, 0.25, 3)
-
-
 def test_lessons_of_one_hold_do_not_confirm_each_other(system: RlaSystem) -> None:
     system.apply(created(7, (4.5,), "whirl_left", command_id=f"{hold_id('Ann', 1)}{DERIVED}710"))
     assert nearest(system, 4.25) == (3, 1.25, 4)
-
-
-def test_guess_that_another_press_confirms_answers(system: RlaSystem) -> None:
-    assert nearest(system, 4.25)[0] != GUESS
-    system.apply(created(7, (4.75,), "whirl_left", command_id=f"{hold_id('Ann', 2)}{DERIVED}900"))
-    assert nearest(system, 4.25) == (GUESS, 0.25, 7)
-
-
-def test_guess_that_is_corrected_answers(system: RlaSystem) -> None:
-    assert nearest(system, 4.25)[0] != GUESS
-    system.apply(replaced(GUESS, "forward", "whirl_left"))
-    assert nearest(system, 4.25) == (GUESS, 0.25, 3)
-
-
-def test_lesson_with_fewer_than_five_neighbours_is_no_guess(system: RlaSystem) -> None:
-    system.apply(withdrawn(1))
-    assert nearest(system, 4.25) == (GUESS, 0.25, 3)

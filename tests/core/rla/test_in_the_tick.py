@@ -7,13 +7,10 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.core.teaching.commands import (
     BeAt,
-    Correct,
-    DeleteRla,
     NameSituation,
     Resume,
     Stop,
     Teach,
-    Undo,
 )
 from tests.core.rla.helpers import created
 from tests.core.test_tick_learning import Drive
@@ -45,15 +42,6 @@ def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
         drive.run(counts=far, ticks=12)
 
 
-def test_expectation_is_learned_in_phases_1_and_5(drive: Drive) -> None:
-    comes_and_goes(drive, times=3)
-    expected = drive.runtime.expectations.get(1)
-    assert expected is not None
-    assert expected.count == 3
-    assert 30 <= expected.ticks < 31
-    assert expected.mean[:18].tolist() == [float(FAR)] * 18  # the readings
-
-
 def test_expectations_survive_a_restart(drive: Drive) -> None:
     comes_and_goes(drive, times=8)
     saved = drive.runtime.snapshot()
@@ -64,19 +52,6 @@ def test_expectations_survive_a_restart(drive: Drive) -> None:
     assert record.surprise is not None
     assert record.surprise.surprising
     assert again.runtime.snapshot().expectations[1].count == 9
-
-
-def test_expectations_end_with_correction_deletion_undo(drive: Drive) -> None:
-    comes_and_goes(drive, times=3)
-    drive.run(Correct("c", "Ann", "curve_left"), counts=NEAR)
-    assert set(drive.runtime.snapshot().expectations) == {2}
-    comes_and_goes(drive, times=2)
-    drive.run(Undo("u", "Ann", "c"))
-    assert set(drive.runtime.snapshot().expectations) == {2}
-    drive.run(DeleteRla("d", "Ann", 2))
-    assert drive.runtime.snapshot().expectations == {}
-    drive.run(Undo("v", "Ann", "d"))
-    assert drive.runtime.snapshot().expectations == {}
 
 
 def test_expectations_of_idle_level_are_kept() -> None:
@@ -93,24 +68,6 @@ def town() -> Town:
     town.way_to_the_first_junction()
     town.run(the_way("straight_on", "first"))
     return town
-
-
-def symbols(town: Town, rla_id: int) -> list[float]:
-    expected = town.runtime.expectations.get(rla_id)
-    assert expected is not None
-    mean: list[float] = expected.mean.tolist()
-    return mean
-
-
-def test_mid_expectation_is_the_next_history(town: Town) -> None:
-    before = np.array(town.runtime.level.system.rlas_at(MID)[0].condition)
-    town.junction(1)
-    after = symbols(town, 4)
-    assert after[1:] == before[:-1].tolist()
-    assert after[0] != before[0]
-    expected = town.runtime.snapshot().expectations[4]
-    assert expected.count == 1
-    assert 30 < expected.ticks < 60
 
 
 def test_mid_expectation_ignores_localisation(monkeypatch: pytest.MonkeyPatch) -> None:

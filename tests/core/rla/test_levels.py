@@ -22,33 +22,6 @@ def system_of(*events: TeachingEvent) -> RlaSystem:
     return system
 
 
-@pytest.mark.parametrize("known", [1, 3])
-def test_match_nan_situation_is_infinitely_far(known: int) -> None:
-    system = RlaSystem(2, 5.0)
-    system.apply_all(created(number, (float(number), 0.0)) for number in range(1, known + 1))
-    match = system.match(np.array([np.nan, 0.0]))
-    assert match is not None
-    assert (match.rla.rla_id, match.distance, match.runner_up_distance, match.known) == (1, np.inf, np.inf, False)
-
-
-def test_levels_share_ids_lessons_and_undo() -> None:
-    system = system_of(
-        created(1, (0.0, 0.0)),
-        created(2, (0.0, 0.0, 0.0), "good", level=CRITIC),
-        created(3, (1.0, 0.0)),
-        replaced(2, "bad", "good"),
-    )
-    assert (len(system), [rla.rla_id for rla in system.rlas], system.next_id) == (2, [1, 3], 4)
-    assert [(rla.rla_id, rla.action) for rla in system.rlas_at(CRITIC)] == [(2, "bad")]
-    assert system.rlas_at("reflexes") == ()
-    assert (system.standing_lessons, system.last_standing_lesson) == (4, "correction-2")
-    system.apply(deleted(2))
-    assert (system.rlas_at(CRITIC), len(system), system.get(2)) == ((), 2, None)
-    system.apply_all([undone("deletion-2"), undone("correction-2"), undone("lesson-1")])
-    assert [(rla.rla_id, rla.action) for rla in system.rlas_at(CRITIC)] == [(2, "good")]
-    assert len(system) == 1
-
-
 def test_critic_rlas_without_critic_are_kept_unmatched() -> None:
     system = RlaSystem(2, 5.0)
     whole = system_of()
@@ -71,21 +44,6 @@ def test_knowledge_hash_differs_by_level_and_withdrawal() -> None:
         system_of(created(1, (1.0, 2.0), "bad"), withdrawn(1, "bad")),
     ]
     assert len({system.knowledge_hash() for system in taught}) == len(taught)
-
-
-def test_withdrawn_rla_is_matched_but_not_known() -> None:
-    system = system_of(created(1, (0.0, 0.0)), created(2, (3.0, 0.0), "back"), withdrawn(1))
-    here = system.match(np.array([0.0, 0.0]))
-    aside = system.match(np.array([2.0, 0.0]))
-    assert here is not None
-    assert aside is not None
-    assert (here.rla.rla_id, here.rla.action, here.rla.is_withdrawn, here.known) == (1, ASK, True, False)
-    assert here.rla.condition == (0.0, 0.0)
-    assert (aside.rla.rla_id, aside.known) == (2, True)
-    system.apply(replaced(1, "left", ASK))
-    again = system.match(np.array([0.0, 0.0]))
-    assert again is not None
-    assert (again.rla.action, again.known) == ("left", True)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.matching import ConditionIndex, NearConditions, exact_distances, exact_square
+from kurt2rt.core.rla.matching import ConditionIndex, exact_distances, exact_square
 from tests.examples import examples
 
 Point = tuple[float, ...]
@@ -147,22 +147,6 @@ def test_condition_index_5000_clusters_equal_brute_force(spread: float) -> None:
         assert_right(index, rows, rows[position] + chance.normal(0.0, spread, 72))
 
 
-def test_condition_index_removed_far_row_leaves_no_bound() -> None:
-    near = clustered(200, 30.0)
-    rows = [tuple(row) for row in near.tolist()]
-    index, visited = index_of(rows), index_of(rows)
-    visited.append((1e30,) * 72)
-    visited.remove(200)
-    for situation in near[:20] + 1.0:
-        assert visited.nearest(situation) == index.nearest(situation)  # the runner-up's rough distance as well
-
-
-def test_condition_index_nan_situation_has_nan_distance() -> None:
-    nearest = index_of([(1.0, 2.0), (3.0, 4.0)]).nearest(np.array([math.nan, 0.0]))
-    assert nearest is not None
-    assert not nearest.distance <= 1e300
-
-
 @pytest.mark.parametrize(
     ("condition", "problem"),
     [((1.0,), r"\b1 .*\b2\b"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
@@ -182,13 +166,3 @@ def test_exact_distances_equal_single_ones(dimensions: int) -> None:
     alone = [math.sqrt(exact_square(row - situation)) for row in conditions]
     assert exact_distances(conditions, situation).tolist() == alone
     assert exact_distances(conditions[:0], situation).shape == (0,)
-
-
-def test_near_conditions_serve_as_long_as_others_are_farther() -> None:
-    rows = np.array([[0.0, 0.0], [10.0, 0.0]])
-    near = NearConditions(np.array([3, 7]), rows, np.array([0.0, 0.0]), others_beyond=30.0)
-    nearest = near.nearest(np.array([6.0, 0.0]))
-    assert nearest is not None
-    assert nearest == (7, 4.0, 3, 6.0)
-    assert near.nearest(np.array([15.0, 0.0])) is None  # the runner-up is 15 away, others may be 30 - 15
-    assert near.nearest(np.array([math.nan, 0.0])) is None

@@ -8,11 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.matching import exact_distances
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, rewarded, session, undone
 
@@ -54,15 +53,6 @@ def test_match_returns_nearest_and_runner_up() -> None:
     assert match.runner_up is not None
     assert match.runner_up.rla_id == 1
     assert match.runner_up_distance == pytest.approx(math.sqrt(65), rel=1e-6)
-
-
-def test_match_own_radius_overrides_the_system() -> None:
-    system = system_of(created(1, (0.0, 0.0), radius=2.0), created(2, (100.0, 0.0), radius=50.0))
-    near_first, near_second = system.match(np.array([3.0, 0.0])), system.match(np.array([140.0, 0.0]))
-    assert near_first is not None
-    assert near_second is not None
-    assert (near_first.radius, near_first.known) == (2.0, False)
-    assert (near_second.radius, near_second.known) == (50.0, True)
 
 
 @given(st.integers(0, 2**32))
@@ -217,32 +207,3 @@ def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     assert system.nearest_first(np.array([0.0, 0.0]), limit=most) == whole[:most]
     lost = system.nearest_first(np.array([math.nan, 0.0]), limit=most)
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
-
-
-def test_lessons_about_one_rla_are_separate() -> None:
-    lessons = (
-        created(1, (0.0, 0.0)),
-        created(2, (1.0, 0.0)),
-        replaced(1, "back", "forward"),
-        rewarded(2, 1),
-        replaced(1, "stand", "back", "again"),
-    )
-    system = system_of(*lessons)
-    system.apply(undone(lessons[4].origin.command_id))
-    assert [(each.event, each.undone) for each in system.lessons_about(1)] == [
-        (lessons[0], False),
-        (lessons[2], False),
-        (lessons[4], True),
-    ]
-    assert system.lessons_about(3) == ()
-
-
-def test_match_radius_share_narrows_the_basic_level_only() -> None:
-    system = RlaSystem(1, 10.0, others={MID: Space(1, 10.0)})
-    here, own, elsewhere = created(1, (0.0,)), created(2, (100.0,), radius=20.0), created(3, (0.0,), level=MID)
-    system.apply_all([here, own, elsewhere])
-    system.radius_share = 0.5
-    places = ((1.0, BASIC), (99.0, BASIC), (1.0, MID))
-    matches = [system.match(np.array([place]), level=level) for place, level in places]
-    assert [match.radius for match in matches if match is not None] == [5.0, 10.0, 10.0]
-    assert [system.whole_radius(each.rla) for each in (here, own, elsewhere)] == [10.0, 20.0, 10.0]

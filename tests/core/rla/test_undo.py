@@ -1,10 +1,8 @@
 """Undo of lessons."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -75,18 +73,6 @@ def test_lessons_list_all_with_their_state() -> None:
     assert (system.standing_lessons, system.last_standing_lesson) == (1, "lesson-2")
     system.apply(undone("lesson-2"))
     assert (system.standing_lessons, system.last_standing_lesson) == (0, None)
-
-
-@pytest.mark.parametrize("event", [replaced(1, "back", "forward"), deleted(1), rewarded(1)])
-def test_lesson_records_have_the_behaviour_of_their_rla(event: Lesson) -> None:
-    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), event)
-    assert [record.behaviour for record in system.lessons] == ["turn_left", "turn_left"]
-    newest = system.lessons[-1]
-    problem = system.why_not_undo("lesson-1")
-    assert problem is not None
-    assert (problem.code, problem.fields["says"]) == (RefusalCode.TAUGHT_AFTER, newest.text)
-    system.apply(undone(event.origin.command_id))
-    assert system.lessons[-1] == replace(newest, undone=True)
 
 
 _STEPS = st.lists(

@@ -2,11 +2,10 @@
 
 import pytest
 
-from hal.robot import WheelSpeeds
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.commands import Drive
-from tests.core.helpers import Counted, sensed
+from tests.core.helpers import Counted
 
 LEASE, REACH = 24, 35
 NOW = 1000
@@ -61,25 +60,6 @@ def test_unchanging_state_ends_the_drive(hands: Hands) -> None:
     assert not hands.authority.is_manual(NOW + REACH)
 
 
-def test_ended_press_stays_over_and_the_next_drives(hands: Hands) -> None:
-    hands.drive(NOW, hold=7)
-    hands.authority.expire(NOW + LEASE)
-    assert [hands.authority.is_press_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
-
-
-def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> None:
-    hands.drive(NOW)
-    hands.drive(NOW + LEASE)  # the message came in the very tick in which the lease would have ended
-    assert hands.driven_ticks(NOW + LEASE) == list(range(NOW + LEASE, NOW + 2 * LEASE))
-
-
-def test_press_ids_of_teachers_are_independent(hands: Hands) -> None:
-    hands.drive(NOW, hold=7)
-    hands.authority.end_manual()
-    assert hands.authority.is_press_over(press(7))
-    assert not hands.authority.is_press_over(press(1, teacher="Ben"))
-
-
 def test_presence_lasts_its_lease_within_35_ticks_of_the_state(hands: Hands) -> None:
     present = hands.authority.is_present
     assert not present(NOW)
@@ -87,28 +67,6 @@ def test_presence_lasts_its_lease_within_35_ticks_of_the_state(hands: Hands) -> 
     assert [present(NOW + LEASE - 1), present(NOW + LEASE)] == [True, False]
     hands.authority.renew_presence("Ann", NOW + 50, NOW + 30)
     assert [present(NOW + 30 + REACH - 1), present(NOW + 30 + REACH)] == [True, False]
-
-
-def test_a_late_message_takes_nothing_from_a_newer_one(hands: Hands) -> None:
-    hands.authority.renew_presence("Ann", NOW, NOW)
-    hands.authority.renew_presence("Ann", NOW + 1, NOW - 30)
-    assert hands.authority.is_present(NOW + LEASE - 1)
-
-
-def test_only_the_teacher_is_anybody(hands: Hands) -> None:
-    hands.authority.renew_presence("Ben", NOW, NOW)
-    assert not hands.authority.is_present(NOW)
-
-
-def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
-    assert Hands(attended=False).authority.is_present(NOW)
-
-
-def test_take_over_by_the_present_teacher_changes_nothing(hands: Hands) -> None:
-    hands.drive(NOW)
-    assert hands.authority.take_over("Ann", NOW) is None
-    assert hands.authority.is_manual(NOW)
-    assert hands.authority.is_present(NOW)
 
 
 @pytest.mark.parametrize("behaviour", [False, True])
@@ -134,29 +92,9 @@ def test_handing_over_ends_hand_and_presence(hands: Hands, to: str | None) -> No
     assert hands.authority.is_press_over(press(3))
 
 
-def test_run_drives_for_its_ticks_and_restarts_each_time() -> None:
-    hands = Hands(attended=False)
-    hands.authority.run("a", NOW, 3)
-    assert hands.driven_ticks() == [NOW, NOW + 1, NOW + 2]
-    hands.authority.run("a", NOW + 50, 3)
-    assert hands.authority.step(sensed()) == ("a", WheelSpeeds(0.001, 0.001))
-    assert hands.authority.step(sensed()) == ("a", WheelSpeeds(0.002, 0.002))
-    assert hands.action.starts == 2
-
-
 def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> None:
     hands.authority.renew_presence("Ann", NOW, NOW)
     hands.authority.run("a", NOW, 1000)
     assert hands.driven_ticks(NOW, NOW + 60) == list(range(NOW, NOW + LEASE))
     hands.authority.renew_presence("Ann", NOW + 60, NOW + 60)
     assert not hands.authority.is_manual(NOW + 60)
-
-
-def test_a_device_with_new_keys_counts_its_presses_anew() -> None:
-    authority = ControlAuthority({}, attended=False)
-    authority.claim("Ann")
-    authority.drive(Drive("Ann", 0, 7, 0.1, 0.1), 0)
-    authority.end_manual()
-    assert authority.is_press_over(Drive("Ann", 0, 1, 0.1, 0.1))
-    authority.reset_sequence("Ann")
-    assert not authority.is_press_over(Drive("Ann", 0, 1, 0.1, 0.1))

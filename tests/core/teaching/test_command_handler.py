@@ -12,13 +12,11 @@ from kurt2rt.core.rla.events import (
     ActionReplaced,
     LessonUndone,
     RlaCreated,
-    RlaRewarded,
     SessionBegun,
     SessionEnded,
     TeachingEvent,
 )
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
-from kurt2rt.core.rla.statistics import Appraisal
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import (
@@ -39,7 +37,6 @@ from kurt2rt.core.teaching.commands import (
     Take,
     Teach,
     Undo,
-    Watch,
 )
 from tests.core.helpers import RADIUS, SmallLevel, situation
 from tests.core.reinforcement.helpers import Track
@@ -95,27 +92,6 @@ class Lesson:
         return {rla.rla_id: rla.action for rla in self.small.level.system.rlas}
 
 
-def test_teach_puts_an_rla_on_the_present_situation() -> None:
-    lesson = Lesson()
-    result = lesson.say(teach("a", "t-1"), place=2.5)
-    assert result == CommandResult("t-1", Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="a"), lesson=True)
-    assert lesson.events == [RlaCreated(Rla(1, (2.5,), "a", None, Origin("t-1", "Ann", Phase.SUPERVISED, 101)))]
-    assert lesson.small.at(2.5).action == "a"
-
-
-def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
-    """A second RLA there would be accepted and never win, because the older one does."""
-    lesson = Lesson()
-    lesson.say(teach("a", "first"), place=2.5)
-    assert lesson.say(teach("a", "double click"), place=2.5).outcome == Outcome.of(
-        ResultCode.RLA_AGREES, rla=1, action="a"
-    )
-    result = lesson.say(teach("b", "another teacher"), place=2.5)
-    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
-    assert lesson.actions == {1: "b"}
-    assert lesson.small.at(2.5).action == "b"
-
-
 def test_correction_up_to_the_border_replaces_the_action() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(correct("b", "c-1"), place=BORDER)
@@ -131,12 +107,6 @@ def test_a_correction_beyond_the_border_inserts_a_new_rla() -> None:
     assert lesson.actions == {1: "a", 2: "b"}
 
 
-def test_the_border_is_a_share_of_the_nearest_rlas_own_radius() -> None:
-    lesson = Lesson(created(1, (0.0,), "a", radius=2.0))
-    lesson.say(correct("b"), place=1.5)
-    assert lesson.actions == {1: "a", 2: "b"}
-
-
 @pytest.mark.parametrize(
     "command",
     [teach("fly"), correct("fly"), replace_action(1, "fly"), RunBehaviour("1", "Ann", "fly", 9)],
@@ -148,16 +118,6 @@ def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None
     assert lesson.actions == {1: "a"}
     assert len(lesson.events) == 1
     assert lesson.school.corrections == 0
-
-
-@pytest.mark.parametrize("command", [replace_action(1, "b"), delete(1), replace_action(9, "b"), delete(9), delete(0)])
-def test_an_rla_that_does_not_live_is_refused(command: Command) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
-    lesson.say(delete(1, "before"))
-    result = lesson.say(command)
-    assert not result.accepted
-    assert result.code is RefusalCode.NO_RLA
-    assert lesson.actions == {2: "b"}
 
 
 @pytest.mark.parametrize(
@@ -190,13 +150,6 @@ def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
     assert lesson.actions == {1: "a"}
 
 
-def test_a_refused_command_may_come_again() -> None:
-    lesson = Lesson()
-    assert not lesson.say(delete(1, "x")).accepted
-    lesson.say(teach("a"))
-    assert lesson.say(delete(1, "x")).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
-
-
 def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     wrong = lesson.go_on(0.0)
@@ -215,27 +168,6 @@ def test_stored_answer_does_not_change_later() -> None:
     assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
 
 
-@pytest.mark.parametrize("kind", ["teach", "correct", "reward"])
-@pytest.mark.parametrize("which", ["future", "present", "forgotten", "missed"])
-def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    first = lesson.go_on(0.0)
-    lesson.tick += 1  # a tick that was missed
-    if which == "forgotten":
-        lesson.go_on(0.0, 1000)
-    meant = {"future": lesson.tick + 50, "present": lesson.tick + 1, "forgotten": first, "missed": first + 1}[which]
-    commands: dict[str, Command] = {
-        "teach": Teach("x", "Ann", "b", meant),
-        "correct": Correct("x", "Ann", "b", meant),
-        "reward": Reward("x", "Ann", 1, meant),
-    }
-    result = lesson.say(commands[kind])
-    assert (result.accepted, result.lesson) == (False, False)
-    assert result.outcome == Outcome.of(RefusalCode.TICK_FORGOTTEN, tick=meant)
-    assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
-    assert not lesson.school.was_handled("x")
-
-
 def test_lesson_about_a_blind_tick_is_refused() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     dark = lesson.go_on(33.0, blind=True)
@@ -243,31 +175,6 @@ def test_lesson_about_a_blind_tick_is_refused() -> None:
     for command in (Teach("x", "Ann", "b", dark), Correct("x", "Ann", "b", dark)):
         result = lesson.say(command)
         assert (result.outcome, lesson.actions) == (Outcome(RefusalCode.WAS_BLIND), {1: "a"})
-
-
-@pytest.mark.parametrize(
-    ("value", "code", "appraisal"),
-    [(1, ResultCode.RLA_REWARDED, (1, 0)), (-1, ResultCode.RLA_PUNISHED, (0, 1))],
-)
-def test_reward_goes_to_the_rla_of_the_named_tick(value: int, code: ResultCode, appraisal: tuple[int, int]) -> None:
-    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
-    good = lesson.go_on(0.0)
-    lesson.go_on(50.0, 20)
-    result = lesson.say(Reward("r-1", "Ann", value, good), place=50.0)
-    assert (result.outcome, result.lesson) == (Outcome.of(code, rla=1), True)
-    assert lesson.events[-1] == RlaRewarded(1, value, good, Origin("r-1", "Ann", Phase.SUPERVISED, lesson.tick))
-    assert lesson.small.level.system.appraisal(1) == Appraisal(*appraisal)
-    assert lesson.small.level.system.appraisal(2) == Appraisal()
-
-
-def test_reward_without_tick_is_about_the_newest_decision() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    newest = lesson.go_on(0.0)
-    lesson.tick += 5  # missed
-    assert lesson.say(Reward("r-1", "Ann", 1)).outcome == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
-    event = lesson.events[-1]
-    assert isinstance(event, RlaRewarded)
-    assert event.decided_at_tick == newest
 
 
 def test_reward_without_a_driving_rla_is_refused() -> None:
@@ -333,24 +240,6 @@ def test_session_begins_and_ends_once_and_its_clock_runs() -> None:
     assert school.teaching_ticks(lesson.tick) == 0
 
 
-def test_second_teacher_is_refused_with_the_firsts_name() -> None:
-    lesson = Lesson()
-    lesson.say(teach("a", "1"))
-    refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
-    assert refused.outcome == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
-    assert lesson.drive("Ben") == refused.outcome
-    assert lesson.school.handle_stream(Watch("Ben", lesson.tick), lesson.tick) == refused.outcome
-    assert lesson.say(Take("3", "Ben")).outcome == Outcome.of(ResultCode.TAKEN, teacher="Ben")
-    assert lesson.say(Teach("2", "Ben", "b"), place=50.0).accepted
-    assert not lesson.say(teach("c", "4"), place=90.0).accepted
-
-
-def test_to_be_there_is_not_to_speak() -> None:
-    lesson = Lesson()
-    assert lesson.school.handle_stream(Watch("Ben", 100), 100) is None
-    assert lesson.school.authority.teacher is None
-
-
 def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
     lesson = Lesson()
     assert lesson.say(Stop("1", "Ben")).accepted
@@ -393,31 +282,6 @@ def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
     assert lesson.drive() == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
     lesson.say(resume())
     assert lesson.drive() is None
-
-
-def test_run_behaviour_ends_after_its_ticks_and_stands() -> None:
-    lesson = Lesson()
-    assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).outcome == Outcome.of(
-        ResultCode.ACTION_RUNS, action="b", ticks=10
-    )
-    hand = lesson.school.authority.is_manual
-    assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
-    assert lesson.school.active_stop == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
-
-
-def test_resume_ends_what_the_hand_was_doing() -> None:
-    lesson = Lesson()
-    lesson.drive(hold=4)
-    lesson.say(resume())
-    assert not lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.drive(hold=4) == Outcome(RefusalCode.PRESS_OVER)
-
-
-def test_refused_command_gives_no_authority() -> None:
-    lesson = Lesson()
-    assert not lesson.say(teach("dance")).accepted
-    assert lesson.school.authority.teacher is None
-    assert lesson.say(Teach("2", "Ben", "a")).accepted
 
 
 def test_take_over_clears_the_last_teachers_stop_only() -> None:
@@ -472,29 +336,6 @@ def test_command_from_before_a_stop_does_not_move_the_robot(
 TURNS = ("straight_on", "turn_left", "turn_right")
 
 
-def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
-    lesson = Lesson(behaviours=TURNS)
-    assert lesson.say(teach("a", "t-1")).outcome == Outcome.of(
-        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
-    )
-    assert lesson.say(pursue("turn_left", "p-1")) == CommandResult(
-        "p-1", Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
-    )
-    assert lesson.small.at(0.0).asking  # what it knows of straight_on is of no use here
-    assert lesson.say(teach("b", "t-2")).outcome == Outcome.of(
-        ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="b"
-    )
-    assert lesson.say(correct("c", "c-1"), place=1.0).outcome == Outcome.of(
-        ResultCode.RLA_CORRECTED, rla=2, behaviour="turn_left", action="c", was="b"
-    )
-    assert [(rla.behaviour, rla.action) for rla in lesson.small.level.system.rlas] == [
-        ("straight_on", "a"),
-        ("turn_left", "c"),
-    ]
-    lesson.say(pursue("straight_on", "p-2"))
-    assert lesson.small.at(0.0).action == "a"
-
-
 @pytest.mark.parametrize(("behaviours", "known"), [(TURNS, TURNS), (("",), ("",))])
 def test_unknown_behaviour_is_refused_with_the_known_ones(behaviours: tuple[str, ...], known: tuple[str, ...]) -> None:
     lesson = Lesson(behaviours=behaviours)
@@ -513,33 +354,6 @@ def test_pursue_needs_authority_and_keeps_a_stop() -> None:
     lesson.say(Take("take it", "Ann"))
     assert lesson.say(pursue("turn_left")).accepted
     assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Bob")
-
-
-def test_pursue_on_the_newer_state_wins() -> None:
-    lesson = Lesson(behaviours=TURNS)
-    lesson.say(Pursue("1", "Ann", "turn_left", 80))
-    assert lesson.say(Pursue("2", "Ann", "turn_right", 90)).accepted
-    late = lesson.say(Pursue("3", "Ann", "straight_on", 85))
-    assert late.outcome == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_right")
-    assert not lesson.say(Pursue("4", "Ann", "fly", 95)).accepted  # and it is as if it had not been said
-    assert lesson.say(Pursue("5", "Ann", "turn_left", 90)).accepted
-    lesson.say(pursue("straight_on", "6"))  # by one who stands by
-    assert not lesson.say(Pursue("7", "Ann", "turn_left", 99)).accepted
-    assert lesson.small.wanted.behaviour == "straight_on"
-
-
-@pytest.mark.parametrize("kind", [Teach, Correct])
-def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teach | Correct]) -> None:
-    lesson = Lesson(behaviours=TURNS)
-    asked = lesson.go_on(2.5)
-    lesson.say(pursue("turn_left"))
-    lesson.go_on(2.5, 20)
-    assert lesson.say(kind("late", "Ann", "a", asked), place=80.0).outcome == Outcome.of(
-        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
-    )
-    assert lesson.small.at(2.5).asking
-    lesson.say(pursue("straight_on", "back"))
-    assert lesson.small.at(2.5).action == "a"
 
 
 @pytest.mark.parametrize(
@@ -582,14 +396,6 @@ def test_own_change_that_does_not_fit_is_skipped_and_reported() -> None:
     assert robot.learnt == []
     assert "'signal-3/withdraw-1'" in robot.school.updater.error
     assert robot.go(0.0).action == "a"
-
-
-def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
-    lesson = Lesson()
-    result = lesson.say(teach("a", "t/withdraw-1"))
-    assert (result.accepted, lesson.actions) == (False, {})
-    assert result.outcome == Outcome.of(RefusalCode.RESERVED_ID, command_id="t/withdraw-1", sign="/")
-    assert lesson.say(Stop("s/1", "Ann")).accepted
 
 
 def test_late_copy_of_stop_brakes_without_being_newer() -> None:

@@ -2,19 +2,8 @@
 
 import pytest
 
-from kurt2rt.core.teaching.inbox import InboxFullError, PairingRenewed, RobotRepositioned, TeacherInbox
+from kurt2rt.core.teaching.inbox import InboxFullError, RobotRepositioned, TeacherInbox
 from tests.teacher.helpers import resume, stop, teach
-
-
-def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
-    inbox = TeacherInbox(capacity=2)
-    inbox.put(teach("a"))
-    inbox.put(stop())
-    with pytest.raises(InboxFullError, match=r"\b2 commands"):
-        inbox.put(resume())
-    assert inbox.pop_all() == (teach("a"), stop())
-    inbox.put(resume())
-    assert inbox.pop_all() == (resume(),)
 
 
 def test_a_stop_finds_room_in_a_full_inbox() -> None:
@@ -24,14 +13,6 @@ def test_a_stop_finds_room_in_a_full_inbox() -> None:
     with pytest.raises(InboxFullError):
         inbox.put(teach("b"))
     assert inbox.pop_all() == (teach("a"), stop())
-
-
-def test_inbox_system_event_comes_first_and_always_fits() -> None:
-    inbox = TeacherInbox(capacity=1)
-    inbox.put(teach("a"))
-    inbox.put(RobotRepositioned())
-    inbox.put(PairingRenewed("Ann"))
-    assert inbox.pop_all() == (PairingRenewed("Ann"), RobotRepositioned(), teach("a"))
 
 
 def test_a_replay_says_exactly_what_the_next_tick_takes() -> None:

@@ -42,11 +42,6 @@ def test_late_press_corrects_the_decision_one_delay_before(driving: Corridor) ->
     assert driving.system.rlas[-1].condition == condition(driving, meant)
 
 
-def test_late_press_counts_from_the_state_that_was_seen(driving: Corridor) -> None:
-    meant = driving.ticks - DELAY - 20
-    assert given(driving, press(driving, age=20)).outcome.fields["decision_tick"] == meant
-
-
 def test_late_press_of_a_known_mistake_teaches_nothing_more(driving: Corridor) -> None:
     given(driving, press(driving))
     driving.run(130)
@@ -64,15 +59,6 @@ def test_late_press_names_no_decision_before_the_robot_drove(driving: Corridor) 
     assert given(driving, press(driving)).outcome.fields["decision_tick"] == first
 
 
-def test_late_press_answers_the_question_of_its_state(driving: Corridor) -> None:
-    for _ in range(30):
-        asked = driving.run(400)
-    assert asked.decision.asking
-    result = given(driving, press(driving))
-    assert (result.outcome.fields["decision_tick"], result.outcome.fields["put_back_ticks"]) == (asked.tick, 0)
-    assert driving.run(400).decision.action == "back"
-
-
 def asks_and_goes_on(corridor: Corridor, ticks: int) -> int:
     """Let the robot ask for 5 ticks and drive on by itself for `ticks`; return the last tick of its question."""
     for _ in range(5):
@@ -81,18 +67,6 @@ def asks_and_goes_on(corridor: Corridor, ticks: int) -> int:
     for _ in range(ticks):
         assert corridor.run(100).decision.action == "forward"
     return asked.tick
-
-
-def test_late_press_answers_a_question_that_ended_by_itself(driving: Corridor) -> None:
-    asked = asks_and_goes_on(driving, DELAY - 10)
-    result = given(driving, press(driving))
-    assert (result.outcome.fields["decision_tick"], result.outcome.fields["decided_by"]) == (asked, None)
-    assert driving.run(400).decision.action == "back"
-
-
-def test_late_press_after_its_delay_answers_no_question(driving: Corridor) -> None:
-    asks_and_goes_on(driving, DELAY + 10)
-    assert given(driving, press(driving)).outcome.fields["decision_tick"] == driving.ticks - 1 - DELAY
 
 
 def test_late_press_answers_no_question_of_another_place(driving: Corridor) -> None:
@@ -110,18 +84,6 @@ def test_late_press_answers_a_question_once(driving: Corridor) -> None:
     assert again.outcome.fields["decision_tick"] != asked
 
 
-def test_answers_of_a_teacher_set_their_delay(driving: Corridor) -> None:
-    for number in range(4):
-        for _ in range(60):
-            driving.run(100 * (number + 3))
-        driving.run(None, teach("forward", f"answer-{number}"))
-    assert driving.school.delay.ticks("Ann", 1) == 60
-    for _ in range(120):
-        driving.run()
-    result = given(driving, press(driving))
-    assert result.outcome.fields["put_back_ticks"] == round(60 * CORRECTION_PART)
-
-
 def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:
     for _ in range(1300):
         driving.run(100)
@@ -131,9 +93,3 @@ def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:
 def test_blind_robot_takes_a_late_press(driving: Corridor) -> None:
     driving.robot.infrared_age_s = 1.0
     assert given(driving, press(driving)).accepted
-
-
-def test_correction_without_the_option_is_about_the_present(driving: Corridor) -> None:
-    result = given(driving, Correct("now", "Ann", "back", seen_tick=driving.ticks))
-    assert "put_back_ticks" not in result.outcome.fields
-    assert driving.system.rlas[-1].condition == condition(driving, driving.ticks)

@@ -24,21 +24,3 @@ def test_mid_history_outside_its_ticks_returns_none() -> None:
     assert MidHistory().newest is None
     recent = remembered((5, 9, 1))
     assert [told(recent.get(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
-
-
-def test_mid_history_stores_one_snapshot_per_junction() -> None:
-    recent = remembered((1, 90_000, 4), (90_001, 90_001, 5), (90_002, 200_000, None), capacity=3)
-    assert [told(recent.get(tick)) for tick in (1, 90_000, 90_001, 90_002, 150_000)] == [
-        (1.0, 4),
-        (1.0, 4),
-        (90_001.0, 5),
-        (90_002.0, None),
-        (90_002.0, None),
-    ]
-    assert told(recent.newest) == (90_002.0, None)
-
-
-def test_memory_does_not_grow_and_the_oldest_is_forgotten() -> None:
-    recent = remembered(*((tick, tick, tick) for tick in range(100)), capacity=10)
-    assert recent.get(89) is None
-    assert told(recent.get(90)) == (90.0, 90)

@@ -12,7 +12,7 @@ from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.condition import Space
 from kurt2rt.core.rla.rla import ASK, MID
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_in_doubt, ask_the_way
+from kurt2rt.core.teaching.question import Question, ask, ask_in_doubt, ask_the_way
 from tests.core.rla.helpers import created, withdrawn
 
 NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
@@ -25,25 +25,12 @@ def asked(condition: tuple[float, ...], here: tuple[float, ...], radius: float |
     return ask(system.match(situation), situation, system.weights, NAMES)
 
 
-def test_question_has_nearest_rla_and_differing_features() -> None:
-    question = asked((100, 100, 100, 100, 100, 100, 100), (400, 90, 105, 100, 500, 101, 98))
-    assert (question.nearest_rla, question.action, question.radius) == (1, "curve_left", 300.0)
-    assert question.distance == math.sqrt(300**2 + 10**2 + 5**2 + 400**2 + 1 + 4)
-    assert [each.name for each in question.differing] == ["s2 (10 s average)", "s1", "s2", "s3", "maximum left"]
-    assert [(each.here, each.in_condition) for each in question.differing[:2]] == [(500, 100), (400, 100)]
-
-
 def test_question_keeps_the_words_it_is_asked_with() -> None:
     words = words_for(load_robot().infrared)
     system = RlaSystem(1, 300.0)
     system.apply(created(1, (108.0,), "forward"))
     here = np.array((441.0,))
     assert ask(system.match(here), here, system.weights, ("s9",), words=words).words is words
-
-
-def test_of_features_that_differ_alike_the_first_come_first() -> None:
-    names = [each.name for each in asked((0,) * 7, (9, -9, 9, 9, 9, 9, 9)).differing]
-    assert names == ["s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)"]
 
 
 def test_question_is_about_the_active_behaviour() -> None:
@@ -63,19 +50,6 @@ def test_question_of_a_withdrawn_action_says_so_in_place_of_it() -> None:
         question = ask(system.match(here), here, system.weights, NAMES)
         assert (question.nearest_rla, question.action) == (1, ASK)
         assert ASK not in str(question).split()
-
-
-def of_the_way(*conditions: tuple[float, ...]) -> MidQuestion:
-    system = RlaSystem(1, 1.0, others={MID: Space(3, 1.0, metric="hamming")})
-    for number, condition in enumerate(conditions, 1):
-        system.apply(created(number, condition, "turn_left", level=MID))
-    return ask_the_way(system.match(np.array([1.0, 2.0, 0.0]), level=MID), ("straight", "left", ""))
-
-
-def test_mid_question_lists_the_passed_junctions() -> None:
-    question = of_the_way((2.0, 1.0, 0.0))
-    assert (question.nearest_rla, question.behaviour, question.distance, question.radius) == (1, "turn_left", 2.0, 1.0)
-    assert question.here == ("straight", "left")
 
 
 def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:

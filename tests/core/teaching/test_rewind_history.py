@@ -6,10 +6,10 @@ import numpy as np
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Decision, DecisionCause
-from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.teaching.rewind_history import DRIVEN_TICKS, RewindHistory
+from kurt2rt.core.teaching.rewind_history import RewindHistory
 from tests.core.rla.helpers import created
 from tests.core.teaching.test_command_handler import Lesson
 from tests.teacher.helpers import correct
@@ -52,18 +52,6 @@ def test_rewind_finds_the_drive_before_pulses_and_questions() -> None:
     assert not drive.remembers(1050)
 
 
-def test_rewind_while_driving_keeps_the_drive_before() -> None:
-    drive = Drive()
-    drive.run(900, driving=True)
-    drive.run(6000, driving=False)
-    drive.run(DRIVEN_TICKS - 700, driving=True)
-    assert drive.remembers(200)
-    assert not drive.remembers(199)
-    drive.run(DRIVEN_TICKS, driving=True)
-    assert drive.remembers(6900 + DRIVEN_TICKS - 700)
-    assert not drive.remembers(899)
-
-
 def test_correction_after_long_standstill_is_about_the_drive() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     wrong = lesson.go_on(40.0)
@@ -73,14 +61,3 @@ def test_correction_after_long_standstill_is_about_the_drive() -> None:
     result = lesson.say(replace(correct("b"), decision_tick=wrong))
     assert result.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, action="b")
     assert lesson.small.level.system.rlas[-1].condition == (40.0,)
-
-
-def test_correction_of_a_tick_before_the_kept_ones_is_refused() -> None:
-    lesson = Lesson(created(1, (0.0,), "a"))
-    old = lesson.go_on(40.0)
-    lesson.go_on(0.0, 3000)
-    lesson.school.before_decision(lesson.tick, was_driving=True, turned=True)
-    lesson.school.before_decision(lesson.go_on(0.0), was_driving=False, turned=False)
-    assert lesson.say(replace(correct("b"), decision_tick=old)).outcome == Outcome.of(
-        RefusalCode.TICK_FORGOTTEN, tick=old
-    )
