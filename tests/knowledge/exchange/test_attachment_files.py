@@ -1,11 +1,8 @@
 """Files of a foreign package stay in the folder of their extraction."""
 
-from pathlib import Path
-
 import pytest
 
-from hal.settings_files import find_beside, find_config
-from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, extracted_settings, unsafe_reason
+from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, unsafe_reason
 
 
 @pytest.mark.parametrize(
@@ -40,11 +37,3 @@ def test_unsafe_reason_limits_are_kept() -> None:
     assert "256 MB" in unsafe_reason({"a": LARGEST_BYTES, "b": 1})
     assert "'a'" in unsafe_reason({"a": 1, "a/b": 1})
     assert unsafe_reason({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
-
-
-def test_extracted_settings_are_found_until_the_context_ends() -> None:
-    with extracted_settings({"settings/tasks/mine.yaml": b"name: mine\n", "settings/files/x": b""}):
-        path = find_config("tasks", "mine")
-        assert path.read_bytes() == b"name: mine\n"
-        assert find_beside(Path("anywhere"), "x").is_relative_to(path.parents[1])
-    assert not path.exists()

@@ -254,25 +254,6 @@ def test_read_package_wrong_types_of_counts_are_refused(exported: Path, tmp_path
         read_package(odd)
 
 
-@pytest.mark.parametrize(
-    "about",
-    [
-        {"features": 5},
-        {"levels": []},
-        {"levels": {"mid": {}}},
-        {"exported_at": None},
-        {"task": 1},
-        {"system": "\ud800"},
-    ],
-)
-def test_read_package_wrong_manifest_types_are_refused(
-    exported: Path, tmp_path: Path, about: Mapping[str, object]
-) -> None:
-    (key,) = about
-    with refused(KnowledgeCode.PACKAGE_INVALID, mentions=f"manifest: {key}"):
-        read_package(made_over(exported, tmp_path / "odd.zip", None, about))
-
-
 @pytest.mark.parametrize("stamp", [5, None, "", "yesterday", "2026-11-22T03:10:05"])
 def test_read_package_lesson_without_time_is_refused(exported: Path, tmp_path: Path, stamp: object) -> None:
     lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()

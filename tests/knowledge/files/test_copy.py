@@ -3,7 +3,6 @@
 import hashlib
 import subprocess
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -106,13 +105,6 @@ def test_save_copy_name_is_safe_for_any_label(path: Path, tmp_path: Path, label:
 
     assert saved.name == f"wall-following-20040426T100000{part}.knowledge"
     assert names(tmp_path / "saved") == [saved.name]
-
-
-def test_save_copy_task_and_stamp_stay_in_the_folder(path: Path, tmp_path: Path) -> None:
-    Journal.open(path, replace(BINDING, system="../A/B")).close()
-
-    assert save_copy(path, tmp_path / "saved", "c", "../..T1").name == "a-b-T1-c.knowledge"
-    assert names(tmp_path / "saved") == ["a-b-T1-c.knowledge"]
 
 
 def test_save_copy_taken_name_gets_a_number(path: Path, tmp_path: Path) -> None:

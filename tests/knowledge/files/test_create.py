@@ -6,8 +6,6 @@ import pytest
 
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.files.create import create_knowledge
-from kurt2rt.knowledge.journal.fold import check_knowledge
-from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import BINDING, begun, entry
 from tests.knowledge.refusals import refused
@@ -15,15 +13,6 @@ from tests.knowledge.refusals import refused
 
 def create(path: Path) -> None:
     create_knowledge(path, BINDING, [entry(1), entry(2)], Statistics({1: 5}), {"came": "by post"}, source=Path("a.zip"))
-
-
-def test_created_file_holds_lessons_counts_and_notes(path: Path) -> None:
-    (path.parent / f".{path.name}.unborn").write_bytes(b"half a file, of a program that was killed")
-    create(path)
-    assert not (path.parent / f".{path.name}.unborn").exists()
-    with Journal.read_only(path) as journal:
-        assert check_knowledge(journal) == []
-        assert (len(journal.events()), journal.statistics().uses, journal.notes()) == (2, {1: 5}, {"came": "by post"})
 
 
 def test_create_where_something_is_in_the_way_is_refused(path: Path, tmp_path: Path) -> None:

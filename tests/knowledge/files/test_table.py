@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
-from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.files.table import export_table
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
@@ -19,15 +18,9 @@ from tests.knowledge.lessons import (
     append,
     appraisal,
     created,
-    deleted,
     entry,
-    replaced,
-    rewarded,
-    undone,
     withdrawn,
 )
-
-LATER = "2004-04-27T08:00:00.000+00:00"
 
 
 def exported(path: Path, folder: Path) -> list[list[str]]:
@@ -37,49 +30,6 @@ def exported(path: Path, folder: Path) -> list[list[str]]:
     assert (saved.sha256, saved.size_bytes) == (hashlib.sha256(content).hexdigest(), len(content))
     with (folder / saved.name).open(newline="", encoding="utf-8") as file:
         return list(csv.reader(file))
-
-
-def test_export_table_has_a_row_per_living_rla(path: Path, tmp_path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        events: list[TeachingEvent] = [
-            *(created(number) for number in (1, 2, 3, 4)),
-            rewarded(1, 1, "r1"),
-            rewarded(1, 1, "r2"),
-            rewarded(1, -1, "r3"),
-            deleted(3),
-            undone("create-4"),
-        ]
-        journal.append([JournalEntry(event, STAMP) for event in events])
-        journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
-        journal.checkpoint(Statistics({1: 41, 3: 7}, values={1: -0.1 - 0.2, 3: 0.5}))
-        heading, *rows = exported(path, tmp_path / "out")  # while it is written
-
-    assert heading == [
-        *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
-        *("uses", "rewards", "punishments", "value", "level"),
-        *("s1", "s2", "maximum front", "wheel speed left"),
-    ]
-    assert rows == [
-        [
-            *("1", "forward", "", "Hertha", "1", "1", STAMP, "41", "2", "1", "-0.30000000000000004", "basic"),
-            *("0.3333333333333333", "0.1", "81.0", "-5.0"),
-        ],
-        [
-            *("2", "left", "", "Hertha", "2", "200", LATER, "0", "0", "0", "", "basic"),
-            *("0.6666666666666666", "0.2", "82.0", "-5.0"),
-        ],
-    ]
-
-
-def test_export_table_numbers_and_names_are_exact(path: Path, tmp_path: Path) -> None:
-    condition = (0.1 + 0.2, 1 / 3, -0.0, 5e-324)
-    rla = replace(created(1).rla, condition=condition, action='left, "hard"\n;', radius=1e300)
-    append(path, RlaCreated(rla))
-    (_, row) = exported(path, tmp_path)
-
-    assert (row[1], float(row[2])) == (rla.action, rla.radius)
-    assert tuple(float(number) for number in row[12:]) == condition
-    assert row[14] == "-0.0"
 
 
 def test_export_table_appraisal_rlas_have_own_columns(path: Path, tmp_path: Path) -> None:

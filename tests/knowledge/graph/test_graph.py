@@ -6,7 +6,7 @@ import networkx as nx
 import numpy as np
 
 from kurt2rt.core.rla.condition import Space
-from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Expectation, Statistics, pack
 from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
@@ -37,24 +37,6 @@ def system() -> RlaSystem:
 def edges(network: RlaNetwork) -> dict[tuple[int, int], tuple[int, float]]:
     found = {edge: network.edges[edge] for edge in network.edges}
     return {edge: (each["times"], each["percent"]) for edge, each in found.items()}
-
-
-def test_build_network_edges_have_shares_of_all_successors() -> None:
-    network = build_network(system(), DROVE)
-    assert edges(network) == {(1, 2): (9, 90.0), (1, 3): (1, 10.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
-
-
-def test_build_network_node_has_action_uses_and_duration() -> None:
-    network = build_network(system(), DROVE)
-    assert network.nodes[1] == {
-        "level": BASIC,
-        "behaviour": "left",
-        "action": "forward",
-        "uses": 20,
-        "ends": 7,
-        "ticks": 25.0,
-    }
-    assert "ends" not in network.nodes[2]  # of another lesson: it has another action by now
 
 
 def test_build_network_one_behaviour_has_shares_of_all() -> None:

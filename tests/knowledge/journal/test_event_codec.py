@@ -169,14 +169,3 @@ def test_decode_event_missing_field_is_named(event: TeachingEvent) -> None:
         part = {name: value for name, value in whole.items() if name != key}
         with refused(KnowledgeCode.NOT_AN_EVENT, key=key):
             decode_event(json.dumps(part), "row 1")
-
-
-@pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None])
-def test_encode_event_unreadable_number_is_refused(value: float) -> None:
-    event = RlaCreated(Rla(1, (0.0, value), "forward", None, Origin("c-9", "t", Phase.SUPERVISED, 0)))
-    reward = RlaRewarded(1, 1, 5, Origin("c-10", "t", Phase.REINFORCEMENT, 9), (Credit(1, value),))
-
-    with refused(KnowledgeCode.EVENT_NOT_WRITABLE, "command 'c-10'", key="credits"):
-        encode_event(reward)
-    with refused(KnowledgeCode.EVENT_NOT_WRITABLE, "command 'c-9'", key="condition"):
-        encode_event(event)

@@ -17,7 +17,6 @@ from tests.cli.helpers import ROOT, started
 from tests.knowledge.lessons import (
     BINDING,
     STAMP,
-    append,
     begun,
     created,
     deleted,
@@ -181,15 +180,6 @@ def test_read_only_leaves_the_log_of_a_killed_robot(tmp_path: Path, path: Path) 
         assert after[each] == before[each]
 
 
-def test_read_only_robot_starts_and_ends_keeps_lessons(path: Path) -> None:
-    with Journal.read_only(begun(path)) as look:
-        append(path, created(4))
-        assert len(look.events()) == 4
-    assert set(contents(path.parent)) == {path.name, f"{path.name}.lock"}
-    with Journal.open(path, BINDING) as journal:
-        assert len(journal.events()) == 4
-
-
 def read_without_rights(path: Path) -> tuple[str, str]:
     """Return the standard output and error of a reader without rights."""
     with started("tests.knowledge.read_without_rights", str(path), folder=ROOT) as look:
@@ -203,13 +193,3 @@ def test_read_only_without_rights_in_the_folder_is_read() -> None:
         assert read_without_rights(path) == ("3\n", "")
         Path(folder).chmod(0o755)
         assert set(contents(Path(folder))) == {path.name, f"{path.name}.lock"}
-
-
-def test_read_only_without_rights_on_the_file_is_read() -> None:
-    with TemporaryDirectory() as folder:
-        path = begun(Path(folder) / "knowledge.db")
-        Path(folder).chmod(0o777)
-        path.chmod(0o444)
-        before = contents(Path(folder))
-        assert read_without_rights(path) == ("3\n", "")
-        assert contents(Path(folder)) == before

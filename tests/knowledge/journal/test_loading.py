@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla
 from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
@@ -24,7 +23,6 @@ from tests.knowledge.lessons import (
     BINDING,
     STAMP,
     WITH_CRITIC,
-    append,
     appraisal,
     begun,
     created,
@@ -113,21 +111,6 @@ def test_open_missing_level_is_added_and_extra_level_kept(path: Path) -> None:
         assert journal.binding == WITH_CRITIC
         assert fold_journal(journal, radius=1.0).rlas_at(CRITIC) == (appraisal(4).rla,)
         assert check_knowledge(journal) == []
-
-
-@pytest.mark.parametrize(
-    ("features", "differing"),
-    [
-        (LevelFeatures("0", ("left_m", "speed_m_s", "bump")), [("file", "'bumped'"), ("robot", "'bump'")]),
-    ],
-)
-def test_open_other_level_features_are_refused_with_difference(
-    path: Path, features: LevelFeatures, differing: list[tuple[str, str]]
-) -> None:
-    append(path, appraisal(1), binding=WITH_CRITIC)
-    other = replace(BINDING, levels={CRITIC: features})
-    error = require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, other, level=CRITIC)
-    assert only_in(error) == differing
 
 
 def test_check_rla_of_an_unknown_level_is_found(path: Path) -> None:

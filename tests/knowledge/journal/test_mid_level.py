@@ -7,7 +7,7 @@ from pathlib import Path
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import CRITIC, MID, Rla
+from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
@@ -39,30 +39,6 @@ def mid_rla(rla_id: int, *symbols: int, action: str = "turn_left") -> RlaCreated
 def write(path: Path, *events: TeachingEvent) -> None:
     with open_for_teaching(path, ROBOT, ROUTE).journal as journal:
         journal.append([JournalEntry(event, STAMP) for event in events])
-
-
-def test_open_streets_knowledge_for_a_route_adds_the_level(path: Path) -> None:
-    with open_knowledge(path, ROBOT, STREETS) as journal:
-        assert journal.binding.levels.keys() == {CRITIC}
-        journal.append([JournalEntry(basic(1), STAMP)])
-    assert read_lessons(path, ROBOT, ROUTE) == [basic(1)]
-    write(path, mid_rla(2, 1))
-    with Journal.read_only(path) as journal:
-        assert journal.binding.system == "streets"
-        assert journal.binding.levels[MID] == TURNS.level_features
-
-
-def test_open_untaught_level_takes_other_features(path: Path) -> None:
-    write(path, basic(1))
-    assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
-    place = RlaCreated(Rla(2, (0.0,) * 6, "turn_left", None, origin("create-2"), level=MID))
-    with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
-        journal.append([JournalEntry(place, STAMP)])
-    with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
-        assert journal.binding.levels[MID] == load_mid_level("places").level_features
-        assert journal.events() == [basic(1), place]
-    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
-        open_knowledge(path, ROBOT, ROUTE)
 
 
 def test_open_undone_lesson_still_binds_its_level(path: Path) -> None:

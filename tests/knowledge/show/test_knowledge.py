@@ -22,8 +22,6 @@ from tests.knowledge.lessons import (
     origin,
     replaced,
     rewarded,
-    session,
-    undone,
     withdrawn,
 )
 
@@ -113,18 +111,6 @@ def test_render_knowledge_has_withdrawals_values_appraisals(path: Path) -> None:
     assert LessonRecord(appraisal(5, action="bad"), level=CRITIC).text in lessons
     assert LessonRecord(withdrawn(1)).text in lessons
     assert [line.strip().split("  ")[0] for line in of_critic if "RLA" in line] == ["RLA 1 punished"]
-
-
-def test_render_lessons_newest_first_with_ids_and_undoers(path: Path) -> None:
-    with Journal.open(path, BINDING) as journal:
-        events = (created(1), replaced(1, "left", "forward"), *session(10), created(2), undone("create-2"))
-        journal.append([JournalEntry(event, STAMP) for event in events])
-        lines = [re.split(r"\s{2,}", line.strip()) for line in printed(render_lessons(journal, limit=2))]
-
-    when = STAMP[:19].replace("T", " ") + ", Hertha"
-    assert [LessonRecord(created(2)).text, "create-2", when, "Joachim"] in lines
-    assert [LessonRecord(events[1]).text, "replace-1-left", when] in lines
-    assert numbers(lines[-1][0]) == [1]
 
 
 def test_render_knowledge_without_lessons(path: Path) -> None:

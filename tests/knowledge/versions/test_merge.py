@@ -14,7 +14,7 @@ from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import LessonRedone, RlaCreated, RlaRewarded, SituationNamed, TeachingEvent
-from kurt2rt.core.rla.lesson_history import LessonRecord, hold_of
+from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
@@ -37,14 +37,12 @@ from tests.knowledge.lessons import (
     origin,
     replaced,
     rewarded,
-    session,
     undone,
     withdrawn,
 )
 from tests.knowledge.refusals import refused
 
 FAR = 1000.0
-LATER = "2004-04-27T10:00:00.000+00:00"
 
 
 def at(rla_id: int, x: float, action: str = "forward", command_id: str | None = None) -> RlaCreated:
@@ -89,22 +87,6 @@ def left_out(merged: MergeResult) -> list[str]:
 def brought(path: Path, merged: MergeResult) -> list[LessonRecord]:
     lessons = folded(path).lessons
     return [each for each in lessons if each.event.origin.command_id.startswith(f"{merged.merge_id}/")]
-
-
-def test_merge_new_lessons_get_ids_and_keep_teachers_and_dates(mine: Path, theirs: Path) -> None:
-    append(mine, at(4, FAR, "left", "mine-4"))
-    append(theirs, *session(100), at(4, 2 * FAR, "right", "theirs-4"), stamp=LATER)
-    append(theirs, replaced(4, "back", "right"), replaced(2, "left", "forward"), deleted(1))
-    merged = merge(mine, theirs)
-    assert (merged.lessons, merged.new_rlas, merged.left_out, merged.stay_undone) == (4, 1, (), 0)
-    assert actions(mine) == {2: "left", 3: "forward", 4: "left", 5: "back"}
-    first, *_ = brought(mine, merged)
-    assert first.event.origin == replace(origin(f"{merged.merge_id}/theirs-4"), tick=4)
-    with Journal.read_only(mine) as journal:
-        assert {entry.event.origin.command_id: entry.stamped_at for entry in journal.entries()}[
-            first.event.origin.command_id
-        ] == LATER
-    assert folded(mine).teaching_ticks == 0
 
 
 def test_merge_again_brings_only_later_lessons(mine: Path, theirs: Path) -> None:
@@ -155,15 +137,6 @@ def test_merge_rewards_add_up_with_credits_that_fit(mine: Path, theirs: Path) ->
         assert journal.statistics().values == {1: 0.0, 2: 0.5, 5: 0.25}
 
 
-def test_merge_unrelated_file_with_equal_ids(mine: Path, tmp_path: Path) -> None:
-    stranger = tmp_path / "stranger"
-    append(stranger, *(at(number, FAR * number, "left", f"create-{number}") for number in (1, 2)))
-    append(stranger, replaced(2, "back", "left"))
-    merge(mine, stranger)
-    assert actions(mine) == {1: "forward", 2: "forward", 3: "forward", 4: "left", 5: "back"}
-    assert merge(mine, stranger).lessons == 0
-
-
 def test_merge_of_a_merged_file_keeps_free_first_ids(mine: Path, theirs: Path, tmp_path: Path) -> None:
     append(mine, at(4, FAR, "left", "same"), at(5, 3 * FAR, "left", "other"))
     append(theirs, at(4, -FAR, "right", "same"))
@@ -210,14 +183,6 @@ def test_merge_whose_places_are_taken_is_not_redone(mine: Path, theirs: Path) ->
     append(mine, replaced(1, "right", "forward"))
     with refused(KnowledgeCode.LESSON_REFUSED, mine, outcome=RefusalCode.TAUGHT_INSTEAD):
         plan_redo(mine, merged.merge_id, teacher="command line")
-
-
-def test_merge_hold_stays_a_hold(mine: Path, theirs: Path) -> None:
-    append(theirs, *(at(number, number * FAR, "left", f"Ann-hold-7/{number}") for number in (4, 5)))
-    merged = merge(mine, theirs)
-    held = {hold_of(record.event.origin.command_id) for record in brought(mine, merged)}
-    assert held == {f"{merged.merge_id}/Ann-hold-7"}
-    assert len(plan_undo(mine, held.pop(), teacher="command line").lessons) == 2
 
 
 def test_merge_refused_or_dry_run_changes_nothing(mine: Path, theirs: Path, tmp_path: Path) -> None:

@@ -17,7 +17,6 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
@@ -50,19 +49,6 @@ def redo(path: Path, lesson: str | None = None) -> LessonRecord:
     apply_plan(planned, STAMP)
     (record,) = planned.lessons
     return record
-
-
-def test_undo_without_id_takes_the_newest_lesson(path: Path) -> None:
-    begun(path, lessons=2)
-    append(path, deleted(1))
-
-    assert undo(path) == LessonRecord(deleted(1), undone=True)
-    assert rlas(path) == (created(1).rla, created(2).rla)
-    assert undo(path) == LessonRecord(created(2), undone=True)
-    assert undo(path) == LessonRecord(created(1), undone=True)
-    assert rlas(path) == ()
-    with refused(KnowledgeCode.NO_LESSON, path):
-        undo(path)
 
 
 def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
@@ -119,21 +105,6 @@ def test_redo_all_of_a_teacher_restores_all(path: Path) -> None:
         redo_all_of(path, "Hertha")
 
 
-def test_redo_all_of_a_teacher_skips_replaced_lessons(path: Path) -> None:
-    begun(path, lessons=2)
-    undo(path)
-    append(path, replaced(1, "left", "forward"))
-    undo(path)
-    with Journal.open(path, BINDING) as journal:
-        instead = replace(replaced(1, "right", "forward"), origin=replace(origin("instead"), teacher="Joachim"))
-        journal.append([JournalEntry(instead, STAMP)])
-    redone, (reason,) = redo_all_of(path, "Hertha")
-    assert [record.event for record in redone] == [created(2)]
-    assert reason.code == RefusalCode.TAUGHT_INSTEAD
-    with refused(KnowledgeCode.NO_UNDONE_LESSON_BY, teacher="Hertha"):
-        redo_all_of(path, "Hertha")
-
-
 def test_undo_refused_lesson_writes_nothing(path: Path) -> None:
     begun(path)
     append(path, replaced(1, "left", "forward"))
@@ -177,14 +148,6 @@ def test_undo_all_of_the_critic_keeps_other_lessons(path: Path) -> None:
         undo_all_of(path, CRITIC)
 
 
-def test_undo_reward_takes_its_credits_off_values(path: Path) -> None:
-    undo_all_of(with_critic_lessons(path), CRITIC)
-    with Journal.read_only(path) as journal:
-        statistics = journal.statistics()
-    assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
-    assert replace(statistics, values={}, numbers={}) == Statistics({1: 5}, {(1, 2): 3})
-
-
 LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
 
 
@@ -226,15 +189,3 @@ def test_undo_later_lesson_of_another_teacher_is_refused(path: Path) -> None:
         undo_all_of(path, CRITIC)
     with Journal.read_only(path) as journal:
         assert (journal.events(), journal.statistics()) == before
-
-
-def test_undo_of_a_hold_undoes_its_standing_lessons(path: Path) -> None:
-    begun(path, lessons=1)
-    append(path, created(2, "Ann-hold-7/10"), created(3, "Ann-hold-7/20"), created(4, "Ann-hold-7/30"))
-    undo(path, "Ann-hold-7/20")
-    planned = plan_undo(path, "Ann-hold-7", teacher="command line")
-    apply_plan(planned, STAMP)
-    assert [each.event.origin.command_id for each in planned.lessons] == ["Ann-hold-7/30", "Ann-hold-7/10"]
-    assert [rla.rla_id for rla in rlas(path)] == [1]
-    with pytest.raises(KnowledgeError, match="Ann-hold-7"):
-        plan_undo(path, "Ann-hold-7", teacher="command line")
