@@ -9,8 +9,8 @@ from behaviors.repertoire_settings import (
     RepertoireSettings,
     TurnByAngleAction,
 )
-from hal.settings import load_settings
-from hal.settings_files import find_config
+from config.settings import load_settings
+from config.settings_files import find_config
 
 AHEAD, BACK, STAND = "ahead", "back", "stand"
 _AHEAD_BELOW, _SPIN_ABOVE = 0.5, 2.0
@@ -27,7 +27,7 @@ def action_groups(repertoire: str) -> Mapping[str, str]:
     Actions that were taught themselves are groups of their own.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid repertoire.
+        config.settings.SettingsError: for a missing or invalid repertoire.
     """
     actions = load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions
     return {action.name: _group_of(action) for action in actions}

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire_settings import PluginAction
-from hal.plugins import PluginError
+from config.plugins import PluginError
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 

@@ -1,6 +1,6 @@
 """Registry of judges, metrics and policies: the kind `wall_following` is the module of that name in their folder.
 
-A kind without a module there is a plug-in (hal.plugins).
+A kind without a module there is a plug-in (config.plugins).
 """
 
 from typing import Annotated, NoReturn
@@ -10,9 +10,9 @@ from pydantic import ConfigDict, PlainValidator, SerializeAsAny
 from behaviors.judges.judge import JudgeSettings
 from behaviors.metrics.task_metric import MetricSettings
 from behaviors.policies.policy import PolicySettings
-from hal.plugins import PluginKind
-from hal.settings import SettingsError
-from hal.settings_by_kind import KindSettings, as_its_kind, is_settings_class, shipped_kinds
+from config.plugins import PluginKind
+from config.settings import SettingsError
+from config.settings_by_kind import KindSettings, as_its_kind, is_settings_class, shipped_kinds
 
 POLICIES = PluginKind(
     "policies",

@@ -17,11 +17,11 @@ from behaviors.repertoire_settings import (
     TurnByAngleAction,
 )
 from behaviors.turn_by_angle import TurnByAngle
-from hal.plugins import PluginError
+from config.plugins import PluginError
+from config.settings import SettingsError, load_settings
+from config.settings_files import find_config
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError, load_settings
-from hal.settings_files import find_config
 
 Repertoire = Mapping[str, Behaviour]
 """All actions of a task, by the names that RLAs and commands use, such as {"forward": MotorPrimitive(...)}.
@@ -45,7 +45,7 @@ def load_repertoire(
         build_taught: builder of actions that are RLA systems, which this package does not know; None refuses them.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid file or entry, which it names.
+        config.settings.SettingsError: for a missing or invalid file or entry, which it names.
     """
     path = find_config("repertoires", name_or_path)
     settings = load_settings(path, RepertoireSettings)
@@ -100,7 +100,7 @@ def _build(
 def primitive_speeds(repertoire: str) -> Mapping[str, WheelSpeeds]:
     """Return the wheel speeds of a repertoire's motor primitives by name, in the repertoire's order.
 
-    Raises hal.settings.SettingsError if the repertoire is missing or invalid.
+    Raises config.settings.SettingsError if the repertoire is missing or invalid.
     """
     actions = load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions
     return {

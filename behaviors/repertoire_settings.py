@@ -6,10 +6,10 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, PlainValidator, SerializeAsAny, Tag, model_validator
 
 from behaviors.behaviour import Behaviour
-from hal.plugins import PluginKind
+from config.plugins import PluginKind
+from config.settings import Settings
+from config.settings_by_kind import KindSettings, as_its_kind, is_settings_class
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
-from hal.settings_by_kind import KindSettings, as_its_kind, is_settings_class
 
 Speed = Annotated[float, Field(ge=-1.0, le=1.0)]
 PositiveSpeed = Annotated[float, Field(gt=0, le=1.0)]

@@ -1,6 +1,6 @@
-"""Data only: robots, worlds, tasks, repertoires, situations, runtime settings and the CAN database.
+"""Settings of robots, worlds, tasks and the runtime, their loader, the shelf of plug-ins, and errors that users see.
 
-The code that uses these files has their schemas; `hal.settings` loads them.
+The YAML files stand next to the modules; the code that uses a file has its schema.
 """
 
 from pathlib import Path

@@ -11,7 +11,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 from typer.cli import get_docs_for_click
 
-from hal.settings import Settings
+from config.settings import Settings
 from kurt2rt.cli.command_line import command_line
 
 ROOT = Path(__file__).parents[1]

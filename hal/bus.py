@@ -7,7 +7,7 @@ from typing import Protocol
 
 import can
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.frame import Frame
 from hal.in_process_bus import InProcessBus
 from hal.shared_bus import SharedBus

@@ -12,7 +12,7 @@ from cantools.database import Message, Signal
 from cantools.database.can import Database
 
 from config import CONFIG_DIR
-from hal.errors import UserError
+from config.errors import UserError
 from hal.frame import Frame
 
 _STRUCT_LETTERS = {8: "b", 16: "h", 32: "i", 64: "q"}

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from config.settings import Settings, SettingsError
 from hal.robot_settings import (
     InfraredSettings,
     MetresPerSecond,
@@ -14,7 +15,6 @@ from hal.robot_settings import (
     SensorSettings,
     load_robot,
 )
-from hal.settings import Settings, SettingsError
 
 
 class SpeedMode(StrEnum):
@@ -106,5 +106,5 @@ def require_kurt2(robot: RobotSettings, what: str) -> Kurt2Settings:
 
 
 def load_kurt2(name_or_path: str = "kurt2") -> Kurt2Settings:
-    """Load the settings of a KURT2 by name or path. Raises hal.settings.SettingsError, also for another robot."""
+    """Load the settings of a KURT2 by name or path. Raises config.settings.SettingsError, also for another robot."""
     return require_kurt2(load_robot(name_or_path), "what you started")

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from config.robot_plugins import find_robot_kind, robot_of_task
+from config.settings import Settings, SettingsError, content_of, settings_of
+from config.settings_files import find_config
 from hal.infrared_law import InfraredLawNumbers, counts_at
-from hal.robot_plugins import find_robot_kind, robot_of_task
-from hal.settings import Settings, SettingsError, content_of, settings_of
-from hal.settings_files import find_config
 
 Metres = Annotated[float, Field(gt=0, le=5)]
 MetresPerSecond = Annotated[float, Field(gt=0, le=3)]
@@ -159,7 +159,7 @@ class BumperSettings(Settings):
 
 
 class RobotSettings(Settings):
-    """Settings that every robot has; a kind of robot may add its own (hal.robot_kind)."""
+    """Settings that every robot has; a kind of robot may add its own (simbridge.contracts.robot_kind)."""
 
     kind: str
     """Name of the kind of robot."""
@@ -189,14 +189,14 @@ DEFAULT_ROBOT = "kurt2"
 def load_robot(name_or_path: str = "kurt2") -> RobotSettings:
     """Load the settings of a robot: shipped or of a plug-in by name, or a file by path.
 
-    The file's `kind` names the plug-in that knows its schema. Raises hal.settings.SettingsError.
+    The file's `kind` names the plug-in that knows its schema. Raises config.settings.SettingsError.
     """
     path = find_config("robots", name_or_path)
     return robot_of_content(content_of(path), path)
 
 
 def load_robot_of(name_or_path: str | None, task: str) -> RobotSettings:
-    """Load the settings of a robot by name or path; None: the robot of the task. Raises hal.settings.SettingsError."""
+    """Load the settings of a robot by name or path; None: the robot of the task. Raises SettingsError."""
     return load_robot(robot_named(name_or_path, task))
 
 
@@ -221,7 +221,7 @@ def robot_that_task_names(task: str) -> str | None:
 def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:
     """Return the settings of a robot from JSON, as recordings and packages keep it.
 
-    Raises hal.settings.SettingsError that names `where`, also for a kind that is not installed.
+    Raises config.settings.SettingsError that names `where`, also for a kind that is not installed.
     """
     try:
         content = json.loads(text)
@@ -233,7 +233,7 @@ def robot_of_json(text: str | bytes, where: Path | str) -> RobotSettings:
 def robot_of_content(content: Any, where: Path | str) -> RobotSettings:
     """Return the settings of a robot from the content of its file, in the types of JSON.
 
-    Raises hal.settings.SettingsError that names `where` and the key, also for a kind that is not installed.
+    Raises config.settings.SettingsError that names `where` and the key, also for a kind that is not installed.
     """
     kind = content.get("kind") if isinstance(content, dict) else None
     if not isinstance(kind, str):

@@ -4,7 +4,7 @@ from typing import Protocol
 
 import can
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 
 
 class Tap(Protocol):
@@ -23,6 +23,6 @@ class Tap(Protocol):
 
 
 def refuse_tap(tap: Tap | None, robot: str) -> None:
-    """Refuse a tap at the link of a robot without CAN, by its name. Raises hal.settings.SettingsError."""
+    """Refuse a tap at the link of a robot without CAN, by its name. Raises config.settings.SettingsError."""
     if tap is not None:
         raise SettingsError("has no CAN frames to be seen", where=f"robot {robot}", do="leave it out")

@@ -47,7 +47,7 @@ from typing import TYPE_CHECKING
 from kurt2rt.platform.own_packages import hidden_packages
 
 if TYPE_CHECKING:
-    from hal.errors import UserError as Error
+    from config.errors import UserError as Error
     from kurt2rt.library.examination import Examination, examine
     from kurt2rt.library.knowledge import Knowledge, teach
     from kurt2rt.library.learners import learner_setting
@@ -72,7 +72,7 @@ __all__ = [
 ]
 
 _PLACES = {
-    "Error": ("hal.errors", "UserError"),
+    "Error": ("config.errors", "UserError"),
     "Examination": ("kurt2rt.library.examination", "Examination"),
     "Knowledge": ("kurt2rt.library.knowledge", "Knowledge"),
     "ReplayedRun": ("kurt2rt.library.replay", "ReplayedRun"),

@@ -122,7 +122,7 @@ class Runtime:
     def action_groups(self) -> Mapping[str, str]:
         """Return the group of each action of the repertoire: those that look alike to a person who watches.
 
-        Raises hal.settings.SettingsError.
+        Raises config.settings.SettingsError.
         """
         return action_groups(self.task.repertoire)
 
@@ -145,7 +145,7 @@ class Runtime:
 def empty_system(
     task: TaskSettings, definition: SituationDefinition, critic: CriticSettings, mid: MidSettings | None
 ) -> RlaSystem:
-    """Return the RLA system of all levels of a task, without any RLA. Raises hal.settings.SettingsError."""
+    """Return the RLA system of all levels of a task, without any RLA. Raises config.settings.SettingsError."""
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.history_weight, task.name)
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
@@ -282,7 +282,7 @@ def build_runtime(
     """Build the runtime for a robot and a task, with the knowledge that `events` have taught.
 
     Raises:
-        hal.settings.SettingsError: for settings that do not fit each other.
+        config.settings.SettingsError: for settings that do not fit each other.
         UnknownActionError, UnknownBehaviourError: for knowledge that cannot act here.
         InvalidEventError: for an event that does not fit those before it.
         ValueError: for a saved expectation with another number of features.

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import Pose
 from hal.tap import Tap
+from simbridge.contracts.simulation import Pose
 from simbridge.robot_simulation import RobotSimulation, chance_of
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.simulated_link import CanLine
@@ -14,7 +14,7 @@ from simbridge.worlds.world_settings import WorldSettings
 
 
 class Kurt2Simulation(RobotSimulation):
-    """The simulated KURT2 in one world, on a CAN bus of its own (hal.simulation.Simulation)."""
+    """The simulated KURT2 in one world, on a CAN bus of its own (simbridge.contracts.simulation.Simulation)."""
 
     simulated_robot: SimulatedKurt2
     robot: Kurt2

@@ -1,10 +1,10 @@
-"""Simulation of a robot that is taught in a batch (hal.batch_lesson.LessonRobot)."""
+"""Simulation of a robot that is taught in a batch (simbridge.contracts.batch_lesson.LessonRobot)."""
 
-from hal.areas import Borders
-from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import Pose
 from simbridge.batch.lesson import CompiledLesson
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
+from simbridge.contracts.simulation import Pose
 from simbridge.kurt2_simulation import Kurt2Simulation
 
 

@@ -8,8 +8,8 @@ from typing import Protocol
 from hal.linked_robot import LinkedRobot
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
-from hal.simulation import LiveSimulation
 from hal.tap import Tap, refuse_tap
+from simbridge.contracts.simulation import LiveSimulation
 from simbridge.controller.controller import Controller
 from simbridge.robot.body import Body
 from simbridge.robot.wheels import Wheels
@@ -39,7 +39,7 @@ OpenLink = Callable[[RobotSettings], PairedLink]
 
 @dataclass(frozen=True, slots=True)
 class LinkSimulationFactory(RobotWorlds):
-    """Opens simulations of a robot without CAN (hal.simulation.SimulationFactory); can be sent to another process.
+    """Opens simulations of a robot without CAN (`SimulationFactory`); can be sent to another process.
 
     There is no batch of such robots: a study drives them over their link.
     """

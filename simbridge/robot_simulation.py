@@ -10,14 +10,14 @@ from typing import Final
 
 import shapely
 
+from config.settings_files import YAML_SUFFIXES
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.kurt2 import Kurt2
 from hal.linked_robot import LinkedRobot
 from hal.robot import GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.settings_files import YAML_SUFFIXES
-from hal.simulation import LiveSimulation, Pose, Position, WallSide, WorldPlan
+from simbridge.contracts.simulation import LiveSimulation, Pose, Position, WallSide, WorldPlan
 from simbridge.realtime import RealtimeSimulation
 from simbridge.robot.world import World
 from simbridge.simulated_link import SimulatedLink
@@ -59,7 +59,7 @@ class Clearance:
 
 
 class RobotSimulation:
-    """A robot of any kind in one world, with its link and its driver (hal.simulation.Simulation)."""
+    """A robot of any kind in one world, with its link and its driver (simbridge.contracts.simulation.Simulation)."""
 
     def __init__(
         self,
@@ -157,7 +157,7 @@ class RobotSimulation:
     def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
         """Put the robot, standing, at a random start pose, or at any free pose `in_sight` of an obstacle.
 
-        `close`: so close to it that the robot cannot turn on the spot. Raises hal.settings.SettingsError if no free
+        `close`: so close to it that the robot cannot turn on the spot. Raises config.settings.SettingsError if no free
         pose is found.
         """
         self.put(self.draw_pose(chance, in_sight=in_sight, close=close))

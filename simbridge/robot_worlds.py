@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import WorldPlan
+from simbridge.contracts.simulation import WorldPlan
 from simbridge.simulated_world import plan_of
 from simbridge.survey.drawing import draw_robot, draw_world
 from simbridge.worlds.world_loading import load_world
@@ -25,20 +25,20 @@ class RobotWorlds:
             load_world(world, self.settings)
 
     def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
+        """Return a world from above. Raises config.settings.SettingsError for an unknown world."""
         return plan_of(load_world(world, self.settings))
 
     def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
+        """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
         draw_world(axes, load_world(world, self.settings))
 
     def draw_robot(self, axes: "Axes", world: str) -> None:
         """Draw the robot at the first start pose of a world, on axes in m.
 
-        Raises hal.settings.SettingsError for an unknown world.
+        Raises config.settings.SettingsError for an unknown world.
         """
         draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
 
     def settings_of(self, world: str) -> str:
-        """Return all settings of a world as a text. Raises hal.settings.SettingsError for an unknown world."""
+        """Return all settings of a world as a text. Raises config.settings.SettingsError for an unknown world."""
         return load_world(world, self.settings).model_dump_json(serialize_as_any=True)

@@ -7,8 +7,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TextIO
 
-from hal.simulation import Pose
-from hal.world_refusal import WorldRefusedError
+from simbridge.contracts.simulation import Pose
+from simbridge.contracts.world_refusal import WorldRefusedError
 from simbridge.realtime import StandaloneRobot
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.world_settings import WorldSettings

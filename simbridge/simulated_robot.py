@@ -8,7 +8,7 @@ from typing import NamedTuple, Protocol
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose, WallSide
+from simbridge.contracts.simulation import Pose, WallSide
 from simbridge.controller.controller import Controller
 from simbridge.robot.body import Body
 from simbridge.robot.bumpers import Bumpers, CollisionCounter

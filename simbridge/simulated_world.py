@@ -1,10 +1,10 @@
-"""World of a simulation for a teacher who sees and changes it from above (hal.simulation.SimulatedWorld)."""
+"""World of a simulation for a teacher who sees and changes it from above (contracts.simulation.SimulatedWorld)."""
 
 import shapely
 
 from hal.robot_settings import GeometrySettings
-from hal.simulation import Pose, SimulatedPlace, SimulatedPost, Street, Wall, WorldPlan
-from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.simulation import Pose, SimulatedPlace, SimulatedPost, Street, Wall, WorldPlan
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.geometry import rectangle

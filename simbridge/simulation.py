@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
-from hal.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
-from hal.batch_lesson import LessonDriveSettings, LessonRobot
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import LiveSimulation
 from hal.tap import Tap
+from simbridge.contracts.batch import Batch, DriveSettings, FollowedSimulation, Mind, Start
+from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonRobot
+from simbridge.contracts.simulation import LiveSimulation
 from simbridge.kurt2_simulation import Kurt2Simulation
 from simbridge.robot_simulation import StallTolerantKurt2, run_live
 from simbridge.robot_worlds import RobotWorlds
@@ -18,7 +18,7 @@ from simbridge.worlds.world_loading import load_world
 
 @dataclass(frozen=True, slots=True)
 class Kurt2SimulationFactory(RobotWorlds):
-    """Opens simulations of KURT2 (hal.simulation.SimulationFactory); can be sent to another process."""
+    """Opens simulations of KURT2 (simbridge.contracts.simulation.SimulationFactory); can be sent to another process."""
 
     settings: Kurt2Settings
     bus: str | None = None
@@ -32,7 +32,7 @@ class Kurt2SimulationFactory(RobotWorlds):
         return Kurt2Simulation(self.settings, world, seed, purpose, open_line=self._open_line)
 
     def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:
-        """Open a simulation for each start; a world that several share is loaded once (hal.batch.BatchFactory).
+        """Open a simulation for each start; a world that several share is loaded once (contracts.batch.BatchFactory).
 
         Raises SettingsError for an unknown world.
         """
@@ -50,7 +50,7 @@ class Kurt2SimulationFactory(RobotWorlds):
     def open_batch(
         self, simulations: Sequence[FollowedSimulation], minds: Sequence[Mind], settings: DriveSettings
     ) -> Batch:
-        """Return a batch of the robots of fresh simulations (hal.batch.BatchFactory).
+        """Return a batch of the robots of fresh simulations (simbridge.contracts.batch.BatchFactory).
 
         Raises BatchRefusedError for what the batch does not know.
         """
@@ -61,7 +61,7 @@ class Kurt2SimulationFactory(RobotWorlds):
         return RobotBatch(self.settings, robots, minds, settings)
 
     def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
-        """Open a simulation whose robot is taught in a batch (hal.batch_lesson.LessonFactory).
+        """Open a simulation whose robot is taught in a batch (simbridge.contracts.batch_lesson.LessonFactory).
 
         Raises BatchRefusedError for what the batch does not know, SettingsError for an unknown world.
         """
@@ -70,7 +70,7 @@ class Kurt2SimulationFactory(RobotWorlds):
         return LessonSimulation(self.settings, world, seed, purpose, settings)
 
     def live(self, world: str, seed: int, tap: Tap | None = None) -> AbstractContextManager[LiveSimulation]:
-        """Return a context in which a robot runs in real time (hal.simulation.SimulationFactory).
+        """Return a context in which a robot runs in real time (simbridge.contracts.simulation.SimulationFactory).
 
         `tap`: sees the frames at the notebook's end of its bus. Raises SettingsError for an unknown world.
         """

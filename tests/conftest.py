@@ -13,7 +13,7 @@ import pytest
 from xdist.remote import Producer
 from xdist.scheduler.loadfile import LoadFileScheduling
 
-from hal import plugins
+from config import plugins
 from tests.examples import register_profiles
 from tests.forked_program import fork_server
 

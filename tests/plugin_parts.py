@@ -14,7 +14,7 @@ from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from behaviors.repertoire_settings import PluginAction
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings, RobotSettings
-from hal.simulation import Pose, Simulation
+from simbridge.contracts.simulation import Pose, Simulation
 
 Speed = Annotated[float, Field(ge=0, le=0.5)]
 

@@ -19,8 +19,8 @@ import yaml
 
 from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
+from config.settings import Settings, load_settings
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, load_settings
 from kurt2rt.core.perception.definition import SituationDefinition
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.curriculum import run_exams

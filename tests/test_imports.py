@@ -11,39 +11,43 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
+LOW = "config hal simbridge.contracts"
+"""Rooms below the robot's program: settings and errors, hardware, and the contracts of a simulation."""
 ROOMS: dict[str, frozenset[str]] = {
     room: frozenset(allowed.split())
     for room, allowed in {
         "config": "",
         "hal": "config",
-        "behaviors": "hal",
+        "behaviors": f"{LOW}",
         "simbridge": "config hal",
+        "simbridge.contracts": "config hal",
         "simbridge.batch": "* behaviors simbridge",
-        "kurt2rt": "hal.errors",
+        "kurt2rt": "config.errors",
         "kurt2rt.platform": "",
-        "kurt2rt.ros": "hal",
+        "kurt2rt.ros": "config hal",
         "kurt2rt.robots": "config hal behaviors simbridge kurt2rt.platform kurt2rt.ros",
-        "kurt2rt.core": "hal behaviors kurt2rt.platform",
-        "kurt2rt.knowledge": "hal behaviors kurt2rt.platform kurt2rt.core",
-        "kurt2rt.runtime": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge",
-        "kurt2rt.runs": "hal kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime",
-        "kurt2rt.channel": "hal kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs.explain",
-        "kurt2rt.channel.protocol": "hal kurt2rt.core kurt2rt.platform kurt2rt.runs.explain.facts",
-        "kurt2rt.teacher": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.runs.explain"
+        "kurt2rt.core": f"{LOW} behaviors kurt2rt.platform",
+        "kurt2rt.knowledge": f"{LOW} behaviors kurt2rt.platform kurt2rt.core",
+        "kurt2rt.runtime": f"{LOW} behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge",
+        "kurt2rt.runs": f"{LOW} kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime",
+        "kurt2rt.channel": f"{LOW} kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.runs.explain",
+        "kurt2rt.channel.protocol": f"{LOW} kurt2rt.core kurt2rt.platform kurt2rt.runs.explain.facts",
+        "kurt2rt.teacher": f"{LOW} behaviors kurt2rt.platform kurt2rt.core kurt2rt.runs.explain"
         " kurt2rt.channel.protocol kurt2rt.channel.security",
         "kurt2rt.teacher.ros": "* kurt2rt.ros kurt2rt.teacher",
-        "kurt2rt.service": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
-        " kurt2rt.channel",
-        "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        "kurt2rt.service": f"{LOW} behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.runs kurt2rt.channel",
+        "kurt2rt.experiments": f"{LOW} behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.teacher.scripted",
-        "kurt2rt.gym": "hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        "kurt2rt.gym": "config hal behaviors simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
         " kurt2rt.experiments.lockstep",
-        "kurt2rt.library": "hal simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
-        " kurt2rt.experiments.lockstep",
-        "kurt2rt.checks": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
-        " kurt2rt.channel kurt2rt.teacher kurt2rt.service kurt2rt.experiments",
-        "kurt2rt.checks.doctor": "hal kurt2rt.platform",
-        "kurt2rt.checks.commission": "hal kurt2rt.platform",
+        "kurt2rt.library": "config hal simbridge kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.runs kurt2rt.experiments.lockstep",
+        "kurt2rt.checks": f"{LOW} behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.runs kurt2rt.channel kurt2rt.teacher kurt2rt.service kurt2rt.experiments",
+        "kurt2rt.checks.doctor": "config hal kurt2rt.platform",
+        "kurt2rt.checks.commission": "config hal kurt2rt.platform",
         "kurt2rt.cli": "config hal behaviors simbridge kurt2rt",
     }.items()
 }
@@ -184,11 +188,18 @@ def test_core_folders_import_lower_folders() -> None:
     assert not wrong, "; ".join(wrong)
 
 
-def test_config_imports_only_the_standard_library() -> None:
+def test_config_needs_nothing_but_a_parser_of_yaml_and_pydantic() -> None:
     for name, path in modules().items():
         if is_below(name, "config"):
             roots = {each.split(".")[0] for each in modules_imported(path.read_text(encoding="utf-8"), name)}
-            assert not roots - sys.stdlib_module_names - {"config"}
+            assert not roots - sys.stdlib_module_names - {"config", "yaml", "pydantic", "pydantic_core"}
+
+
+def test_contracts_of_a_simulation_need_no_simulator() -> None:
+    for name, path in modules().items():
+        if is_below(name, "simbridge.contracts"):
+            roots = {each.split(".")[0] for each in modules_imported(path.read_text(encoding="utf-8"), name)}
+            assert not roots - sys.stdlib_module_names - {"config", "hal", "simbridge", "numpy", "matplotlib"}
 
 
 @pytest.mark.parametrize("guard", GUARDS)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings_files import shipped_names
+from config.settings_files import shipped_names
 
 ROOT = Path(__file__).parents[1]
 

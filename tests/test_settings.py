@@ -15,10 +15,10 @@ import yaml
 from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire_settings import RESERVED, RepertoireSettings
 from config import CONFIG_DIR
+from config.settings import Settings, SettingsError, content_of, load_settings
+from config.settings_by_kind import find_kind
+from config.settings_files import find_config
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
-from hal.settings import Settings, SettingsError, content_of, load_settings
-from hal.settings_by_kind import find_kind
-from hal.settings_files import find_config
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition

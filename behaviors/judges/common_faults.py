@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.settings import Settings
+from config.settings import Settings
 
 Speed = Annotated[float, Field(ge=0, le=1)]
 """Speed in m/s."""

@@ -3,7 +3,7 @@
 from abc import abstractmethod
 from typing import NamedTuple, Protocol
 
-from hal.settings_by_kind import KindSettings
+from config.settings_by_kind import KindSettings
 
 
 class AppraisalFeatures(NamedTuple):

@@ -7,7 +7,7 @@ from pydantic import Field
 from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings, mirrored
 from behaviors.policies.sectors import Metres
-from hal.simulation import WallSide
+from simbridge.contracts.simulation import WallSide
 
 Error = Annotated[float, Field(gt=0, le=5)]
 """Difference from the set distance, in metres."""

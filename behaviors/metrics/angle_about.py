@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from behaviors.metrics.task_metric import Metrics
 from hal.numerics import round_portable
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 
 
 class AngleAbout:

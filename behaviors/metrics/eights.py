@@ -10,8 +10,8 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import MEASURE_EVERY, AngleAbout, Mean
 from behaviors.metrics.task_metric import DISTANCE_ERROR, Metrics, MetricSettings, TaskMetric
-from hal.settings import SettingsError
-from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
 _WHOLE = 5 / 6
 """Least fraction of a round that counts as whole; the rest is driven on the other post's side."""
@@ -24,7 +24,7 @@ class EightsSettings(MetricSettings):
     """Distance from the robot's centre to the face of the nearer post."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
-        """Raise hal.settings.SettingsError unless the world has two posts. `behaviours` may be any."""
+        """Raise config.settings.SettingsError unless the world has two posts. `behaviours` may be any."""
         if len(plan.posts) != 2:
             raise SettingsError(
                 f"metric eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
@@ -33,7 +33,7 @@ class EightsSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation.
 
-        Raises hal.settings.SettingsError unless the world has two posts.
+        Raises config.settings.SettingsError unless the world has two posts.
         """
         plan = simulation.plan
         self.require(plan, behaviours)

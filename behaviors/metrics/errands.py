@@ -9,8 +9,8 @@ from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.streets import StreetMap
 from behaviors.metrics.task_metric import JUNCTIONS, Metrics, MetricSettings, TaskMetric
 from behaviors.metrics.town import Street, Town
-from hal.settings import SettingsError
-from hal.simulation import Pose, Simulation, WorldPlan
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 
 class ErrandsSettings(MetricSettings):
@@ -27,7 +27,7 @@ class ErrandsSettings(MetricSettings):
     to there in one piece may be that short, else the goal was demonstrated."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
+        """Raise config.settings.SettingsError without junctions, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"metric errands: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -38,14 +38,14 @@ class ErrandsSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. `chance` is not used.
 
-        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        Raises config.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
         """
         return self.walk_in(simulation.plan, behaviours)
 
     def walk_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> "Errands":
         """Return the metric in a world, as a tracker of streets.
 
-        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        Raises config.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
         """
         self.require(plan, behaviours)
         return Errands(Town(StreetMap(plan), {each: QUARTERS[each] for each in behaviours}), behaviours[0])

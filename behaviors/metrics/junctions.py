@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from behaviors.metrics.angle_about import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
 from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Metrics, MetricSettings, TaskMetric
-from hal.areas import Borders
+from config.settings import SettingsError
 from hal.numerics import cos_sin
-from hal.settings import SettingsError
-from hal.simulation import Pose, Simulation, WorldPlan
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
 """Quarter turns to the left of each behaviour."""
@@ -25,7 +25,7 @@ class JunctionsSettings(MetricSettings):
     """Settings of the metric `junctions`: junctions left through the required side."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
+        """Raise config.settings.SettingsError without junctions, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"metric junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -36,7 +36,7 @@ class JunctionsSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         """Return the metric in a simulation, which draws the required behaviours by `chance`.
 
-        Raises hal.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
+        Raises config.settings.SettingsError if the world has no junctions, or for behaviours that choose no exit.
         """
         plan = simulation.plan
         self.require(plan, behaviours)

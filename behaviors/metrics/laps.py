@@ -15,7 +15,7 @@ from behaviors.metrics.task_metric import (
     MetricSettings,
     TaskMetric,
 )
-from hal.simulation import Pose, Position, Simulation, WallSide
+from simbridge.contracts.simulation import Pose, Position, Simulation, WallSide
 
 _MEASURED_AT_ONCE = 100
 """Positions of one measurement, which takes a tenth of the time of single ones: 10 s of a drive."""

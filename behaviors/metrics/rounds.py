@@ -9,8 +9,8 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import MEASURE_EVERY, AngleAbout, Mean
 from behaviors.metrics.task_metric import DISTANCE_ERROR, Metrics, MetricSettings, TaskMetric
-from hal.settings import SettingsError
-from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
 Distance = Annotated[float, Field(gt=0, le=5)]
 
@@ -25,7 +25,7 @@ class RoundsSettings(MetricSettings):
     """Left: counter-clockwise, with the post on the left."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
-        """Raise hal.settings.SettingsError unless the world has one post."""
+        """Raise config.settings.SettingsError unless the world has one post."""
         if len(plan.posts) != 1:
             raise SettingsError(
                 f"metric rounds: world {plan.name} has {len(plan.posts)} round obstacles",
@@ -35,7 +35,7 @@ class RoundsSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation. `chance` is not used.
 
-        Raises hal.settings.SettingsError unless the world has one post.
+        Raises config.settings.SettingsError unless the world has one post.
         """
         plan = simulation.plan
         self.require(plan, behaviours)

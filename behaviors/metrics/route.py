@@ -21,8 +21,8 @@ from behaviors.metrics.task_metric import (
     TaskMetric,
     WayAhead,
 )
-from hal.settings import SettingsError
-from hal.simulation import Pose, Simulation, WorldPlan
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 _LOOK_EVERY = 5
 """Ticks between two updates; the robot drives some centimeters in them."""
@@ -40,7 +40,7 @@ class RouteSettings(MetricSettings):
     """Number of starts in the training run: a decision without history is corrected at the next start only."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Raise hal.settings.SettingsError without such a loop, or for behaviours that choose no exit."""
+        """Raise config.settings.SettingsError without such a loop, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"metric route: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -52,14 +52,14 @@ class RouteSettings(MetricSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """Return the metric in a simulation, without random choices: exam and lesson share the route.
 
-        Raises hal.settings.SettingsError if the world has no such loop, or for behaviours that choose no exit.
+        Raises config.settings.SettingsError if the world has no such loop, or for behaviours that choose no exit.
         """
         plan = simulation.plan
         self.require(plan, behaviours)
         return FixedRoute(StreetMap(plan), self.route_in(plan, behaviours), behaviours)
 
     def route_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> Route:
-        """Return the loop in a world. Raises hal.settings.SettingsError without such a loop."""
+        """Return the loop in a world. Raises config.settings.SettingsError without such a loop."""
         chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed or 0}")
         return random_route(StreetMap(plan), self.decisions, [QUARTERS[each] for each in behaviours], chance)
 

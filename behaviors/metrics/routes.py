@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose
 
 _TRIES = 100_000
 
@@ -63,7 +63,7 @@ def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], ch
         chance: source of the walk.
 
     Raises:
-        hal.settings.SettingsError: the streets have no such loop.
+        config.settings.SettingsError: the streets have no such loop.
     """
     allowed = set(quarters)
     on = {step: tuple(_steps_on(streets, step, allowed)) for step in _steps(streets)}

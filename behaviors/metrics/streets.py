@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.areas import Area, holds
-from hal.simulation import Pose, WorldPlan
+from simbridge.contracts.areas import Area, holds
+from simbridge.contracts.simulation import Pose, WorldPlan
 
 _ON_LINE_M = 0.01
 

@@ -7,9 +7,9 @@ from typing import Annotated, NamedTuple, Protocol, runtime_checkable
 
 from pydantic import Field
 
-from hal.areas import Borders
-from hal.settings_by_kind import KindSettings
-from hal.simulation import Pose, Simulation, WorldPlan
+from config.settings_by_kind import KindSettings
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 LEAST_SPEED_M_S = 0.1
 """A drive that makes way more slowly than this on average gets nowhere; KURT2's policies make 0.2 m/s and more."""
@@ -79,7 +79,7 @@ class StretchMetric(TaskMetric, Protocol):
     def update_all(self, poses: Sequence[Pose]) -> None:
         """Update the metric with the true poses of ticks in a row, as one call of `update` for each would.
 
-        Only in a simulation that follows a batch (hal.batch.FollowedSimulation).
+        Only in a simulation that follows a batch (simbridge.contracts.batch.FollowedSimulation).
         """
         ...
 
@@ -128,7 +128,7 @@ class MetricSettings(KindSettings):
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
         """Check that a world has all that the metric needs, for a task that teaches these behaviours.
 
-        Raises hal.settings.SettingsError if it lacks something. This base needs nothing.
+        Raises config.settings.SettingsError if it lacks something. This base needs nothing.
         """
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - for other courses
@@ -146,7 +146,7 @@ class MetricSettings(KindSettings):
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         """Return the metric of one drive in a simulation.
 
-        Raises hal.settings.SettingsError if the world lacks something that the metric needs.
+        Raises config.settings.SettingsError if the world lacks something that the metric needs.
 
         Args:
             simulation: that the robot drives in.

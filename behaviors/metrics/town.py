@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap, side_towards
 from hal.numerics import cos_sin
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 
 if TYPE_CHECKING:
     pass

@@ -5,7 +5,7 @@ import random
 from collections.abc import Sequence
 
 from behaviors.metrics.task_metric import LEAST_SPEED_M_S, LeastSpeed, Metrics, MetricSettings, TaskMetric
-from hal.simulation import Pose, Simulation
+from simbridge.contracts.simulation import Pose, Simulation
 
 
 class WaySettings(MetricSettings):

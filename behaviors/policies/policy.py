@@ -3,8 +3,8 @@
 from abc import abstractmethod
 from typing import ClassVar, Protocol
 
+from config.settings_by_kind import KindSettings
 from hal.robot_settings import InfraredSettings
-from hal.settings_by_kind import KindSettings
 
 
 class ReferencePolicy(Protocol):

@@ -22,7 +22,7 @@ class SectorCircleSettings(PolicySettings):
     """Distance in the left sector below which the robot drives straight on; above it turns sharply left."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return a policy with these thresholds. Raises hal.settings.SettingsError for a sector without a sensor."""
+        """Return a policy with these thresholds. Raises config.settings.SettingsError for a sector without a sensor."""
         return SectorCircle(self, infrared)
 
 

@@ -22,7 +22,7 @@ class SectorFleeingSettings(PolicySettings):
     """Distance on the left or the right below which the robot curves away."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return a policy with these thresholds. Raises hal.settings.SettingsError for a sector without a sensor."""
+        """Return a policy with these thresholds. Raises config.settings.SettingsError for a sector without a sensor."""
         return SectorFleeing(self, infrared)
 
 

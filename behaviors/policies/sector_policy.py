@@ -26,7 +26,7 @@ class SectorPolicy(ABC, Generic[SettingsT]):
     """Action at an obstacle ahead."""
 
     def __init__(self, settings: SettingsT, infrared: InfraredSettings) -> None:
-        """Find the sensors of both sectors. Raises hal.settings.SettingsError for a sector without a sensor."""
+        """Find the sensors of both sectors. Raises config.settings.SettingsError for a sector without a sensor."""
         self._settings = settings
         self._front_m, self._left_m = settings.front.nearest(infrared), settings.left.nearest(infrared)
 

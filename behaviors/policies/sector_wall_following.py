@@ -8,7 +8,7 @@ from behaviors.policies.policy import PolicySettings, ReferencePolicy
 from behaviors.policies.sector_policy import SectorPolicy
 from behaviors.policies.sectors import Metres, Sector
 from hal.robot_settings import InfraredSettings
-from hal.simulation import WallSide
+from simbridge.contracts.simulation import WallSide
 
 
 class SectorWallFollowingSettings(PolicySettings):
@@ -31,7 +31,7 @@ class SectorWallFollowingSettings(PolicySettings):
     """Distance in the left sector above which the wall has ended, and the robot curves left."""
 
     def build(self, infrared: InfraredSettings) -> ReferencePolicy:
-        """Return a policy with these thresholds. Raises hal.settings.SettingsError for a sector without a sensor."""
+        """Return a policy with these thresholds. Raises config.settings.SettingsError for a sector without a sensor."""
         return SectorWallFollowing(self, infrared)
 
     @property

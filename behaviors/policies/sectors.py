@@ -6,8 +6,8 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.policies.distances import Distances
+from config.settings import Settings, SettingsError
 from hal.robot_settings import InfraredSettings, SensorSettings
-from hal.settings import Settings, SettingsError
 
 Metres = Annotated[float, Field(gt=0, le=5)]
 """Distance in metres from the sensors' faces."""
@@ -34,7 +34,7 @@ class Sector(Settings):
     def sensors_of(self, infrared: InfraredSettings, where: str) -> tuple[str, ...]:
         """Return the names of the sensors that look into the sector, from front to back.
 
-        Raises hal.settings.SettingsError that names `where` if the robot has no sensor there.
+        Raises config.settings.SettingsError that names `where` if the robot has no sensor there.
         """
         found = [sensor for sensor in infrared.sensors if self.covers(sensor.heading_deg)]
         if not found:
@@ -49,7 +49,7 @@ class Sector(Settings):
     def nearest(self, infrared: InfraredSettings) -> Nearest:
         """Return the function that finds the least distance in m of the sector's sensors.
 
-        Raises hal.settings.SettingsError if the robot has no sensor there.
+        Raises config.settings.SettingsError if the robot has no sensor there.
         """
         distances_m = Distances(infrared).of(*self.sensors_of(infrared, "policy"))
         return lambda counts: min(distances_m(counts))

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 from rich.text import Text
 
-from hal.batch import BatchRefusedError
 from hal.robot_settings import RobotSettings, load_robot_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
@@ -22,6 +21,7 @@ from kurt2rt.experiments.lockstep.drive_row import PLACES, DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
+from simbridge.contracts.batch import BatchRefusedError
 
 _FOLDER = Path("results/certify")
 _SECONDS = "exam.duration_s"

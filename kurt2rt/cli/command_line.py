@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 
 _PANELS = {
     "Teach and examine": {

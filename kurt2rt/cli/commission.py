@@ -14,12 +14,12 @@ import anyio.abc
 import typer
 from rich.console import Console
 
+from config.errors import ExitCode
+from config.settings import SettingsError
 from hal.bus import open_bus
 from hal.codec import load_codec
-from hal.errors import ExitCode
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
-from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import (
     STEPS,
     Checklist,

@@ -6,7 +6,6 @@ from typing import Annotated
 
 import anyio
 
-from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import (
@@ -33,6 +32,7 @@ from kurt2rt.experiments.study.jobs import require_places
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
+from simbridge.contracts.robot_kind import simulations_of
 
 
 @dataclass(frozen=True, slots=True)

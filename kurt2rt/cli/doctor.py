@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus
 from kurt2rt.checks.doctor.checks import run_checks
 from kurt2rt.cli.json_output import AsJson, print_json

@@ -9,10 +9,9 @@ import sys
 import threading
 from pathlib import Path
 
-from hal.errors import ExitCode
-from hal.robot_kind import simulations_of
+from config.errors import ExitCode
+from config.settings import SettingsError
 from hal.robot_settings import load_robot
-from hal.settings import SettingsError
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.drawing import draw_exams
@@ -20,6 +19,7 @@ from kurt2rt.experiments.lockstep.drive_row import label_of
 from kurt2rt.experiments.study.exam_tables import verdict_text
 from kurt2rt.experiments.study.examination import examine_file
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from simbridge.contracts.robot_kind import simulations_of
 
 NICENESS = 10
 """The robot's loop, and the page, come first."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 
 
 @contextmanager

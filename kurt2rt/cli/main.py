@@ -1,6 +1,6 @@
 """`kurt2rt`: the command line.
 
-Imports of the standard library, hal.errors and what is small only (interrupt, extras, foreign packages):
+Imports of the standard library, config.errors and what is small only (interrupt, extras, foreign packages):
 Ctrl-C before `main` begins leaves a traceback, and `kurt2rt --help` takes as long as its imports.
 """
 
@@ -18,7 +18,7 @@ if _hidden := hidden_packages():  # before the first import of one of them, whic
     print(f"kurt2rt: {_hidden}", file=sys.stderr)
     sys.exit(2)
 
-from hal.errors import ExitCode, UserError
+from config.errors import ExitCode, UserError
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.platform.extras import EXTRAS, extra_for
 

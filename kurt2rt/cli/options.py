@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from config import CONFIG_DIR
-from hal.plugins import installed_plugins
+from config.plugins import installed_plugins
 
 _NAME_OR_PATH = "NAME|PATH"
 _MOST_SEEDS = 100_000

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from kurt2rt.cli.json_output import AsJson, plain, print_json
 from kurt2rt.cli.options import RecordedRun, RunsFolder, SettingsName
 from kurt2rt.cli.progress import job_bars

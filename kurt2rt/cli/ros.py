@@ -10,7 +10,7 @@ import anyio.to_thread
 import typer
 from rich.console import Console
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotAddress, RobotPort, SettingsName

@@ -244,7 +244,6 @@ def _require_consistent(options: _Options) -> None:
 def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from rich.console import Console
 
-    from hal.robot_kind import simulations_of
     from hal.robot_settings import load_robot
     from kurt2rt.cli.scripted_file import require_agreement
     from kurt2rt.cli.terminal_screen import TerminalScreen
@@ -253,6 +252,7 @@ def _program(options: _Options, *, recorded: bool) -> "RobotProgram":
     from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.settings import load_service
     from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
+    from simbridge.contracts.robot_kind import simulations_of
 
     live_view = _live_view(options.live_view)
     task = options.task
@@ -354,7 +354,7 @@ def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
 
 def _changed(options: _Options, task: str | None) -> "ServiceSettings":
     """Read the runtime settings and apply the command line to them. Raises SettingsError."""
-    from hal.robot_plugins import find_task_of_robot
+    from config.robot_plugins import find_task_of_robot
     from hal.robot_settings import robot_that_task_names
     from kurt2rt.cli.scripted_file import own_file
     from kurt2rt.core.task_settings import load_task

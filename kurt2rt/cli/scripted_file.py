@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from kurt2rt.knowledge.journal.loading import read_teachers
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

@@ -10,8 +10,8 @@ from typing import Annotated
 
 import typer
 
-from hal.plugins import Plugin, is_target, loaded_plugins
-from hal.settings_files import find_config
+from config.plugins import Plugin, is_target, loaded_plugins
+from config.settings_files import find_config
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import SettingsName
 from kurt2rt.core.task_settings import load_task

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 from rich.console import Console
 
-from hal.robot_kind import kind_of
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, load_robot_of
-from hal.settings import SettingsError
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.service.console_thread import ConsoleThread
+from simbridge.contracts.robot_kind import kind_of
 
 if TYPE_CHECKING:
     from simbridge.robot_end import RobotEnd

@@ -12,7 +12,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in

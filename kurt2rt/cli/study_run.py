@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import RobotSettings
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs
@@ -19,6 +18,7 @@ from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import Executor, Waves, missing_time_s, open_processes, run_missing
 from kurt2rt.experiments.study.study_plan import AboutT, EngineChoice, EngineRequest, RequestedEngine, StudyPlan
+from simbridge.contracts.robot_kind import simulations_of
 
 Cluster = Annotated[
     Path | None,

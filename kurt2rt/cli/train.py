@@ -5,7 +5,6 @@ from pathlib import Path
 import anyio
 import typer
 
-from hal.robot_kind import simulations_of
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.options import changes_of
@@ -29,6 +28,7 @@ from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
+from simbridge.contracts.robot_kind import simulations_of
 
 
 @takes_options(TrainOptions)

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.cli.options import (
     DEFAULT_TEACHER,
     Changes,
@@ -23,6 +22,7 @@ from kurt2rt.cli.study_run import EngineOptions
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
+from simbridge.contracts.simulation import SimulationFactory
 
 DEFAULT_TASK = "wall_following"
 FOLDER, ROUTES, ERRANDS = Path("results/train"), Path("results/route"), Path("results/errands")

@@ -10,9 +10,9 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from hal.robot_plugins import plugin_task, robot_of_task
+from config.robot_plugins import plugin_task, robot_of_task
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, load_robot
-from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, local_pairing, read_device
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import anyio
 
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation

@@ -1,7 +1,7 @@
 """Lesson speed: the fraction of their speed at which actions drive while a teacher teaches them (slow lessons)."""
 
 from hal.robot import WheelSpeeds
-from hal.slow_way import advance_way
+from simbridge.contracts.shared_rules import advance_way
 
 SLOWEST = 0.2
 """Least lesson speed: at less, set points of whole cm/s would change the curves of the actions by a third."""

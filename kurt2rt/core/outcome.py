@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
-from hal.errors import TextCode
-from hal.world_refusal import WorldRefusal
+from config.errors import TextCode
+from simbridge.contracts.world_refusal import WorldRefusal
 
 Field = str | int | tuple[str, ...] | None
 

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.settings import Settings
+from config.settings import Settings
 
 PHASES = ("phases", "judge", "reinforcement", "critic")
 """Sections of a task that phases 1 and 2 do not use."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from hal.robot_plugins import robot_of_task
+from config.robot_plugins import robot_of_task
+from config.settings import SettingsError
 from hal.robot_settings import DEFAULT_ROBOT, RobotSettings, load_robot, load_robot_of, robot_that_task_names
-from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
 
@@ -21,7 +21,7 @@ def load_task_and_robot(
         changes: of the task's keys (load_task).
 
     Raises:
-        hal.settings.SettingsError: one of them cannot be loaded, or the robot lacks sensors of the task.
+        config.settings.SettingsError: one of them cannot be loaded, or the robot lacks sensors of the task.
     """
     settings = load_robot_of(robot, name)
     task = load_task(name, paper_defaults=paper_defaults, changes=changes)
@@ -35,7 +35,7 @@ def require_robot_of(task: TaskSettings, name: str, robot: RobotSettings) -> Non
     `name`: of the task on the command line, or its path.
 
     Raises:
-        hal.settings.SettingsError: it lacks some; the error names the robot that the task is for.
+        config.settings.SettingsError: it lacks some; the error names the robot that the task is for.
     """
     try:
         load_situation(task.situation, robot.infrared.names)

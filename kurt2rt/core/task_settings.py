@@ -7,10 +7,10 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, 
 
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
-from hal.plugins import settings_from_elsewhere
-from hal.robot_plugins import plugin_task
-from hal.settings import Settings, SettingsError, load_settings
-from hal.settings_files import find_config
+from config.plugins import settings_from_elsewhere
+from config.robot_plugins import plugin_task
+from config.settings import Settings, SettingsError, load_settings
+from config.settings_files import find_config
 from kurt2rt.core.basic.doubt import DoubtSettings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.lesson_speed import SLOWEST
@@ -282,10 +282,10 @@ def load_task(
     Args:
         name_or_path: a name in `config/tasks`, or a path.
         paper_defaults: take these, the plain reading of the paper, instead of `learning`.
-        changes: values by dotted key, as in hal.settings.load_settings; none of `learning` with `paper_defaults`.
+        changes: values by dotted key, as in config.settings.load_settings; none of `learning` with `paper_defaults`.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid file, and for a change of `learning` with
+        config.settings.SettingsError: for a missing or invalid file, and for a change of `learning` with
             `paper_defaults`.
     """
     path = find_config("tasks", name_or_path)
@@ -306,7 +306,7 @@ def installed_task(named: str) -> str:
     Only shipped and installed tasks are found: a path or `module:Name` would run the code of a stranger.
 
     Raises:
-        hal.settings.SettingsError: there is no such task, or it is invalid.
+        config.settings.SettingsError: there is no such task, or it is invalid.
     """
     try:
         with settings_from_elsewhere():
@@ -323,7 +323,7 @@ def taught_by_named(task: TaskSettings, name_or_path: str) -> TaskSettings:
     """Return a copy of the task that a teacher by name or path teaches.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid file.
+        config.settings.SettingsError: for a missing or invalid file.
     """
     return taught_by(task, load_teacher(name_or_path))
 

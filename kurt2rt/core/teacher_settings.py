@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, field_validator
 
-from hal.settings import Settings, load_settings
-from hal.settings_files import find_config
+from config.settings import Settings, load_settings
+from config.settings_files import find_config
 from kurt2rt.core.lesson_speed import SLOWEST
 
 SUPERHUMAN = "superhuman"
@@ -169,6 +169,6 @@ def load_teacher(name_or_path: str) -> TeacherProfile:
     """Load the profile of a shipped teacher by name, or of a file by path.
 
     Raises:
-        hal.settings.SettingsError: for a missing or invalid file.
+        config.settings.SettingsError: for a missing or invalid file.
     """
     return load_settings(find_config("teachers", name_or_path), TeacherProfile)

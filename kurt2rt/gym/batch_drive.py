@@ -3,9 +3,7 @@
 from collections.abc import Iterable
 
 from behaviors.judges.judge import AppraisalFeatures
-from hal.batch import BatchFactory, BatchRefusedError, CommandedMind, DriveSettings, Trace
 from hal.robot import SensorReadings
-from hal.simulation import Pose, Position
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
@@ -17,6 +15,8 @@ from kurt2rt.gym.endings import Ending
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.moment import Moment
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from simbridge.contracts.batch import BatchFactory, BatchRefusedError, CommandedMind, DriveSettings, Trace
+from simbridge.contracts.simulation import Pose, Position
 
 _ON_THE_BUS = 'drive on the CAN bus: engine="can"'
 
@@ -32,7 +32,7 @@ class BatchDrive:
 
         Raises:
             BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
-            hal.settings.SettingsError: task and world do not fit.
+            config.settings.SettingsError: task and world do not fit.
         """
         task, settings = setup.task, setup.settings
         self.world = setup.world

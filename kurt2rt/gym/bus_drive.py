@@ -2,7 +2,6 @@
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
-from hal.simulation import Simulation
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
@@ -15,6 +14,7 @@ from kurt2rt.gym.moment import Moment
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
+from simbridge.contracts.simulation import Simulation
 
 
 class CommandedLevel:
@@ -49,7 +49,7 @@ class BusDrive(Episode):
     def __init__(self, simulation: Simulation, setup: EpisodeSetup) -> None:
         """Set the robot of a fresh simulation down, and tick once, so that there is an observation.
 
-        Raises hal.settings.SettingsError if task and world do not fit.
+        Raises config.settings.SettingsError if task and world do not fit.
         """
         task = setup.task
         self.world = setup.world

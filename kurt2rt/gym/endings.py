@@ -3,7 +3,7 @@
 from collections.abc import Collection
 from enum import StrEnum
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 
 
 class Ending(StrEnum):
@@ -34,7 +34,7 @@ OPTIONAL = frozenset({Ending.COLLISION, Ending.STUCK})
 def read_endings(names: Collection[str]) -> frozenset[Ending]:
     """Return the endings with these names, and the inevitable ones.
 
-    Raises hal.settings.SettingsError for another name than collision or stuck.
+    Raises config.settings.SettingsError for another name than collision or stuck.
     """
     unknown = sorted(set(names) - OPTIONAL)
     if unknown:

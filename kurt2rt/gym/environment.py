@@ -11,11 +11,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.simulation import Pose, Position, SimulationFactory
 from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed, load_situation
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
@@ -26,6 +25,7 @@ from kurt2rt.gym.episode_setup import EpisodeSetup
 from kurt2rt.gym.moment import AgentDrive, Moment
 from kurt2rt.gym.rewards import DecisionOutcome, JudgeReward, build_reward
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from simbridge.contracts.simulation import Pose, Position, SimulationFactory
 from simbridge.simulation import Kurt2SimulationFactory
 from simbridge.survey.drawing import draw_robot, draw_trail
 from simbridge.worlds.world_loading import load_world
@@ -73,7 +73,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
             render_mode: "rgb_array" for pictures of the world; None for none.
 
         Raises:
-            hal.settings.SettingsError: for a task, world or option that cannot be used.
+            config.settings.SettingsError: for a task, world or option that cannot be used.
         """
         self._settings = robot or load_kurt2()
         self._task = load_agent_task(task)
@@ -114,7 +114,7 @@ class TaskEnvironment(gymnasium.Env[Observation, np.int64]):
 
         Raises:
             BatchRefusedError: the batch does not know an action of the task, or a feature of its situation.
-            hal.settings.SettingsError: for an option that cannot be used.
+            config.settings.SettingsError: for an option that cannot be used.
         """
         super().reset(seed=seed)
         wanted = read_options(options, self._world, self._settings)
@@ -206,7 +206,7 @@ class Picture:
     """Drawing of one world, for the frames of one episode."""
 
     def __init__(self, factory: SimulationFactory, world: str, robot: RobotSettings) -> None:
-        """Draw the walls. Raises hal.settings.SettingsError for an unknown world."""
+        """Draw the walls. Raises config.settings.SettingsError for an unknown world."""
         self._robot = robot
         figure = Figure(figsize=(_SIDE_INCHES, _SIDE_INCHES), dpi=_DOTS_PER_INCH, layout="constrained")
         self._canvas = FigureCanvasAgg(figure)
@@ -251,7 +251,7 @@ class ResetOptions(NamedTuple):
 def read_options(options: Mapping[str, Any] | None, world: str, robot: RobotSettings) -> ResetOptions:
     """Return the options of a reset; `world` is taken if they name none.
 
-    Raises hal.settings.SettingsError for an unknown option or world, and for a start at which the robot has no room.
+    Raises config.settings.SettingsError for an unknown option or world, and for a start at which the robot has no room.
     """
     given = dict(options or {})
     world, start = given.pop("world", world), given.pop("start", None)
@@ -278,7 +278,7 @@ def _pose(start: Any) -> Pose:
 def load_agent_task(named: str | TaskSettings) -> TaskSettings:
     """Return a task without its mid level. `named`: its name or path, or the task itself.
 
-    Raises hal.settings.SettingsError for a missing or invalid file, or for a task with several behaviours.
+    Raises config.settings.SettingsError for a missing or invalid file, or for a task with several behaviours.
     """
     task = load_task(named) if isinstance(named, str) else named
     if len(task.behaviours) > 1:

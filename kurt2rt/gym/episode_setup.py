@@ -4,10 +4,10 @@ import random
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from kurt2rt.gym.endings import Ending
+from simbridge.contracts.simulation import Pose
 
 PURPOSE = "exam"
 """Purpose of the simulations, so that seeds make the starts and the noise of exams."""

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.guard_reason import GuardReason
-from hal.simulation import Pose, Position
 from kurt2rt.gym.endings import Ending
+from simbridge.contracts.simulation import Pose, Position
 
 
 class Moment(NamedTuple):

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 from behaviors.action_groups import action_groups
 from behaviors.judges.judge import AppraisalFeatures, Judge
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
 
 
@@ -65,7 +65,7 @@ class TeacherReward:
 def build_reward(task: TaskSettings, kind: str | None) -> Reward:
     """Return the rewards of a task: by the judge if it has one, else by the teacher, unless `kind` names the source.
 
-    Raises hal.settings.SettingsError for an unknown source, or for a judge that the task lacks.
+    Raises config.settings.SettingsError for an unknown source, or for a judge that the task lacks.
     """
     if kind is not None and kind not in set(RewardKind):
         raise SettingsError(f"reward: unknown source (got {kind}, allowed {', '.join(RewardKind)})")

@@ -15,7 +15,7 @@ def make_vector_environment(num_envs: int, **options: Any) -> SyncVectorEnv:
     Without the compiler (extra `fast`) they drive over the CAN bus, with the same numbers: that is quicker then.
 
     Raises:
-        hal.settings.SettingsError: for a task, world or option that cannot be used.
+        config.settings.SettingsError: for a task, world or option that cannot be used.
     """
     options.setdefault("engine", quickest_engine().value)
     return SyncVectorEnv([partial(TaskEnvironment, **options)] * num_envs)

@@ -1,6 +1,6 @@
 """Conditions that keep knowledge from being read or written, as codes, and the text of each."""
 
-from hal.errors import TextCode
+from config.errors import TextCode
 
 _SQLITE = " (SQLite: {error})"
 _BACKUP = "keep the file, and go on with a backup copy"

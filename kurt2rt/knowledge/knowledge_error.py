@@ -3,7 +3,7 @@
 import sqlite3
 from pathlib import Path
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 
 

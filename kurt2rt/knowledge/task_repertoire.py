@@ -6,9 +6,9 @@ from pathlib import Path
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire, load_repertoire
 from behaviors.repertoire_settings import TaskAction, TaughtAction
+from config.settings import SettingsError
+from config.settings_files import find_beside
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.settings_files import find_beside
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.taught_action import TaughtSystem

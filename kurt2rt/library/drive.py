@@ -6,7 +6,6 @@ from array import array
 from itertools import groupby
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
@@ -14,6 +13,7 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
+from simbridge.contracts.simulation import Simulation
 
 
 class Drive(Episode):
@@ -22,7 +22,7 @@ class Drive(Episode):
     def __init__(
         self, simulation: Simulation, settings: RobotSettings, task: TaskSettings, training: TrainingStore, seed: int
     ) -> None:
-        """Build the runtime in lockstep with the simulation. Raises hal.settings.SettingsError."""
+        """Build the runtime in lockstep with the simulation. Raises config.settings.SettingsError."""
         self._clock = LockstepClock(simulation.step)
         options = RuntimeOptions(statistics=training.statistics, checkpoint=training.saved, learners=training.learners)
         runtime = build_runtime(simulation.robot, settings, task, training.events, training.store, self._clock, options)

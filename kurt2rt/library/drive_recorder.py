@@ -5,9 +5,8 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulatedPlace, Simulation, WorldPlan
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
@@ -15,6 +14,7 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.library.extras import extra_named
 from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.recording import Recording, RunContext
+from simbridge.contracts.simulation import SimulatedPlace, Simulation, WorldPlan
 
 _NO_LIMIT = Budget(total_bytes=1 << 62, segment_bytes=32_000_000)
 _WRITES_EVERY_TICKS = 10
@@ -23,7 +23,7 @@ _SIMULATED = "sim"
 
 
 class _StillWorld:
-    """World of a simulation without a thread (hal.simulation.WorldView)."""
+    """World of a simulation without a thread (simbridge.contracts.simulation.WorldView)."""
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot_settings import load_robot
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.experiments.lockstep.curriculum import run_exams
@@ -15,6 +14,7 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.library.blocking import run_blocking
 from kurt2rt.library.knowledge import Knowledge
 from kurt2rt.library.simulation import open_factory
+from simbridge.contracts.simulation import SimulationFactory
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.platform.extras import extra_for
 
 

@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Self
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot_settings import load_robot, load_robot_of, robot_named
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Rla

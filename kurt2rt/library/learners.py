@@ -1,6 +1,6 @@
 """Learners of other authors in a simulated robot."""
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot_settings import RobotSettings, load_robot_of
 from kurt2rt.core.learner.learner import LearnerFactory, LearnerSetting
 from kurt2rt.core.learner.learner_team import LearnerTeam

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from config.errors import UserError
 from hal.bus import open_bus
-from hal.errors import UserError
 from hal.kurt2_settings import Kurt2Settings
 
 NET_FOLDER = Path("/sys/class/net")

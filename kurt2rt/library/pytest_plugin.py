@@ -110,7 +110,7 @@ def _opened(request: pytest.FixtureRequest, **more: Any) -> "Iterator[SimulatedR
 @contextmanager
 def _errors_of_one_line() -> Iterator[None]:
     """Fail the test with the line of a kurt2rt.Error; skip it if the kernel has no vcan interface."""
-    from hal.errors import UserError
+    from config.errors import UserError
     from kurt2rt.library.named_bus import NoVcanError
 
     try:

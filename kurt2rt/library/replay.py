@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.library.extras import extra_named
 from kurt2rt.runs.explain.reasons import format_decision
 from kurt2rt.runs.explain.recorded import explain_run

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from config.settings import SettingsError
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from kurt2rt.core.perception.sensor_words import infrared_law
 
 SIDES = ("front", "left", "right", "rear")

@@ -9,9 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot_settings import load_robot, robot_named
-from hal.simulation import Pose, Simulation
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import Learner, LearnerFactory
 from kurt2rt.core.outcome_text import text_of
@@ -34,6 +33,7 @@ from kurt2rt.library.simulation import open_factory
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.facts import MOST_OTHERS
 from kurt2rt.runs.explain.reasons import format_decision
+from simbridge.contracts.simulation import Pose, Simulation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,11 +1,11 @@
 """Factory of simulated robots, with a readable error where the simulator is not installed."""
 
 from hal.kurt2_settings import require_kurt2
-from hal.robot_kind import simulations_of
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.library.extras import extra_named
 from kurt2rt.library.named_bus import require_bus
+from simbridge.contracts.robot_kind import simulations_of
+from simbridge.contracts.simulation import SimulationFactory
 
 
 def open_factory(settings: RobotSettings, bus: str | None = None) -> SimulationFactory:

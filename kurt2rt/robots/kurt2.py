@@ -6,12 +6,12 @@ from config import CONFIG_DIR
 from hal.guarded_robot import GuardedRobot
 from hal.kurt2_settings import Kurt2Settings, require_kurt2
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from hal.tap import Tap
+from simbridge.contracts.simulation import SimulationFactory
 
 
 class Kurt2Kind:
-    """Kind kurt2 (hal.robot_kind.RobotKind): CAN driver and simulation of the paper's robot."""
+    """Kind kurt2 (simbridge.contracts.robot_kind.RobotKind): CAN driver and simulation of the paper's robot."""
 
     settings: type[RobotSettings] = Kurt2Settings
     folder: Path = CONFIG_DIR

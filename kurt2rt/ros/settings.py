@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
 
-from hal.settings import Settings
+from config.settings import Settings
 
 _NAME = re.compile(r"(/?[A-Za-z_][A-Za-z0-9_]*)(/[A-Za-z_][A-Za-z0-9_]*)*")
 """Names of topics and services (design.ros2.org, "Topic and Service name mapping to DDS")."""

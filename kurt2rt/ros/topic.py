@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.ros.messages import TRIGGER, Message, type_hash
 from kurt2rt.ros.settings import Naming, RosSettings, is_ros_name
 

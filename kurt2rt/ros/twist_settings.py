@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.settings import Settings
+from config.settings import Settings
 
 
 class TwistSettings(Settings):

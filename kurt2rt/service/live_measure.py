@@ -8,11 +8,11 @@ from behaviors.metrics.laps import LapsSettings
 from behaviors.metrics.rounds import RoundsSettings
 from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
-from hal.settings import SettingsError
-from hal.simulation import Simulation
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
+from simbridge.contracts.simulation import Simulation
 
 _MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)
 """Metrics that only observe. Other metrics choose the next behaviour, which the teacher does here."""

@@ -5,12 +5,12 @@ from contextlib import AbstractContextManager, contextmanager
 from typing import NamedTuple, Protocol
 
 from hal.guarded_robot import GuardedRobot
-from hal.robot_kind import kind_of
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulatedWorld, Simulation
 from hal.tap import Tap
 from kurt2rt.platform.simulated_clock import HeldWorld
 from kurt2rt.service.bus_names import SIMULATED
+from simbridge.contracts.robot_kind import kind_of
+from simbridge.contracts.simulation import SimulatedWorld, Simulation
 
 
 class OpenedRobot(NamedTuple):

@@ -44,9 +44,9 @@ from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
 
 if TYPE_CHECKING:
-    from hal.simulation import Simulation
     from kurt2rt.service.live_measure import LiveMeasure
     from kurt2rt.service.simulated_runs import SimulatedRuns
+    from simbridge.contracts.simulation import Simulation
 
 _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""

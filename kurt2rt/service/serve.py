@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 import anyio
 
 from behaviors.contained_behaviour import failures_of
+from config.plugin_source import plugins_in_use
 from hal.guard_reason import GuardReason
-from hal.plugin_source import plugins_in_use
 from hal.robot import Robot
-from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.limits import BOOT_BYTES, FASTEST
 from kurt2rt.channel.server.channel import Channel
@@ -43,6 +42,7 @@ from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
 from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.service.systemd.watchdog import WatchdogNotifier
+from simbridge.contracts.simulation import SimulatedWorld
 
 if TYPE_CHECKING:
     from kurt2rt.runs.recording.recorder import RunRecorder

@@ -6,8 +6,8 @@ from typing import Annotated, Final, Literal
 
 from pydantic import Field, PlainValidator
 
-from hal.settings import Settings, load_settings
-from hal.settings_files import find_config
+from config.settings import Settings, load_settings
+from config.settings_files import find_config
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
 AUTO: Final = "auto"

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 
 import anyio.to_thread
 
+from config.settings_files import shipped_names
 from hal.robot_settings import RobotSettings
-from hal.settings_files import shipped_names
 from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.dependencies import TeacherNow

@@ -9,8 +9,8 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
+from config.errors import UserError
 from hal.bus import BusError
-from hal.errors import UserError
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

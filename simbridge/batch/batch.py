@@ -1,4 +1,4 @@
-"""Batch of simulated robots (hal.batch.Batch): their state is copied from fresh simulations on the CAN bus."""
+"""Batch of simulated robots (of contracts): their state is copied from fresh simulations on the CAN bus."""
 
 import copy
 from collections.abc import Sequence
@@ -6,22 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.areas import Borders
-from hal.batch import (
-    STANDS,
-    TRACED_TICKS,
-    BatchRefusedError,
-    CallbackMind,
-    CommandedMind,
-    DriveSettings,
-    Mind,
-    Stretch,
-    Tally,
-    Trace,
-)
 from hal.guard_reason import GuardReason
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import Pose
 from simbridge.batch.asking import PythonMind
 from simbridge.batch.borders import area_of
 from simbridge.batch.contacts import ContactBody, SetPoints
@@ -41,6 +27,20 @@ from simbridge.batch.record import (
 from simbridge.batch.safety import FRONT_BUMPER, REAR_BUMPER, SLEW_LIMIT, SPEED_LIMIT
 from simbridge.batch.setup import build_laws, build_robots
 from simbridge.batch.tables import ON_THE_BUS, build_knowledge, empty_averages, require_known
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.batch import (
+    STANDS,
+    TRACED_TICKS,
+    BatchRefusedError,
+    CallbackMind,
+    CommandedMind,
+    DriveSettings,
+    Mind,
+    Stretch,
+    Tally,
+    Trace,
+)
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from simbridge.simulated_robot import hash_state
@@ -71,7 +71,7 @@ _MOVING = (
 
 
 class RobotBatch:
-    """Batch (hal.batch.Batch) of KURT2s: compiled loops drive each as the CAN bus does, bit by bit, until it leaves."""
+    """Batch of KURT2s: compiled loops drive each as the CAN bus does, bit by bit, until it leaves."""
 
     def __init__(
         self,

@@ -1,8 +1,8 @@
 """Borders of areas, at which the stretch of a robot ends, because another behaviour may be wanted there."""
 
-from hal.areas import Area, holds
 from simbridge.batch.compiled import compiled
 from simbridge.batch.record import Robot
+from simbridge.contracts.areas import Area, holds
 
 OUTSIDE = -1
 _holds = compiled(holds)

@@ -22,16 +22,13 @@ _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 _ROOT = Path(__file__).parents[2]
-_SOURCES_OF_HAL = (
-    *("areas", "batch", "batch_lesson", "infrared_law"),
-    *("numerics", "open_question", "sensor_signs", "slow_way"),
-)
 _SOURCES = (
     *sorted(_ROOT.glob("simbridge/batch/*.py")),
     *sorted(_ROOT.glob("behaviors/policies/*.py")),
     _ROOT / "behaviors" / "keep_distance.py",
     _ROOT / "simbridge" / "robot" / "wheels.py",
-    *(_ROOT / "hal" / f"{name}.py" for name in _SOURCES_OF_HAL),
+    *sorted(_ROOT.glob("simbridge/contracts/*.py")),
+    *(_ROOT / "hal" / f"{name}.py" for name in ("infrared_law", "numerics", "sensor_signs")),
 )
 """Files with functions that are compiled, and with the constants in them."""
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.batch import BatchRefusedError
-from hal.simulation import Pose
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import BodyLaw
 from simbridge.batch.record import Robot
+from simbridge.contracts.batch import BatchRefusedError
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.body import BodyState
 from simbridge.simulated_kurt2 import SimulatedKurt2
 

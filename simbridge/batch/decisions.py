@@ -5,13 +5,13 @@ import math
 from behaviors.keep_distance import KeepDistanceNumbers, steer
 from behaviors.policies import circle, eight, fleeing, streets, wall_following
 from behaviors.policies.streets import KEEPS_MIDDLE
-from hal.batch import FeatureKind
-from hal.open_question import SURE_SHARE
 from simbridge.batch.asking import FAILED, ask
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Averages, Features, Floats, Integers, Knowledge, MindLaw
 from simbridge.batch.matching import nearest_rla
 from simbridge.batch.record import UNDECIDED, Robot
+from simbridge.contracts.batch import FeatureKind
+from simbridge.contracts.shared_rules import SURE_SHARE
 
 KNOWLEDGE, WALL_FOLLOWING, FLEEING, CIRCLE, EIGHT, STREETS, COMMANDED, ASKED = range(8)
 """Kinds of minds."""

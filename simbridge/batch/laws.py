@@ -173,7 +173,7 @@ class Knowledge(NamedTuple):
 
 
 class StuckLaw(NamedTuple):
-    """Rule of being stuck (hal.batch.StuckRule)."""
+    """Rule of being stuck (simbridge.contracts.batch.StuckRule)."""
 
     every_ticks: int
     positions: int

@@ -4,17 +4,17 @@ from itertools import starmap
 
 import numpy as np
 
-from hal.areas import Borders
-from hal.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
-from hal.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import Pose
 from simbridge.batch.batch import RobotBatch
 from simbridge.batch.drive import begin_tick
 from simbridge.batch.record import STRETCH
 from simbridge.batch.safety import forget_contradictions
 from simbridge.batch.tables import build_features, padded_width, require_features
 from simbridge.batch.teach import Learner, Orders, Table, perceive, teach
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.batch import STANDS, BatchRefusedError, DriveSettings, PolicyMind
+from simbridge.contracts.batch_lesson import LessonDriveSettings, LessonLog, LessonMode, TaughtRlas
+from simbridge.contracts.simulation import Pose
 from simbridge.simulated_kurt2 import SimulatedKurt2
 
 MOST_TICKS = STRETCH // 2

@@ -8,10 +8,10 @@ from typing import Annotated, NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from hal.batch import MOST_KEPT, TRACED_TICKS
-from hal.open_question import question_ticks
 from simbridge.batch.compiled import compiled
 from simbridge.batch.laws import Floats, Integers, StuckLaw
+from simbridge.contracts.batch import MOST_KEPT, TRACED_TICKS
+from simbridge.contracts.shared_rules import question_ticks
 from simbridge.robot.body import BodyState
 
 STAYS, FROZEN, BROKEN, CROWDED, UNDECIDED = range(5)
@@ -195,7 +195,7 @@ class Robot:
     rla: int
     """RLA whose action drives, by its row in the table; -1: none."""
     sure: int
-    """1 if the situation is inside R with a margin (hal.open_question)."""
+    """1 if the situation is inside R with a margin (simbridge.contracts.shared_rules)."""
     nearest: int
     """Row of the RLA that was nearest last."""
     seen: Annotated[Floats, (SEEN,)]
@@ -212,11 +212,11 @@ class Robot:
     others_away: float
     """Distance from it in counts that no other RLA is nearer than."""
 
-    # Counts of the whole drive (hal.batch.Tally)
+    # Counts of the whole drive (simbridge.contracts.batch.Tally)
     unknown_ticks: int
     questions: int
     question_left: int
-    """Ticks for which the last question stays open; 0: none is (hal.open_question)."""
+    """Ticks for which the last question stays open; 0: none is (simbridge.contracts.shared_rules)."""
     first_question: int
     first_collision: int
     travelled_m: float

@@ -16,7 +16,6 @@ from behaviors.policies.distances import (
     REAR_RIGHT_EDGE,
     RIGHT_FRONT_TO_BACK,
 )
-from hal.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot import HIGHEST_COUNTS
 from hal.robot_settings import BumperEnd
@@ -28,6 +27,7 @@ from simbridge.batch.laws import BodyLaw, Floats, GuardLaw, Laws, MindLaw, Senso
 from simbridge.batch.record import Robots, Sizes, empty_robots
 from simbridge.batch.safety import UNSEEN
 from simbridge.batch.tables import kind_of
+from simbridge.contracts.batch import STANDS, Action, DriveSettings, FixedSpeeds, Mind, PolicyMind, Turn, WallDistance
 from simbridge.robot.body import Body
 from simbridge.robot.bumpers import CollisionCounter
 from simbridge.robot.infrared import RECESS_M, InfraredSensors

@@ -10,7 +10,13 @@ from behaviors.policies.eight import Eight
 from behaviors.policies.fleeing import Fleeing
 from behaviors.policies.streets import Streets
 from behaviors.policies.wall_following import WallFollowing
-from hal.batch import (
+from hal.kurt2_settings import Kurt2Settings, SpeedMode
+from hal.robot import HIGHEST_COUNTS
+from simbridge.batch.decisions import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
+from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
+from simbridge.batch.matching import LANES
+from simbridge.batch.record import MOST_VALUES
+from simbridge.contracts.batch import (
     BatchRefusedError,
     CallbackMind,
     CommandedMind,
@@ -20,12 +26,6 @@ from hal.batch import (
     PolicyMind,
     TaughtMind,
 )
-from hal.kurt2_settings import Kurt2Settings, SpeedMode
-from hal.robot import HIGHEST_COUNTS
-from simbridge.batch.decisions import ASKED, CIRCLE, COMMANDED, EIGHT, FLEEING, KNOWLEDGE, STREETS, WALL_FOLLOWING
-from simbridge.batch.laws import Averages, Conditions, Features, Floats, Integers, Knowledge
-from simbridge.batch.matching import LANES
-from simbridge.batch.record import MOST_VALUES
 from simbridge.simulated_kurt2 import SimulatedKurt2
 
 _POLICIES = {WallFollowing: WALL_FOLLOWING, Fleeing: FLEEING, Circle: CIRCLE, Eight: EIGHT, Streets: STREETS}

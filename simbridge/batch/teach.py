@@ -2,9 +2,6 @@
 
 from typing import NamedTuple
 
-from hal.batch_lesson import LessonCause, LessonLog
-from hal.open_question import SURE_SHARE
-from hal.slow_way import advance_way
 from simbridge.batch.borders import crosses
 from simbridge.batch.compiled import compiled
 from simbridge.batch.contacts import meet_box
@@ -14,6 +11,8 @@ from simbridge.batch.laws import Features, Floats, Integers, Laws, World
 from simbridge.batch.matching import scan_nearest
 from simbridge.batch.record import STAYS, Robot, Robots
 from simbridge.batch.safety import drive_guarded
+from simbridge.contracts.batch_lesson import LessonCause, LessonLog
+from simbridge.contracts.shared_rules import SURE_SHARE, advance_way
 
 BY_RLA, HELD, UNKNOWN, STOPPED, TEACHER, LEARNER = (int(cause) for cause in LessonCause)
 _advance_way = compiled(advance_way)

@@ -5,11 +5,11 @@ from typing import Protocol
 
 import can
 
+from config.settings import SettingsError
 from hal.codec import Codec, MessageCodec
 from hal.frame import Frame
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import Kurt2InfraredSettings, Kurt2Settings
-from hal.settings import SettingsError
 from simbridge.robot.instruments import Instruments
 
 

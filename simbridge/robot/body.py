@@ -8,7 +8,7 @@ import pymunk
 
 from hal.numerics import cos_sin, round_portable
 from hal.robot_settings import GeometrySettings
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.noise import Noise
 from simbridge.robot.world import ROBOT_KIND, WALL_FRICTION, WALL_KIND, World
 from simbridge.worlds.geometry import rectangle

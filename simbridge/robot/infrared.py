@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from hal.infrared_law import counts_at
 from hal.numerics import cos_sin
 from hal.robot_settings import InfraredSettings
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.noise import Noise
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World

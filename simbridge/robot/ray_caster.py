@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.worlds.geometry import Point, edges_of
 from simbridge.worlds.world_settings import WorldSettings

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.worlds.geometry import Point, rectangle
 from simbridge.worlds.world_settings import WorldSettings
 

@@ -3,10 +3,10 @@
 import math
 import random
 
+from config.settings import SettingsError
 from hal.numerics import cos_sin
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 
@@ -37,7 +37,7 @@ class FreePoses:
     def draw(self, chance: random.Random, *, close: bool = False) -> Pose:
         """Return a random pose with 0.1 m clearance, less for a small robot, or 0.015 m if `close`.
 
-        Raises hal.settings.SettingsError if none is found.
+        Raises config.settings.SettingsError if none is found.
         """
         clearance_m = _CLOSE_M if close else self._clearance_m
         world = self._world.settings

@@ -2,7 +2,7 @@
 
 import math
 
-from hal.simulation import Pose, WallSide
+from simbridge.contracts.simulation import Pose, WallSide
 from simbridge.robot.world import World
 from simbridge.survey.wall_rings import RingPlace, WallRings
 

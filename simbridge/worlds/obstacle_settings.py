@@ -6,7 +6,7 @@ from typing import Annotated, Self
 import shapely
 from pydantic import Field, field_validator, model_validator
 
-from hal.settings import Settings
+from config.settings import Settings
 from simbridge.worlds.geometry import Point, rectangle_along
 
 Coordinate = Annotated[float, Field(ge=-200, le=200)]

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import shapely
 
-from hal.plugins import PluginError, UnknownPluginError
+from config.plugins import PluginError, UnknownPluginError
+from config.settings import SettingsError, content_of, load_settings, settings_of
+from config.settings_files import WORLDS, find_config, plugin_file
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
-from hal.settings import SettingsError, content_of, load_settings, settings_of
-from hal.settings_files import WORLDS, find_config, plugin_file
 from simbridge.worlds.generator.flats import flat
 from simbridge.worlds.generator.floors import cluttered_floor
 from simbridge.worlds.generator.rooms import room
@@ -36,7 +36,7 @@ def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> W
     (simbridge.worlds.generator).
     Files: a world, a map of ROS's map_server, or a world on such a map (simbridge.worlds.map_server).
     Plug-ins: the path of such a file, or a function without arguments that returns a world or the content of its file.
-    Raises hal.settings.SettingsError that names file and key.
+    Raises config.settings.SettingsError that names file and key.
     """
     geometry = (robot or load_robot()).geometry
     world = _generated(name_or_path)

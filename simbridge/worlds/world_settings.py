@@ -8,10 +8,10 @@ from typing import Annotated, Literal, Self
 import shapely
 from pydantic import Field, field_validator, model_validator
 
+from config.settings import Settings
 from hal.robot_settings import GeometrySettings
-from hal.settings import Settings
-from hal.simulation import Pose
-from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.simulation import Pose
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.worlds.geometry import Point, polygons_of, rectangle
 from simbridge.worlds.obstacle_settings import (
     Coordinate,

@@ -8,10 +8,10 @@ import pytest
 
 from behaviors.contained_behaviour import failures_of
 from behaviors.repertoire import load_repertoire
-from hal.plugins import loaded_plugins
+from config.plugins import loaded_plugins
+from config.settings import SettingsError
+from config.settings_files import settings_override
 from hal.robot import STANDSTILL
-from hal.settings import SettingsError
-from hal.settings_files import settings_override
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from tests.behaviors.helpers import ROBOT, counts, sensed
 from tests.plugin_packages import install, write_parts, write_repertoire, write_task

@@ -6,8 +6,8 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
+from config.settings import SettingsError
 from hal.robot import WheelSpeeds
-from hal.settings import SettingsError
 from tests.behaviors.helpers import ROBOT, counts, sensed
 
 BASIC = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()

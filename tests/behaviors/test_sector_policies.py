@@ -8,9 +8,9 @@ from behaviors.policies.sector_circle import SectorCircleSettings
 from behaviors.policies.sector_fleeing import SectorFleeingSettings
 from behaviors.policies.sector_wall_following import SectorWallFollowingSettings
 from behaviors.policies.sectors import Sector
+from config.settings import SettingsError
 from hal.robot_settings import InfraredSettings, load_robot
-from hal.settings import SettingsError
-from hal.simulation import WallSide
+from simbridge.contracts.simulation import WallSide
 
 SCHOOL, KURT2 = load_robot("school").infrared, load_robot().infrared
 AHEAD, LEFT, RIGHT = ((-25.0, 25.0), (30.0, 100.0), (-100.0, -30.0))

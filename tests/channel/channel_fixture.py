@@ -6,7 +6,6 @@ from typing import Any, cast
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
-from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import NO_EXAM
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import FASTEST
@@ -32,6 +31,7 @@ from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
+from simbridge.contracts.simulation import SimulatedWorld
 from tests.core.test_tick import CorridorRobot
 
 ROBOT = load_robot()

@@ -1,7 +1,7 @@
-"""A world that notes what is done to it (hal.simulation.SimulatedWorld)."""
+"""A world that notes what is done to it (simbridge.contracts.simulation.SimulatedWorld)."""
 
-from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
-from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 
 
 class Yard:

@@ -13,8 +13,8 @@ from types import MappingProxyType
 
 import pytest
 
-from hal.settings import SettingsError
-from hal.settings_files import find_config
+from config.settings import SettingsError
+from config.settings_files import find_config
 from kurt2rt.cli.main import main
 from tests.forked_program import ForkedProgram, has_fork_server
 

@@ -87,7 +87,7 @@ HEAVY = (
     "starlette",
 )
 """Packages that take most of the import time."""
-OUR_PACKAGES = ("hal.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service.settings")
+OUR_PACKAGES = ("config.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service.settings")
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]], ids=" ".join)

@@ -4,7 +4,7 @@ import re
 import sys
 from pathlib import Path
 
-from hal import plugins
+from config import plugins
 from kurt2rt import SimulatedRobot
 from kurt2rt.runs.recording.run_folder import runs_in
 from kurt2rt.runs.replay.reader import read_run

@@ -33,7 +33,7 @@ def test_a_whole_run_is_the_same_again(kurt2rt: CommandLine) -> None:
 def test_settings_of_today_change_nothing(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, short: Path
 ) -> None:
-    monkeypatch.setattr("hal.settings_files.CONFIG_DIR", tmp_path / "there are none")
+    monkeypatch.setattr("config.settings_files.CONFIG_DIR", tmp_path / "there are none")
     settings = Path(__file__).parents[2] / "config" / "runtime" / "default.yaml"
     said = kurt2rt("replay", short, "--settings", settings)
     assert said.exit_code == 0, said.err

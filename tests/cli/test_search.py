@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from hal.settings import load_settings
+from config.settings import load_settings
 from kurt2rt.experiments.search.settings import SearchSettings
 from tests.cli.helpers import CommandLine, unknown_name
 from tests.experiments.search.tiny import SHORT, tiny_search

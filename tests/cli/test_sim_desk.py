@@ -9,7 +9,7 @@ import pytest
 
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
-from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import StandaloneRobot
 from simbridge.robot_end import CanRobotEnd
 from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from config.settings import SettingsError
+from config.settings_files import find_config
 from hal.robot_settings import load_robot
-from hal.settings import SettingsError
-from hal.settings_files import find_config
 from kurt2rt.core.task_robot import require_robot_of
 from kurt2rt.core.task_settings import load_task
 

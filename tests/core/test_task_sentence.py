@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import SettingsError
-from hal.settings_files import find_config
+from config.settings import SettingsError
+from config.settings_files import find_config
 from kurt2rt.core.task_settings import load_task
 
 

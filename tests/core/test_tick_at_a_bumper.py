@@ -5,7 +5,6 @@ from pathlib import Path
 import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.simulation import Pose
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, Standing, StandReason
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
@@ -13,6 +12,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
+from simbridge.contracts.simulation import Pose
 from tests.core.test_tick import BACK, Corridor
 from tests.core.test_tick_by_hand import watch
 from tests.runs.replay.stories import NAME, Scene, record_story

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, NamedTuple, Self, get_args
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, load_settings
+from config.settings import Settings, load_settings
 
 Target = Literal[
     "sensor_board_1",

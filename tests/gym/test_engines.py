@@ -10,9 +10,8 @@ import pytest
 from gymnasium.vector import SyncVectorEnv
 
 import kurt2rt.gym  # noqa: F401 - registers the environments
-from hal.batch import BatchRefusedError, DriveSettings, FixedSpeeds
+from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings
-from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.gym.batch_drive import BatchDrive, require_known
 from kurt2rt.gym.bus_drive import BusDrive
@@ -21,6 +20,7 @@ from kurt2rt.gym.environment import Info, TaskEnvironment, load_agent_task
 from kurt2rt.gym.episode_setup import PURPOSE, EpisodeSetup
 from kurt2rt.gym.registration import ENVIRONMENTS
 from simbridge.batch.compiled import IS_COMPILED
+from simbridge.contracts.batch import BatchRefusedError, DriveSettings, FixedSpeeds
 from simbridge.simulation import Kurt2SimulationFactory
 from tests.experiments.helpers import ROBOT
 from tests.gym.helpers import environment, follow_teacher, press_on

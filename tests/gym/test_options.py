@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.gym.environment import TaskEnvironment
 from tests.gym.helpers import environment, follow_teacher
 

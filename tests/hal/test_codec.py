@@ -8,8 +8,8 @@ from cantools.database import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
+from config.errors import UserError
 from hal.codec import CodecError, InvalidFrameError, load_codec, load_database
-from hal.errors import UserError
 from tests.hal.helpers import CODEC
 
 DATABASE = load_database()

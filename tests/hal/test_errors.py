@@ -2,9 +2,9 @@ import pickle
 
 import pytest
 
+from config.errors import UserError
+from config.settings import SettingsError
 from hal.bus import BusError
-from hal.errors import UserError
-from hal.settings import SettingsError
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from hal.plugin_source import plugins_in_use, source_hash_of
-from hal.plugins import PluginKind
-from hal.robot_plugins import ROBOTS
+from config.plugin_source import plugins_in_use, source_hash_of
+from config.plugins import PluginKind
+from config.robot_plugins import ROBOTS
 from tests.plugin_packages import install
 
 CLASSES = PluginKind("classes", "class", "a class", lambda found: isinstance(found, type), tuple)

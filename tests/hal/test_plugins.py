@@ -7,16 +7,16 @@ from pathlib import Path
 
 import pytest
 
-from hal import plugins
-from hal.plugins import (
+from config import plugins
+from config.plugins import (
     PluginError,
     PluginKind,
     UnknownPluginError,
     loaded_plugins,
     settings_from_elsewhere,
 )
-from hal.settings import SettingsError
-from hal.settings_files import TASKS, find_config
+from config.settings import SettingsError
+from config.settings_files import TASKS, find_config
 from tests.plugin_packages import install
 
 NUMBERS = PluginKind("numbers", "number", "an int", lambda found: isinstance(found, int), lambda: ("one", "seven"))

@@ -1,6 +1,6 @@
 import pytest
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.library.extras import extra_named
 
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from hal.robot_plugins import find_task_of_robot, plugin_task
+from config.robot_plugins import find_task_of_robot, plugin_task
+from config.settings import SettingsError
+from config.settings_files import find_config
 from hal.robot_settings import load_robot
-from hal.settings import SettingsError
-from hal.settings_files import find_config
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.loading import open_knowledge

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.ros.messages import LaserScan, String
 from kurt2rt.ros.settings import Naming, RosSettings
 from kurt2rt.ros.topic import Topic, key_expression, liveliness_key, node_liveliness_key, topic_of

@@ -5,11 +5,11 @@ from typing import Any, cast
 
 import pytest
 
-from hal.simulation import Pose, SimulatedPost, WorldPlan
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.inbox import RobotRepositioned
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.service.live_measure import LiveMeasure
+from simbridge.contracts.simulation import Pose, SimulatedPost, WorldPlan
 
 NOTHING = cast(Any, None)
 A_RECORD = TickRecord(0, 0.0, NOTHING, NOTHING, NOTHING, NOTHING, ())

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
+from config.settings import SettingsError
 from hal.control import encode_brake
 from hal.guard_reason import GuardReason
-from hal.settings import SettingsError
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import Question

@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
+from config.settings import SettingsError
 from hal.bus import BusError
-from hal.settings import SettingsError
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

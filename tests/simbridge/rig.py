@@ -7,12 +7,12 @@ from typing import Self
 
 import pytest
 
+from config.settings import SettingsError
 from hal.bus import open_bus
 from hal.codec import Codec, load_codec
 from hal.control import Control, Mode, SpeedControl, control_frame
 from hal.kurt2_settings import Kurt2Settings, load_kurt2
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 from simbridge.simulated_kurt2 import SimulatedKurt2

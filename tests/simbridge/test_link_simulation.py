@@ -8,14 +8,14 @@ from contextlib import closing
 
 import pytest
 
-from hal.batch import BatchFactory
-from hal.batch_lesson import LessonFactory
+from config.settings import SettingsError
 from hal.linked_robot import LinkedRobot
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.simulation import Pose, SimulationFactory
 from hal.tap import Tap
+from simbridge.contracts.batch import BatchFactory
+from simbridge.contracts.batch_lesson import LessonFactory
+from simbridge.contracts.simulation import Pose, SimulationFactory
 from simbridge.link_simulation import LinkSimulationFactory
 from simbridge.robot.noise import Noise
 from simbridge.robot.world import World

@@ -4,8 +4,8 @@ from contextlib import closing
 
 import pytest
 
-from hal.batch import Start
-from hal.settings import SettingsError
+from config.settings import SettingsError
+from simbridge.contracts.batch import Start
 from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.simbridge.batch.both_ways import FACTORY
 

@@ -6,8 +6,8 @@ from contextlib import contextmanager
 
 import pytest
 
-from hal.simulation import SimulatedWorld
-from hal.world_refusal import WorldRefusal, WorldRefusedError
+from simbridge.contracts.simulation import SimulatedWorld
+from simbridge.contracts.world_refusal import WorldRefusal, WorldRefusedError
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_world import RealtimeWorld
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings

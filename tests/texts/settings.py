@@ -7,8 +7,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from hal.settings import Settings, SettingsError, load_settings
-from hal.settings_files import find_config
+from config.settings import Settings, SettingsError, load_settings
+from config.settings_files import find_config
 
 
 class _Motor(Settings):

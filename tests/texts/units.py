@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from hal.errors import TextCode
+from config.errors import TextCode
 from kurt2rt.service.health.status_error import StatusCode, StatusError
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 

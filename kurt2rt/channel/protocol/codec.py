@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, get_args
 
-from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
 from kurt2rt.channel.protocol.request_types import Request, StreamRequest, TickRequest, stream_request, tick_request
 from kurt2rt.channel.protocol.requests import REQUESTS
@@ -37,6 +36,7 @@ from kurt2rt.core.teaching.message_fields import (
 )
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
+from simbridge.contracts.simulation import SimulatedPlace
 
 __all__ = [
     "CONTENT_FORMAT",

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 
 import cbor2
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.core.teaching.message_fields import WireError
 
 

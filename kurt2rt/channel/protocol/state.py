@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 
-from hal.simulation import SimulatedPlace
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing import Standing
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.teaching.question import FeatureDifference
+from simbridge.contracts.simulation import SimulatedPlace
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hal.simulation import SimulatedPost, Wall
 from kurt2rt.core.teaching.message_fields import LARGEST_NUMBER, Float, Int, ListOf, Row, Text, WireError
+from simbridge.contracts.simulation import SimulatedPost, Wall
 
 _NAME = Text(64)
 _METRES = Float(1000.0, "m")

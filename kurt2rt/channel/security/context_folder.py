@@ -5,7 +5,7 @@ import json
 import os
 from pathlib import Path
 
-from hal.errors import UserError
+from config.errors import UserError
 
 UNKNOWN = "unknown"
 """Stored replay window, by which the other side has to prove freshness (RFC 8613, B.1.2)."""

@@ -5,7 +5,6 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
-from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.limits import BOOT_BYTES
@@ -14,6 +13,7 @@ from kurt2rt.core.outcome import Outcome
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import Speed
+from simbridge.contracts.simulation import SimulatedWorld
 
 
 @dataclass(frozen=True, slots=True)

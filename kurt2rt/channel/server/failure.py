@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from hal.errors import UserError
-from hal.world_refusal import WorldRefusal
+from config.errors import UserError
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from simbridge.contracts.world_refusal import WorldRefusal
 
 WORLD_REFUSALS: Mapping[WorldRefusal, RefusalCode] = {
     WorldRefusal.NO_WALL: RefusalCode.NO_WALL,

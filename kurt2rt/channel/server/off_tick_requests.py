@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from hal.world_refusal import WorldRefusedError
 from kurt2rt.channel.protocol.exam_status import EXAM
 from kurt2rt.channel.protocol.limits import MOST_UPLOAD_BYTES, PART_BYTES
 from kurt2rt.channel.protocol.request_types import Request
@@ -39,6 +38,7 @@ from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runtime import Runtime
+from simbridge.contracts.world_refusal import WorldRefusedError
 
 LAST_ANSWER_S = 0.3
 """Time from the answer to the end of the run: room for three copies of the request, which come each 0.1 s."""

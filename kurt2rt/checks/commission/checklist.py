@@ -5,8 +5,8 @@ from pathlib import Path
 
 from anyio import to_thread
 
+from config.settings import SettingsError
 from hal.identity import hardware
-from hal.settings import SettingsError
 from kurt2rt.checks.commission.bumpers import BumpersStep
 from kurt2rt.checks.commission.fault import SkipCode, SkippedError
 from kurt2rt.checks.commission.findings import Findings

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
-from hal.errors import TextCode
+from config.errors import TextCode
 
 Field = str | int | float
 

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from pydantic import Field
 
+from config.settings import Settings
 from hal.kurt2_settings import SpeedMode
-from hal.settings import Settings
 
 
 class LawFound(Settings):

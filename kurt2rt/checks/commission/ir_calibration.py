@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.checks.commission.fault import FaultCode, Field, StepFault
 
 LEAST_DISTANCES = 4

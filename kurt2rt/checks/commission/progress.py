@@ -6,7 +6,7 @@ from typing import Self
 
 from pydantic import Field, ValidationError
 
-from hal.settings import Settings, SettingsError
+from config.settings import Settings, SettingsError
 from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.step import StepOutcome

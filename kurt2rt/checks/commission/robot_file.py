@@ -10,9 +10,9 @@ import numpy as np
 import yaml
 from pydantic import ValidationError
 
+from config.settings import SettingsError
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.robot_settings import BumperSettings
-from hal.settings import SettingsError
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.report import passed

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
-from hal.errors import UserError
-from hal.plugins import Plugin, PluginKind
-from hal.robot_plugins import ROBOTS, plugin_tasks
-from hal.settings_files import TASKS, WORLDS
+from config.errors import UserError
+from config.plugins import Plugin, PluginKind
+from config.robot_plugins import ROBOTS, plugin_tasks
+from config.settings_files import TASKS, WORLDS
 from kurt2rt.core.learner.learners import LEARNERS
 
 

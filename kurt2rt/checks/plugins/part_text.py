@@ -11,10 +11,10 @@ from behaviors.metrics.task_metric import MetricSettings
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import JUDGES, METRICS, POLICIES
 from behaviors.repertoire_settings import BEHAVIOURS
-from hal.plugins import PluginError, PluginKind
-from hal.settings import SettingsError
-from hal.settings_by_kind import KindSettings, find_kind
-from hal.settings_files import WORLDS, find_config, plugin_file
+from config.plugins import PluginError, PluginKind
+from config.settings import SettingsError
+from config.settings_by_kind import KindSettings, find_kind
+from config.settings_files import WORLDS, find_config, plugin_file
 from kurt2rt.checks.plugins.kinds import NoPluginError
 from kurt2rt.core.learner.learners import LEARNERS, find_learner
 

@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import pytest
 
+from config.settings import content_of, settings_of
+from config.settings_files import shipped_names
 from hal.guard_reason import GuardReason
 from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from hal.robot_kind import RobotKind
 from hal.robot_settings import BumperEnd, RobotSettings
-from hal.settings import content_of, settings_of
-from hal.settings_files import shipped_names
-from hal.simulation import Pose, Simulation
+from simbridge.contracts.robot_kind import RobotKind
+from simbridge.contracts.simulation import Pose, Simulation
 
 _SEED, _PURPOSE = 1, "plug-in test"
 _WARM_UP_TICKS, _TICKS = 100, 60

@@ -16,17 +16,17 @@ from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.policies.policy import PolicySettings
 from behaviors.repertoire import primitive_speeds
 from behaviors.repertoire_settings import PluginAction
+from config.settings import Settings
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
-from hal.robot_kind import simulations_of
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
-from hal.simulation import Pose, Simulation
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.task_robot import load_task_and_robot
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from simbridge.contracts.robot_kind import simulations_of
+from simbridge.contracts.simulation import Pose, Simulation
 
 _SEED, _PURPOSE, _TRIED = 1, "plug-in test", 200
 _STEP_M = 0.01
@@ -43,7 +43,7 @@ class _PartTests:
     """Name or path of the robot that it is tried on; None: that of the task."""
 
     def loaded(self) -> tuple[TaskSettings, RobotSettings]:
-        """Return the task and the robot. Raises hal.settings.SettingsError, also if the robot lacks a sensor."""
+        """Return the task and the robot. Raises config.settings.SettingsError, also if the robot lacks a sensor."""
         return load_task_and_robot(self.task, self.robot)
 
 

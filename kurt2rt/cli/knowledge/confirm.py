@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from kurt2rt.cli.knowledge.shared import replaying, say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.lesson_history import LessonRecord

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import typer
 
 from behaviors.action_groups import action_groups
-from hal.errors import ExitCode
+from config.errors import ExitCode
 from hal.robot_settings import load_robot_of
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile, say

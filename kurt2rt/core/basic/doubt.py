@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from pydantic import Field, field_validator, model_validator
 
 from behaviors.behaviour import Behaviour, DrivesOn, HasSetPoints
+from config.settings import Settings
 from hal.robot import WheelSpeeds
 from hal.robot_settings import InfraredSettings
-from hal.settings import Settings
 from kurt2rt.core.basic.obstacle_memory import ContactSettings, ObstacleMemory
 from kurt2rt.core.perception.definition import Reading, SituationDefinition
 from kurt2rt.core.rla.active_rlas import Match

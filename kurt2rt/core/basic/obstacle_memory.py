@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from config.settings import Settings
 from hal.numerics import cos_sin, round_portable
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings, WheelSpeeds
 from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
-from hal.settings import Settings
 
 _STEP_S = 0.1
 """Time between two poses of the outline that are compared with the obstacles: 3 cm at 0.3 m/s."""

@@ -5,11 +5,11 @@ from collections.abc import Callable
 from operator import itemgetter
 
 from behaviors.judges.judge import AppraisalFeatures
+from config.settings import SettingsError
 from hal.numerics import round_portable
 from hal.odometry import WheelMotion, WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
-from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.sides import critic_of
 

@@ -11,9 +11,9 @@ from pydantic import Field, field_validator, model_validator
 
 from behaviors.judges.judge import AppraisalFeatures
 from behaviors.policies.sectors import Sector
+from config.settings import Settings, load_settings
+from config.settings_files import find_config
 from hal.robot_settings import InfraredSettings
-from hal.settings import Settings, load_settings
-from hal.settings_files import find_config
 from kurt2rt.core.rla.condition import LevelFeatures
 
 Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
@@ -52,7 +52,7 @@ class SideSectors(Settings):
     def sensors_of(self, infrared: InfraredSettings) -> SideSensors:
         """Return the sensors of each side, from front to back.
 
-        Raises hal.settings.SettingsError that names the side for a sector into which no sensor looks.
+        Raises config.settings.SettingsError that names the side for a sector into which no sensor looks.
         """
         return SideSensors(
             **{side: getattr(self, side).sensors_of(infrared, f"critic: {side}") for side in SideSensors.model_fields}
@@ -297,7 +297,7 @@ class CriticSettings(Settings):
 def load_critic(name_or_path: str | CriticSettings = "basic") -> CriticSettings:
     """Return the settings of a built-in critic by name, or of a file by path; settings are returned unchanged.
 
-    Raises hal.settings.SettingsError.
+    Raises config.settings.SettingsError.
     """
     if isinstance(name_or_path, CriticSettings):
         return name_or_path

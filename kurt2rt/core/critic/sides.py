@@ -15,7 +15,7 @@ def critic_of(critic: str | CriticSettings, robot: RobotSettings) -> CriticSetti
     """Return the critic of a task for a robot, with the sensors of each side by name.
 
     Sectors take the robot's sensors that look into them. The sides of a shipped critic are those of KURT2's sensors: a
-    robot without these takes the sensors whose headings fit best. Raises hal.settings.SettingsError.
+    robot without these takes the sensors whose headings fit best. Raises config.settings.SettingsError.
     """
     settings = load_critic(critic)
     wanted, infrared = settings.perception, robot.infrared

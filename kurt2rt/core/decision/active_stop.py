@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from hal.errors import TextCode
+from config.errors import TextCode
 
 
 class StopReason(TextCode):

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import NamedTuple, Protocol
 
-from hal.errors import UserError
+from config.errors import UserError
 from hal.robot import STANDSTILL, SensorReadings, WheelSpeeds
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.active_rlas import Match

@@ -1,8 +1,8 @@
 """Open question: one question of the robot, from its first tick until it is answered, overtaken or left behind."""
 
-from hal.open_question import SURE_SHARE, question_ticks
 from kurt2rt.core.decision.decision import BY_KNOWLEDGE, Decision, DecisionCause
 from kurt2rt.core.decision.standing import Standing, StandReason
+from simbridge.contracts.shared_rules import SURE_SHARE, question_ticks
 
 _KNOWN = BY_KNOWLEDGE | {DecisionCause.UNATTENDED}
 _TEACHER = DecisionCause.TEACHER

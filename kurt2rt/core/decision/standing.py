@@ -5,7 +5,7 @@ Page, terminal, status line, status and channel all read it, and its texts at th
 
 from typing import NamedTuple
 
-from hal.errors import TextCode
+from config.errors import TextCode
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop

@@ -1,8 +1,8 @@
 """Learners by name, by `module:Name`, or by the entry points of installed packages."""
 
-from hal.errors import UserError
-from hal.plugin_source import source_hash_of
-from hal.plugins import PluginError, PluginKind, import_target
+from config.errors import UserError
+from config.plugin_source import source_hash_of
+from config.plugins import PluginError, PluginKind, import_target
 from kurt2rt.core.learner.learner import LearnerFactory
 
 _ROOM = "kurt2rt.core.learner"

@@ -5,11 +5,11 @@ from typing import Annotated
 
 from pydantic import Field
 
+from config.settings import Settings, SettingsError
 from hal.numerics import round_portable
 from hal.odometry import WheelOdometry
 from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
-from hal.settings import Settings, SettingsError
 from kurt2rt.core.decision.decision import JunctionEvent
 
 Metres = Annotated[float, Field(gt=0, le=10)]

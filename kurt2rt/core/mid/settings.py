@@ -7,9 +7,9 @@ from typing import Annotated
 
 from pydantic import Field
 
+from config.settings import Settings, load_settings
+from config.settings_files import find_config
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, load_settings
-from hal.settings_files import find_config
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.mid.situation import AnyMidSituationSettings, MidSituation
 from kurt2rt.core.rla.condition import LevelFeatures, Space
@@ -64,14 +64,14 @@ class MidSettings(Settings):
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
     def build(self, robot: RobotSettings) -> MidSituation:
-        """Return the situation at power-on for a robot. Raises hal.settings.SettingsError."""
+        """Return the situation at power-on for a robot. Raises config.settings.SettingsError."""
         return self.situation.build(JunctionDetector(self.junctions, robot), robot)
 
 
 def load_mid_level(name_or_path: str | MidSettings) -> MidSettings:
     """Return the settings of a built-in mid level by name, or of a file by path; settings are returned unchanged.
 
-    Raises hal.settings.SettingsError.
+    Raises config.settings.SettingsError.
     """
     if isinstance(name_or_path, MidSettings):
         return name_or_path

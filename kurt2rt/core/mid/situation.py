@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, SerializeAsAny
 
+from config.settings_by_kind import KindSettings, as_its_kind
 from hal.robot import SensorReadings
 from hal.robot_settings import RobotSettings
-from hal.settings_by_kind import KindSettings, as_its_kind
 from kurt2rt.core.decision.decision import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.rla.condition import Metric
@@ -74,7 +74,7 @@ class MidSituationSettings(KindSettings):
 
     @abstractmethod
     def build(self, detector: JunctionDetector, robot: RobotSettings) -> MidSituation:
-        """Return the situation at power-on. Raises hal.settings.SettingsError."""
+        """Return the situation at power-on. Raises config.settings.SettingsError."""
 
 
 def _checked(given: object) -> MidSituationSettings:

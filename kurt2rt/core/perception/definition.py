@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from hal.settings import Settings, SettingsError, load_settings
-from hal.settings_files import find_config
+from config.settings import Settings, SettingsError, load_settings
+from config.settings_files import find_config
 
 AVERAGED = " (10 s average)"
 """Suffix of the names of averaged features."""
@@ -121,7 +121,7 @@ class SituationDefinition(Settings):
 def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefinition:
     """Return the definition of a built-in name or a path, for a robot with these sensors.
 
-    Raises hal.settings.SettingsError: for a missing or invalid file, and for a feature of an unknown sensor.
+    Raises config.settings.SettingsError: for a missing or invalid file, and for a feature of an unknown sensor.
     """
     path = find_config("situations", name_or_path)
     definition = load_settings(path, SituationDefinition)

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.batch_lesson import LessonCause, LessonLog
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
+from simbridge.contracts.batch_lesson import LessonCause, LessonLog
 
 _TEACHABLE = frozenset(map(int, LessonCause)) - {int(LessonCause.STOPPED)}
 """Causes of ticks that a held action may become a lesson about: in a batch a teacher drives by holding an action."""

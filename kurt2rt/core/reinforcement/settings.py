@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from hal.settings import Settings
+from config.settings import Settings
 
 _Seconds = Annotated[float, Field(gt=0, le=1000)]
 _Share = Annotated[float, Field(ge=0, le=1)]

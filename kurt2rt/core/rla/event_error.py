@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from hal.errors import TextCode
+from config.errors import TextCode
 from kurt2rt.core.outcome import Outcome
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
@@ -151,7 +151,7 @@ def make_plan(task: TaskSettings, knowledge: Path, extent: Extent, parts: JobPar
 
     Raises:
         KnowledgeError: the knowledge file cannot be read.
-        hal.settings.SettingsError: the knowledge holds no lesson, or task and worlds do not fit.
+        config.settings.SettingsError: the knowledge holds no lesson, or task and worlds do not fit.
     """
     lessons = read_lessons(knowledge, parts["robot"], task)
     if not lessons:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from hal.simulation import SimulationFactory
 from kurt2rt.experiments.certify.study import BlockJob, Certificate
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.lockstep.engine import Engine
@@ -15,6 +14,7 @@ from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of
 from kurt2rt.experiments.study.intervals import Rate, poisson_interval, rate_of, wilson_interval
 from kurt2rt.experiments.study.report import Section, write_report
 from kurt2rt.experiments.study.table import Table, collisions_text, table_of, to_text
+from simbridge.contracts.simulation import SimulationFactory
 
 ALL = "all"
 """Name of the summary of all places, with working sensors."""

@@ -76,7 +76,7 @@ class Pupil:
     def new_team(self, task: TaskSettings, robot: RobotSettings, seed: int) -> LearnerTeam | None:
         """Return learners of all behaviours of the task that know nothing; None for the RLA system.
 
-        Raises NoLearnerError, and hal.settings.SettingsError for settings that do not fit each other.
+        Raises NoLearnerError, and config.settings.SettingsError for settings that do not fit each other.
         """
         if not self.is_learner:
             return None

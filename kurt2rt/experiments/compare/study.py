@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from hal.batch import BatchRefusedError
 from kurt2rt.core.learner.learner import Label
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
@@ -20,6 +19,7 @@ from kurt2rt.experiments.study.jobs import JobParts, StudyJob, TaughtOutcome, re
 from kurt2rt.experiments.study.provenance import Fingerprints
 from kurt2rt.experiments.study.study_plan import ALL_ON_BUS, RequestedEngine, StudyPlan
 from kurt2rt.knowledge.files.archive_existing import archive_existing
+from simbridge.contracts.batch import BatchRefusedError
 
 
 class PupilOutcome(TaughtOutcome):
@@ -119,7 +119,7 @@ def make_plan(
         engine: requested for lessons and exams.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
+        config.settings.SettingsError: a task and a world do not fit.
         NoLearnerError: there is no such learner.
     """
     about = Compared(tuple(tasks), tuple(after))

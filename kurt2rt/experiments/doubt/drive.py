@@ -8,9 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.simulation import Simulation, SimulationFactory
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Resume
@@ -19,6 +18,7 @@ from kurt2rt.experiments.doubt.measures import DriveLog
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.runtime import Runtime, RuntimeOptions
+from simbridge.contracts.simulation import Simulation, SimulationFactory
 
 _STUCK_S = 15.0
 _AT_OUTLINE_M = 0.05
@@ -48,7 +48,7 @@ class DoubtSetup:
 def with_doubt(task: TaskSettings, response: DoubtResponse) -> TaskSettings:
     """Return the task with a robot that responds so to its doubt also without a teacher.
 
-    Raises hal.settings.SettingsError if the task sets no doubt.
+    Raises config.settings.SettingsError if the task sets no doubt.
     """
     doubt = task.learning.doubt
     if doubt is None:
@@ -77,7 +77,7 @@ async def drive(
         on_progress: callback.
 
     Raises:
-        hal.settings.SettingsError: task and world do not fit, or the task sets no doubt.
+        config.settings.SettingsError: task and world do not fit, or the task sets no doubt.
         UnknownActionError, UnknownBehaviourError: the lessons name an action or behaviour that the task lacks.
     """
     task = with_doubt(task, setup.response)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainSerializer, PlainValidator
 
-from hal.settings import Settings
+from config.settings import Settings
 
 Scores = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -64,7 +64,7 @@ def make_plan(about: DoubtDrives, seeds: Sequence[int], taught: Path, parts: Job
 
     Raises:
         KnowledgeError: a knowledge file cannot be read.
-        hal.settings.SettingsError: the task sets no doubt, or does not fit a world.
+        config.settings.SettingsError: the task sets no doubt, or does not fit a world.
     """
     task = with_doubt(about.task, DoubtResponse.TELLS)
     require_places(parts["factory"], task, (world_of(world, seed) for world in about.worlds for seed in seeds))

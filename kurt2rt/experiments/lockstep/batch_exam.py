@@ -7,14 +7,14 @@ from dataclasses import replace
 from itertools import groupby
 
 from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetric
-from hal.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Tally
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds, require_known, stuck_rule_of
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, rounded_places
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from simbridge.contracts.batch import STANDS, Batch, BatchFactory, FollowedSimulation, Start, Tally
+from simbridge.contracts.simulation import Pose
 
 _STRETCH_TICKS = 500
 _TRAIL_STRIDE = Episode.trail_stride

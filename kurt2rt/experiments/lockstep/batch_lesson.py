@@ -13,9 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from behaviors.metrics.task_metric import BorderMetric, StretchMetric
-from hal.batch_lesson import LessonCause, LessonFactory, LessonRobot
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose, Position
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.reinforcement.logged_decisions import LoggedDecisions
@@ -30,6 +28,8 @@ from kurt2rt.experiments.lockstep.lesson_mind import LessonMind
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
+from simbridge.contracts.batch_lesson import LessonCause, LessonFactory, LessonRobot
+from simbridge.contracts.simulation import Pose, Position
 
 _UNKNOWN, _TEACHER = int(LessonCause.UNKNOWN), int(LessonCause.TEACHER)
 _STRETCH_TICKS = 120
@@ -60,7 +60,7 @@ def teach_in_batch(
     Raises:
         BatchRefusedError: the batch does not know the task or its teacher.
         LessonLostError: the robot refused a command.
-        hal.settings.SettingsError: task and world do not fit.
+        config.settings.SettingsError: task and world do not fit.
     """
     with open_batch_lesson(factory, settings, task, seed=seed, on_progress=on_progress, learners=learners) as run:
         return run.given() if run.drive_stretches() else None
@@ -78,7 +78,7 @@ def open_batch_lesson(
 ) -> Iterator["BatchTrainingRun"]:
     """Yield a lesson that has not begun, with its robot; close the robot's simulation (`teach_in_batch`).
 
-    `learners`: taught in place of the RLAs; None: RLAs decide. Raises BatchRefusedError, hal.settings.SettingsError.
+    `learners`: taught in place of the RLAs; None: RLAs decide. Raises BatchRefusedError, config.settings.SettingsError.
     """
     plan, store = plan_of(task), InMemoryEventStore()
     choose = None if learners is None else choice_of(learners, task, taught=lambda: runtime.handler.is_taught)

@@ -9,26 +9,6 @@ from behaviors.behaviour import Behaviour
 from behaviors.keep_distance import KeepDistance
 from behaviors.motor_primitive import MotorPrimitive
 from behaviors.turn_by_angle import TurnByAngle
-from hal.batch import (
-    MOST_KEPT,
-    Action,
-    BatchRefusedError,
-    CallbackMind,
-    Choose,
-    DriveSettings,
-    FeatureKind,
-    FeatureTable,
-    FixedSpeeds,
-    FollowedSimulation,
-    Mind,
-    PolicyMind,
-    StuckRule,
-    TabledPolicy,
-    TaughtMind,
-    Turn,
-    WallDistance,
-)
-from hal.batch_lesson import LessonDriveSettings
 from hal.kurt2_settings import Kurt2Settings
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.learner.learner_team import LearnerTeam
@@ -47,6 +27,26 @@ from kurt2rt.experiments.lockstep.exam import ExamSetup, build_exam_runtime
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import Runtime, RuntimeOptions
+from simbridge.contracts.batch import (
+    MOST_KEPT,
+    Action,
+    BatchRefusedError,
+    CallbackMind,
+    Choose,
+    DriveSettings,
+    FeatureKind,
+    FeatureTable,
+    FixedSpeeds,
+    FollowedSimulation,
+    Mind,
+    PolicyMind,
+    StuckRule,
+    TabledPolicy,
+    TaughtMind,
+    Turn,
+    WallDistance,
+)
+from simbridge.contracts.batch_lesson import LessonDriveSettings
 
 _BORDER_METRICS = ("junctions",)
 """Courses that reposition the robot, or want another behaviour, at borders."""
@@ -93,7 +93,7 @@ def require_known(settings: RobotSettings, task: TaskSettings, setups: Sequence[
 def require_known_exams(settings: RobotSettings, task: TaskSettings, *, policy: bool = True) -> None:
     """Check that a batch can examine robots that are taught a task, and drive its policy unless `policy` is False.
 
-    Raises BatchRefusedError, and hal.settings.SettingsError if settings of the task do not fit each other.
+    Raises BatchRefusedError, and config.settings.SettingsError if settings of the task do not fit each other.
     """
     require_known(settings, task, [ExamSetup(task.teaching.world, 0)])
     if policy and not isinstance(task.policy.build(settings.infrared), TabledPolicy):
@@ -115,7 +115,7 @@ def build_lesson_settings(
 
     Raises:
         BatchRefusedError: the batch does not know the task or its teacher.
-        hal.settings.SettingsError: settings of the task do not fit each other.
+        config.settings.SettingsError: settings of the task do not fit each other.
     """
     require_known_robot(settings, task)
     require_known_task(task)

@@ -4,17 +4,17 @@ from collections.abc import Iterable
 
 from behaviors.metrics.route import RouteSettings
 from behaviors.metrics.task_metric import RouteMetric, TaskMetric
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
+from simbridge.contracts.simulation import SimulationFactory
 
 
 def require_metric(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
     """Check, before any training, that each of these worlds has all that the task's metric needs.
 
-    Raises hal.settings.SettingsError that names task, metric and world.
+    Raises config.settings.SettingsError that names task, metric and world.
     """
     for world in dict.fromkeys(worlds):
         try:
@@ -26,7 +26,7 @@ def require_metric(factory: SimulationFactory, task: TaskSettings, worlds: Itera
 def require_actions(task: TaskSettings, robot: RobotSettings) -> None:
     """Check, before any training, that the repertoire has the actions that the policy chooses among.
 
-    Raises hal.settings.SettingsError that names the task and the missing actions.
+    Raises config.settings.SettingsError that names the task and the missing actions.
     """
     repertoire = load_task_repertoire(task, robot)
     missing = [name for name in task.policy.required_actions if name not in repertoire]
@@ -39,7 +39,7 @@ def require_actions(task: TaskSettings, robot: RobotSettings) -> None:
 
 
 def route_of(metric: TaskMetric, task: TaskSettings) -> RouteMetric:
-    """Return the metric as a route metric. Raises hal.settings.SettingsError for another metric."""
+    """Return the metric as a route metric. Raises config.settings.SettingsError for another metric."""
     if isinstance(metric, RouteMetric):
         return metric
     raise SettingsError(
@@ -50,7 +50,7 @@ def route_of(metric: TaskMetric, task: TaskSettings) -> RouteMetric:
 
 
 def route_of_task(task: TaskSettings) -> RouteSettings:
-    """Return the settings of a task's route. Raises hal.settings.SettingsError for a task without one."""
+    """Return the settings of a task's route. Raises config.settings.SettingsError for a task without one."""
     if isinstance(task.metric, RouteSettings):
         return task.metric
     raise SettingsError(f"its metric is {task.metric.kind}, and there is no route to teach", where=f"task {task.name}")
@@ -59,7 +59,7 @@ def route_of_task(task: TaskSettings) -> RouteSettings:
 def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
     """Return the task with the route of this robot, unless it names one; `decisions`: None: the task's number.
 
-    Raises hal.settings.SettingsError for a task that teaches no route.
+    Raises config.settings.SettingsError for a task that teaches no route.
     """
     metric = route_of_task(task)
     update: dict[str, object] = {"seed": seed if metric.seed is None else metric.seed}

@@ -5,10 +5,7 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from hal.batch import BatchFactory, BatchRefusedError
-from hal.batch_lesson import LessonFactory
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
@@ -24,6 +21,9 @@ from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from simbridge.contracts.batch import BatchFactory, BatchRefusedError
+from simbridge.contracts.batch_lesson import LessonFactory
+from simbridge.contracts.simulation import SimulationFactory
 
 Report = Callable[[str, float, float], None]
 """Progress of a long job: what, simulated seconds done, simulated seconds in all."""

@@ -6,11 +6,11 @@ from pathlib import Path
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, label_of
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.trails import TRAIL, draw_drive, draw_trail, legend_below
+from simbridge.contracts.simulation import SimulationFactory
 
 _TEACHER = "#b0b0b0"
 

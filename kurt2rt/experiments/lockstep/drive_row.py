@@ -7,9 +7,9 @@ from typing import Self
 from pydantic import Field
 
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
-from hal.settings import Settings
-from hal.simulation import Position
+from config.settings import Settings
 from kurt2rt.core.task_settings import SuccessSettings
+from simbridge.contracts.simulation import Position
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeVar
 
-from hal.errors import UserError
+from config.errors import UserError
 
 _DriveT = TypeVar("_DriveT")
 

@@ -9,14 +9,14 @@ from copy import copy
 from typing import ClassVar
 
 from behaviors.metrics.task_metric import RouteMetric
-from hal.batch import StuckRule
 from hal.robot import STANDSTILL
-from hal.simulation import Pose, Position, Simulation
 from kurt2rt.core.decision.open_question import OpenQuestion
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runtime import Runtime
+from simbridge.contracts.batch import StuckRule
+from simbridge.contracts.simulation import Pose, Position, Simulation
 
 _LOOK_S = 0.5
 """Time between two positions of the stuck detector."""
@@ -112,7 +112,7 @@ class Episode(ABC):
             on_progress: called once a second with the simulated seconds.
 
         Raises:
-            hal.settings.SettingsError: the world does not fit the metric.
+            config.settings.SettingsError: the world does not fit the metric.
         """
         task, period_s = runtime.task, runtime.robot.cycle_s
         self.simulation = simulation

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 from behaviors.metrics.task_metric import TaskMetric
 from hal.robot_settings import RobotSettings
-from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Level
@@ -25,6 +24,7 @@ from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
+from simbridge.contracts.simulation import Position, Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +201,7 @@ def build_exam_runtime(
     """Build the runtime of a robot without a teacher, with the values of `setup` and the levels of `options`.
 
     Raises:
-        hal.settings.SettingsError: settings do not fit each other.
+        config.settings.SettingsError: settings do not fit each other.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     robot = simulation.robot

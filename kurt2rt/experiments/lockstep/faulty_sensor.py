@@ -4,10 +4,10 @@ import random
 from enum import StrEnum
 from typing import NamedTuple
 
+from config.settings import SettingsError
 from hal.robot import HIGHEST_COUNTS, Robot, SensorReadings
 from hal.robot_proxy import RobotProxy
 from hal.robot_settings import InfraredSettings
-from hal.settings import SettingsError
 
 
 class FaultKind(StrEnum):

@@ -19,7 +19,7 @@ def learner_setting(
         gate: number by which it asks, dimensionless or in counts as the learner says; None: its default.
 
     Raises:
-        hal.settings.SettingsError: settings do not fit each other.
+        config.settings.SettingsError: settings do not fit each other.
     """
     definition, learning = load_situation(task.situation, robot.infrared.names), task.learning
     changed = ((each.features, each.weight) for each in learning.weights)

@@ -7,9 +7,8 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from behaviors.metrics.task_metric import Metrics
+from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
-from hal.simulation import Position, Simulation
 from kurt2rt.core.learner.learner import Label
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID, Phase, Rla
@@ -30,6 +29,7 @@ from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
+from simbridge.contracts.simulation import Position, Simulation
 
 _AGREEMENT_EVERY_S = 10
 
@@ -163,7 +163,7 @@ async def teach(
 
     Raises:
         LessonLostError: the robot refused a command.
-        hal.settings.SettingsError: task and world do not fit.
+        config.settings.SettingsError: task and world do not fit.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     plan = plan or plan_of(task)

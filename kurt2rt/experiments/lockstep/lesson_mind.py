@@ -9,7 +9,6 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.batch_lesson import LessonCause, LessonMode, LessonRobot, TaughtRlas
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.perception.perception import Situation
@@ -19,6 +18,7 @@ from kurt2rt.core.teaching.commands import Command, CommandResult, HoldAction, R
 from kurt2rt.core.teaching.inbox import SystemEvent
 from kurt2rt.experiments.lockstep.batch_mind import refused
 from kurt2rt.runtime import Runtime
+from simbridge.contracts.batch_lesson import LessonCause, LessonMode, LessonRobot, TaughtRlas
 
 _UNKNOWN = int(LessonCause.UNKNOWN)
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import Simulation
 from kurt2rt.core.event_store import EventStore
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
@@ -14,6 +13,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings, as_its_teacher_wants
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
+from simbridge.contracts.simulation import Simulation
 
 
 class NoTeachingAllowed:
@@ -60,7 +60,7 @@ def build_training_runtime(
         appraises: whether critic or teacher appraise situations.
 
     Raises:
-        hal.settings.SettingsError: settings do not fit each other.
+        config.settings.SettingsError: settings do not fit each other.
         UnknownActionError, UnknownBehaviourError: the knowledge does not fit the task.
     """
     return build_runtime(

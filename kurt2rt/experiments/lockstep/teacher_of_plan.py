@@ -1,8 +1,8 @@
 """Scripted teacher of a training run, built by the plan of its lesson."""
 
 from behaviors.repertoire import primitive_speeds
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings
-from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
@@ -22,7 +22,7 @@ def teacher_of(
 ) -> ScriptedAppraiser:
     """Return the teacher of all phases of a plan, who leaves phases 1 and 2 to `answering`.
 
-    `seed`: of the teacher's chance. `session`: prefix of the command ids. Raises hal.settings.SettingsError for a task
+    `seed`: of the teacher's chance. `session`: prefix of the command ids. Raises SettingsError for a task
     without the judge that the plan rewards by.
     """
     period_s, times = settings.cycle_s, plan.times

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from matplotlib.axes import Axes
 
-from hal.simulation import SimulationFactory
+from simbridge.contracts.simulation import SimulationFactory
 
 TRAIL = "#1f6fb2"
 ASKED = "#d1495b"
@@ -64,7 +64,7 @@ def draw_drive(
 ) -> None:
     """Draw a world with a trail and the places of unknown situations, in m; `width`: of the line in points.
 
-    Raises hal.settings.SettingsError for an unknown world.
+    Raises config.settings.SettingsError for an unknown world.
     """
     factory.draw(axes, world)
     draw_trail(axes, trail, label, width=width)

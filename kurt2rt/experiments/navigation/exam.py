@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 
 from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import length_m
-from hal.settings import Settings
-from hal.simulation import Pose, Simulation
+from config.settings import Settings
 from kurt2rt.core.decision.decision import GoalStatus
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
@@ -17,6 +16,7 @@ from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen
 from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.runtime import Runtime
+from simbridge.contracts.simulation import Pose, Simulation
 
 _EXAMINER = "examiner"
 

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 from behaviors.metrics.errands import Errands, ErrandsSettings
 from behaviors.metrics.town import Street
+from config.settings import Settings, SettingsError
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, SettingsError
-from hal.simulation import Pose, Simulation, WorldPlan
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
@@ -22,6 +21,7 @@ from kurt2rt.experiments.navigation.tour_guide import TourGuide
 from kurt2rt.runtime import Runtime
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.build import build_teacher
+from simbridge.contracts.simulation import Pose, Simulation, WorldPlan
 
 
 class TourCounts(Settings):
@@ -55,7 +55,7 @@ class TourResult(NamedTuple):
 
 
 def navigation_settings(task: TaskSettings) -> ErrandsSettings:
-    """Return the navigation settings of a task. Raises hal.settings.SettingsError for a task without goals."""
+    """Return the navigation settings of a task. Raises config.settings.SettingsError for a task without goals."""
     if isinstance(task.metric, ErrandsSettings) and task.mid is not None:
         return task.metric
     raise SettingsError(
@@ -66,7 +66,7 @@ def navigation_settings(task: TaskSettings) -> ErrandsSettings:
 def street_tracker(plan: WorldPlan, task: TaskSettings) -> Errands:
     """Return the metric that tracks a robot from street to street in a world.
 
-    Raises hal.settings.SettingsError for a task without goals, or a world without streets.
+    Raises config.settings.SettingsError for a task without goals, or a world without streets.
     """
     return navigation_settings(task).walk_in(plan, task.behaviours)
 
@@ -94,7 +94,7 @@ async def guided_tour(
 
     Raises:
         LessonLostError: the robot refused a command.
-        hal.settings.SettingsError: the task has no goals, or the world no streets.
+        config.settings.SettingsError: the task has no goals, or the world no streets.
     """
     navigation_settings(task)
     runtime = build_training_runtime(simulation, settings, task, training)

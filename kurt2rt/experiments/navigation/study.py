@@ -118,7 +118,7 @@ def make_plan(
         basic_folder: files of robots that were taught the streets; None: the streets are taught first.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
+        config.settings.SettingsError: a task and a world do not fit.
         StudyError: a knowledge file is missing.
         KnowledgeError: a knowledge file cannot be read.
     """

@@ -7,7 +7,6 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from behaviors.metrics.errands import ErrandsSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.experiments.lockstep.trails import draw_trail
 from kurt2rt.experiments.navigation.study import ErrandsOutcome
@@ -15,6 +14,7 @@ from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.experiments.study.figures import START, save
 from kurt2rt.experiments.study.table import Table, collisions_text, of_text, share_text, table_of
 from kurt2rt.experiments.study.targets import Verdict, needed_of, reasons_against_judging, targets_table
+from simbridge.contracts.simulation import SimulationFactory
 
 SHARE = 18 / 20
 """Required ratio of goals reached by a way that is short enough, and of robots that reach this ratio."""

@@ -7,13 +7,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict, label_of
 from kurt2rt.experiments.lockstep.trails import legend_below
 from kurt2rt.experiments.paper.tables import GrowthStudy, PaperStudy
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
+from simbridge.contracts.simulation import SimulationFactory
 
 _COLUMNS = 3
 _MOST_UNSEEN = 1

@@ -5,10 +5,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, SettingsError, load_settings
-from hal.settings_files import find_config
-from hal.simulation import SimulationFactory
+from config.settings import Settings, SettingsError, load_settings
+from config.settings_files import find_config
 from kurt2rt.core.task_settings import TaskSettings
+from simbridge.contracts.simulation import SimulationFactory
 
 Share = Annotated[float, Field(gt=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=10_000)]
@@ -90,7 +90,7 @@ class PaperSettings(Settings):
 def load_paper(name_or_path: str = "basic_level", factory: SimulationFactory | None = None) -> PaperSettings:
     """Return the settings of a shipped study by name, or of a file by path.
 
-    With a factory its worlds are checked, too. Raises hal.settings.SettingsError that names file and key.
+    With a factory its worlds are checked, too. Raises config.settings.SettingsError that names file and key.
     """
     path = find_config("paper", name_or_path)
     paper = load_settings(path, PaperSettings)

@@ -6,7 +6,7 @@ from itertools import product
 from pathlib import Path
 from typing import ClassVar, Literal, NamedTuple
 
-from hal.settings_files import find_config
+from config.settings_files import find_config
 from kurt2rt.core.phase_settings import PHASES
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named
 from kurt2rt.experiments.lockstep.compatibility import require_metric
@@ -87,7 +87,7 @@ def make_plan(
         engine: requested for lessons and exams.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
+        config.settings.SettingsError: a task and a world do not fit.
         StudyError: two tasks have one name, or a target has no exam.
     """
     paper = extent.paper(paper)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
@@ -73,7 +73,7 @@ class PhaseStep:
 
 
 def phases_of(task: TaskSettings) -> PhasesSettings:
-    """Return the section of the task on phases 3 to 5. Raises hal.settings.SettingsError without one."""
+    """Return the section of the task on phases 3 to 5. Raises config.settings.SettingsError without one."""
     if task.phases is None:
         raise SettingsError(
             "says nothing about phases 3 to 5", where=f"task {task.name}", do="add a section `phases:` to its file"
@@ -148,7 +148,7 @@ class _Plans:
 def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
     """Yield all steps after the lesson of phases 1 and 2, each after those it needs.
 
-    Raises hal.settings.SettingsError if the task has no section on phases.
+    Raises config.settings.SettingsError if the task has no section on phases.
     """
     plans = _Plans(task, phases_of(task))
     yield from _path_steps(plans)

@@ -10,8 +10,8 @@ from typing import Any, ClassVar, NamedTuple
 
 from behaviors.judges.judge import Judge
 from behaviors.repertoire import primitive_speeds
+from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.critic.sides import critic_of
 from kurt2rt.core.perception.definition import load_situation
@@ -142,7 +142,7 @@ class Scoring:
 def replay_events(task: TaskSettings, robot: RobotSettings, events: Iterable[TeachingEvent]) -> RlaSystem:
     """Return the RLA system with all its levels, for counting: it does not match by the task's weights.
 
-    Raises hal.settings.SettingsError if the task's situation cannot be loaded, InvalidEventError if an event does not
+    Raises SettingsError if the task's situation cannot be loaded, InvalidEventError if an event does not
     fit.
     """
     dimensions = load_situation(task.situation, robot.infrared.names).dimensions
@@ -425,7 +425,7 @@ def make_plan(
         engine: requested for lessons and exams; the lessons of phases 3 to 5 are given on the CAN bus.
 
     Raises:
-        hal.settings.SettingsError: the task has no such section, or does not fit a world.
+        config.settings.SettingsError: the task has no such section, or does not fit a world.
     """
     robot = parts["robot"]
     if quick:

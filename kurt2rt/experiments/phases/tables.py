@@ -242,7 +242,7 @@ def _paired(world: str, measure: Measure, values: Sequence[tuple[float, float]])
 def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
     """Yield the verdict on each target of the task.
 
-    Raises hal.settings.SettingsError if the task has no section on phases.
+    Raises config.settings.SettingsError if the task has no section on phases.
     """
     phases = phases_of(study.plan.about.task)
     asked = phases.asked
@@ -307,7 +307,7 @@ def _not_worse(pair: Paired, margin: float) -> Verdict:
 def phases_targets_table(study: PhasesStudy, not_judged_because: Sequence[str]) -> Table:
     """Return the table of all targets with their results; with reasons against judging, none is judged.
 
-    Raises hal.settings.SettingsError if the task has no section on phases.
+    Raises config.settings.SettingsError if the task has no section on phases.
     """
     found = [((), each) for each in verdicts(study)]
     return targets_table(found, not_judged_because, note_without_targets="Of this task nothing is asked.")
@@ -316,7 +316,7 @@ def phases_targets_table(study: PhasesStudy, not_judged_because: Sequence[str]) 
 def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
     """Yield all tables. `reasons`: those against judging.
 
-    Raises hal.settings.SettingsError if the task has no section on phases.
+    Raises config.settings.SettingsError if the task has no section on phases.
     """
     yield phases_targets_table(study, reasons)
     taught_by = f"Taught by the scripted teacher {study.plan.about.task.teaching.profile.name}."
@@ -605,7 +605,7 @@ def words_of_controls(study: PhasesStudy) -> Iterator[str]:
 def settings_table(task: TaskSettings) -> Table:
     """Return the table of the settings of phases 3 to 5 and of the critic.
 
-    Raises hal.settings.SettingsError if the task has no section on phases.
+    Raises config.settings.SettingsError if the task has no section on phases.
     """
     of: dict[str, Any] = {
         "phases": phases_of(task).model_dump(mode="json", exclude={"asked"}),

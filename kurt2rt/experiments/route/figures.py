@@ -7,7 +7,6 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
-from hal.simulation import SimulationFactory
 from kurt2rt.experiments.lockstep.drive_row import Place
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, legend_below
 from kurt2rt.experiments.route.route_monitor import LAYERS
@@ -15,6 +14,7 @@ from kurt2rt.experiments.route.study import RouteOutcome
 from kurt2rt.experiments.route.tables import RouteStudy
 from kurt2rt.experiments.study.figures import SavedFigure, draw_drive, panels_of, save
 from kurt2rt.experiments.study.table import collisions_text
+from simbridge.contracts.simulation import SimulationFactory
 
 _ROUTE = "#e8a33d"
 _MARKS = {"symbols": "v", "mid": "s", "basic": "o"}

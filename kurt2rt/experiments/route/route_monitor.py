@@ -6,7 +6,7 @@ from typing import Literal
 from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, Passage
 from behaviors.metrics.task_metric import TaskMetric
-from hal.settings import Settings
+from config.settings import Settings
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.tick_record import TickRecord
 

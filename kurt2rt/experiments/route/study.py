@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.experiments.lockstep.compatibility import route_of_task, with_route
@@ -171,7 +171,7 @@ def make_plan(
         basic_folder: knowledge files of the streets, by `kurt2rt train`; None: the streets are taught first.
 
     Raises:
-        hal.settings.SettingsError: a task and a world do not fit.
+        config.settings.SettingsError: a task and a world do not fit.
         StudyError: a knowledge file is missing.
         KnowledgeError: a knowledge file cannot be read.
     """
@@ -248,7 +248,7 @@ def streets_of(
 def basic_task_of(task: TaskSettings) -> TaskSettings:
     """Return the task that teaches the streets, named by `system` of the route's task, with the same teacher.
 
-    Raises hal.settings.SettingsError if there is no such task.
+    Raises config.settings.SettingsError if there is no such task.
     """
     if task.system is None:
         raise SettingsError(

@@ -7,7 +7,7 @@ from pathlib import Path
 from optuna.trial import FrozenTrial
 from pydantic import ValidationError
 
-from hal.settings import Settings
+from config.settings import Settings
 from kurt2rt.experiments.search.plan import SHIPPED, SearchJob, SearchPlan, label_of
 from kurt2rt.experiments.search.score import RobotScore, effort, score_of
 from kurt2rt.experiments.search.settings import Objective

@@ -125,7 +125,7 @@ def make_plan(
         changes: values by dotted key of the task's file, of all trials and of the shipped settings.
 
     Raises:
-        hal.settings.SettingsError: a key, the task or a world does not fit.
+        config.settings.SettingsError: a key, the task or a world does not fit.
         BatchRefusedError: a batch does not know the task.
     """
     space = TaskSpace(search, changes, load_teacher(search.teacher))

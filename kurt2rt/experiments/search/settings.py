@@ -5,8 +5,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.settings import Settings, load_settings
-from hal.settings_files import find_config
+from config.settings import Settings, load_settings
+from config.settings_files import find_config
 from kurt2rt.core.task_settings import Name
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.study.jobs import SEED, world_of
@@ -111,5 +111,5 @@ class SearchSettings(Settings):
 
 
 def load_search(name_or_path: str) -> SearchSettings:
-    """Load a shipped search by name (`config/searches`), or a file by path. Raises hal.settings.SettingsError."""
+    """Load a shipped search by name (`config/searches`), or a file by path. Raises config.settings.SettingsError."""
     return load_settings(find_config("searches", name_or_path), SearchSettings)

@@ -2,7 +2,7 @@
 
 from collections.abc import Awaitable, Callable, Sequence
 
-from hal.settings import Settings
+from config.settings import Settings
 from kurt2rt.core.learner.learner import Label
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.experiments.lockstep.drive_row import DriveRow

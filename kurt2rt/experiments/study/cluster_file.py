@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 from distributed import Security
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.platform.durable_files import fsync_folder
 
 _MAKE = "kurt2rt study worker --new FILE --scheduler tls://HOST:PORT makes one"

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import anyio
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import with_own_route
@@ -14,6 +13,7 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.faulty_sensor import parse_break
 from kurt2rt.experiments.study.jobs import require_places
 from kurt2rt.knowledge.journal.loading import read_lessons
+from simbridge.contracts.robot_kind import simulations_of
 
 
 def examine_file(
@@ -39,7 +39,7 @@ def examine_file(
 
     Raises:
         KnowledgeError: the file cannot be read.
-        hal.settings.SettingsError: task and worlds do not fit.
+        config.settings.SettingsError: task and worlds do not fit.
         LessonLostError: the robot refused a command.
     """
     task, stage = with_own_route(task, seed), simulations_of(robot)

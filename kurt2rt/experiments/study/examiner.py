@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
@@ -12,6 +11,7 @@ from kurt2rt.experiments.lockstep.curriculum import Report, run_drives
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.exam import ExamSetup
+from simbridge.contracts.simulation import SimulationFactory
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from hal.simulation import SimulationFactory
 from kurt2rt.experiments.lockstep import trails
 from kurt2rt.experiments.lockstep.drive_row import DriveRow
 from kurt2rt.experiments.lockstep.trails import columns
+from simbridge.contracts.simulation import SimulationFactory
 
 _COLLIDED = "#111111"
 START = "#2e8540"

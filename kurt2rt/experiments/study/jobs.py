@@ -9,9 +9,8 @@ from typing import ClassVar, TypedDict
 
 import anyio
 
+from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
-from hal.simulation import SimulationFactory
 from kurt2rt.core.learner.learner_team import LearnerTeam
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_metric
@@ -23,6 +22,7 @@ from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
+from simbridge.contracts.simulation import SimulationFactory
 
 
 class JobParts(TypedDict):
@@ -208,7 +208,7 @@ def world_of(place: str, seed: int) -> str:
 
 
 def require_places(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
-    """Check that all worlds can be built, and that the task can be driven there. Raises hal.settings.SettingsError."""
+    """Check that all worlds can be built, and that the task can be driven there. Raises SettingsError."""
     needed = tuple(dict.fromkeys(worlds))
     factory.require_worlds(*needed)
     require_metric(factory, task, needed)

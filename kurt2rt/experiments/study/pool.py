@@ -16,7 +16,7 @@ from typing import NamedTuple, Protocol, Self
 
 from threadpoolctl import threadpool_limits
 
-from hal.errors import ExitCode, UserError
+from config.errors import ExitCode, UserError
 from kurt2rt.platform.gc_control import freeze_survivors
 
 Progress = Callable[[float], None]

@@ -10,13 +10,13 @@ from importlib.resources import files
 from pathlib import Path
 
 from behaviors.repertoire_settings import RepertoireSettings
-from hal.plugin_source import source_hash_of
-from hal.plugins import OWN_PACKAGES
+from config.plugin_source import source_hash_of
+from config.plugins import OWN_PACKAGES
+from config.settings import Settings, content_of, load_settings
+from config.settings_files import find_config
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, content_of, load_settings
-from hal.settings_files import find_config
-from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
+from simbridge.contracts.simulation import SimulationFactory
 
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
@@ -107,7 +107,7 @@ class Fingerprints:
             learner: text that changes with the learner; empty for RLAs.
 
         Raises:
-            hal.settings.SettingsError: settings of the task or a world cannot be loaded.
+            config.settings.SettingsError: settings of the task or a world cannot be loaded.
         """
         plugins = _plugin_sources(task)
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from threadpoolctl import threadpool_limits
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.experiments.study.provenance import program_hash, versions_with_python
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.runner import StoredJob

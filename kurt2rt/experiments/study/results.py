@@ -10,8 +10,8 @@ from typing import BinaryIO, Protocol, TypeVar
 
 from pydantic import ValidationError
 
-from hal.errors import UserError
-from hal.settings import Settings
+from config.errors import UserError
+from config.settings import Settings
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.platform.durable_files import write_durably
 

@@ -42,7 +42,7 @@ def make_plan(
         engine: requested for lessons and exams.
 
     Raises:
-        hal.settings.SettingsError: settings of the task or a world cannot be loaded.
+        config.settings.SettingsError: settings of the task or a world cannot be loaded.
     """
     made = Fingerprints(parts["factory"], parts["robot"]).of(task, (task.teaching.world, *task.exam.worlds))
     jobs = [

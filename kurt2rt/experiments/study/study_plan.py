@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Generic, NamedTuple, Self, TypeVar
 
-from hal.batch import BatchRefusedError
+from config.settings import Settings
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.batch_mind import require_known_exams, require_known_lesson
 from kurt2rt.experiments.lockstep.engine import ON_BUS, Engine, Engines, choose_witnesses
 from kurt2rt.experiments.study.bus_witness import BusWitnessJob
 from kurt2rt.experiments.study.jobs import StudyJob
+from simbridge.contracts.batch import BatchRefusedError
 
 JobT = TypeVar("JobT", bound=StudyJob)
 KeyT = TypeVar("KeyT")
@@ -82,7 +82,7 @@ class StudyPlan(Generic[AboutT]):
     """Engines of the jobs."""
 
     def driven(self, asked: "RequestedEngine", robot: RobotSettings) -> Self:
-        """Return the plan with jobs that this engine drives. Raises hal.settings.SettingsError."""
+        """Return the plan with jobs that this engine drives. Raises config.settings.SettingsError."""
         choice = choose_engines(self.jobs, asked, robot)
         return replace(self, jobs=choice.apply(self.jobs), choice=choice)
 
@@ -132,7 +132,7 @@ def choose_engines(jobs: Sequence[StudyJob], asked: RequestedEngine, robot: Robo
         robot: settings of the robot.
 
     Raises:
-        hal.settings.SettingsError: settings of a task do not fit each other.
+        config.settings.SettingsError: settings of a task do not fit each other.
     """
     choice = _choose(jobs, asked, robot, auto=asked.compiled)
     saved_s = sum(job.robot_time_s for job in jobs if job.stem in choice.engines.keys() - choice.witnessed)

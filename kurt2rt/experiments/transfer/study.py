@@ -7,7 +7,7 @@ from math import inf
 from pathlib import Path
 from typing import ClassVar, NamedTuple
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, taught_by
@@ -31,7 +31,7 @@ PURPOSE = "new-world"
 def task_in(world: str, task: TaskSettings, teacher: str | None = None) -> TaskSettings:
     """Return the task to teach and examine in a new world, by its name; `teacher`: None: the teacher of home.
 
-    Raises hal.settings.SettingsError if the teacher cannot be loaded.
+    Raises config.settings.SettingsError if the teacher cannot be loaded.
     """
     if teacher is not None:
         task = taught_by(task, load_teacher(teacher))
@@ -209,7 +209,7 @@ def make_plan(
         engine: requested for lessons and exams; lessons in new worlds are given on the CAN bus.
 
     Raises:
-        hal.settings.SettingsError: the task and a world do not fit, or a new world is that of home.
+        config.settings.SettingsError: the task and a world do not fit, or a new world is that of home.
     """
     home, seconds = task.teaching.world, new.seconds or task.teaching.duration_s
     worlds = [world_of(place, seed) for place in new.places for seed in seeds]

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hal.settings_files import settings_override
+from config.settings_files import settings_override
 
 MOST_FILES = 1000
 LARGEST_BYTES = 256_000_000

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
+from config.settings import Settings, load_settings
+from config.settings_files import FILES, find_beside, find_config, kept_name
 from hal.robot_settings import RobotSettings
-from hal.settings import Settings, load_settings
-from hal.settings_files import FILES, find_beside, find_config, kept_name
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task

@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, robot_of_json
-from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import AVERAGED, SituationDefinition, load_situation
 from kurt2rt.core.rla.condition import LevelFeatures
 from kurt2rt.core.rla.statistics import Statistics
@@ -202,7 +202,7 @@ def _content(path: Path, archive: Archive) -> KnowledgePackage:
 def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task: TaskSettings) -> str:
     """Return the differences of the basic situation, there against here, in a few words; empty if there are none.
 
-    Raises hal.settings.SettingsError if the situation of `task`, here, cannot be loaded.
+    Raises config.settings.SettingsError if the situation of `task`, here, cannot be loaded.
 
     Args:
         settings: files there, as `kurt2rt.knowledge.exchange.attachments` makes them. Unreadable ones count as

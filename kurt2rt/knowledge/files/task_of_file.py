@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import installed_task, load_task
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

@@ -143,7 +143,7 @@ def _read_fitting(
 def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
     """Return the features and the task that knowledge of a task on a robot is bound to.
 
-    Raises hal.settings.SettingsError if a file that the task uses cannot be read.
+    Raises config.settings.SettingsError if a file that the task uses cannot be read.
     """
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)

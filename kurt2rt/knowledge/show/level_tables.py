@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from hal.settings_files import shipped_names
+from config.settings_files import shipped_names
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.rla.condition import Condition, LevelFeatures
 from kurt2rt.core.rla.rla import CRITIC, Rla

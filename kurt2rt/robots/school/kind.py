@@ -1,4 +1,4 @@
-"""The school robot as a kind of robot (hal.robot_kind.RobotKind)."""
+"""The school robot as a kind of robot (simbridge.contracts.robot_kind.RobotKind)."""
 
 import time
 from pathlib import Path
@@ -6,8 +6,8 @@ from secrets import randbelow
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from hal.tap import Tap, refuse_tap
+from simbridge.contracts.simulation import SimulationFactory
 
 
 class SchoolKind:
@@ -19,7 +19,7 @@ class SchoolKind:
     def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
         """Return the driver on the serial port `address`, after the robot has greeted. A tap would see no CAN frames.
 
-        Raises hal.bus.BusError, also for another device, hal.settings.SettingsError for a tap.
+        Raises hal.bus.BusError, also for another device, config.settings.SettingsError for a tap.
         """
         from hal.byte_port import SerialPort
         from hal.linked_robot import LinkedRobot

@@ -1,12 +1,12 @@
-"""The base as a kind of robot (hal.robot_kind.RobotKind)."""
+"""The base as a kind of robot (simbridge.contracts.robot_kind.RobotKind)."""
 
 from pathlib import Path
 
 from hal.guarded_robot import GuardedRobot
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from hal.tap import Tap, refuse_tap
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings, require_turtlebot
+from simbridge.contracts.simulation import SimulationFactory
 
 
 class TurtlebotKind:
@@ -18,7 +18,7 @@ class TurtlebotKind:
     def open(self, settings: RobotSettings, address: str, tap: Tap | None = None) -> GuardedRobot:
         """Return the driver of the robot behind the locator `address`, such as tcp/127.0.0.1:7447.
 
-        Raises hal.bus.BusError if nothing answers there, hal.settings.SettingsError for a tap, which sees CAN frames.
+        Raises hal.bus.BusError if nothing answers there, SettingsError for a tap, which sees CAN frames.
         """
         from hal.linked_robot import LinkedRobot
         from kurt2rt.robots.turtlebot.link import TurtlebotLink

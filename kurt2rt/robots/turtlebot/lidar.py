@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from hal.numerics import cos_sin
 from hal.robot_settings import RobotSettings
-from hal.simulation import Pose
 from kurt2rt.robots.turtlebot.sectors import Sectors
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings, require_turtlebot
 from kurt2rt.ros.laser_scan import Ranges, full_turn_scan
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.noise import Noise
 from simbridge.robot.ray_caster import faces_of
 from simbridge.robot.world import World

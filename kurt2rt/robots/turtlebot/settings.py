@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
+from config.settings import Settings, SettingsError
 from hal.robot_settings import RobotSettings, Seconds
-from hal.settings import Settings, SettingsError
 from kurt2rt.ros.settings import RosName, RosSettings
 from kurt2rt.ros.twist_settings import TwistSettings
 
@@ -45,7 +45,7 @@ class TurtlebotSettings(RobotSettings):
 
 
 def require_turtlebot(settings: RobotSettings) -> TurtlebotSettings:
-    """Return settings of this kind of robot. Raises hal.settings.SettingsError for those of another kind."""
+    """Return settings of this kind of robot. Raises config.settings.SettingsError for those of another kind."""
     if not isinstance(settings, TurtlebotSettings):
         raise SettingsError(f"is of kind {settings.kind} (allowed turtlebot)", where=f"robot {settings.name}")
     return settings

@@ -119,7 +119,7 @@ class LocalLink(InstantLink):
     """Topics in memory with both ends (simbridge.link_simulation.PairedLink)."""
 
     def __init__(self, settings: RobotSettings) -> None:
-        """Make the topics of a base. Raises hal.settings.SettingsError for another kind of robot."""
+        """Make the topics of a base. Raises config.settings.SettingsError for another kind of robot."""
         self._settings = require_turtlebot(settings)
         self._clock = SimulatedClock()
         self.topics = LocalTopics(self._settings.ros)

@@ -29,9 +29,9 @@ from foxglove.messages import (
 
 from hal.odometry import PlanePose
 from hal.robot_settings import InfraredSettings, RobotSettings
-from hal.simulation import WorldPlan
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.rla.rla import rla_title
+from simbridge.contracts.simulation import WorldPlan
 
 ROBOT, START, WORLD = "robot", "start", "world"
 """Frames: the robot's centre; where it was switched on, by its encoders; the simulated world."""

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import WorldView
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead, encode_head
+from simbridge.contracts.simulation import WorldView
 
 SEGMENT_METADATA = "segment"
 """Metadata record with the segment's number, next to the head of the run."""

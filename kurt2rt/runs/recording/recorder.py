@@ -9,7 +9,6 @@ from typing import Any, NamedTuple, Self
 
 from foxglove import Context
 
-from hal.simulation import SimulatedPlace, WorldPlan, WorldView
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
@@ -21,6 +20,7 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.runs.recording.topics import Topics
 from kurt2rt.runs.recording.writer_thread import WriterThread
+from simbridge.contracts.simulation import SimulatedPlace, WorldPlan, WorldView
 
 CAPACITY = 3000
 """Most notes that wait for the disk: half a minute of ticks, about 20 MB."""

@@ -7,10 +7,9 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hal.plugins import loaded_plugins
+from config.plugins import loaded_plugins
+from config.settings_files import SHIPPED_DIR
 from hal.robot_settings import RobotSettings
-from hal.settings_files import SHIPPED_DIR
-from hal.simulation import WorldView
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
@@ -20,6 +19,7 @@ from kurt2rt.runs.recording.budget import Budget
 from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.run_folder import run_name
 from kurt2rt.runs.recording.run_head import RunHead
+from simbridge.contracts.simulation import WorldView
 
 if TYPE_CHECKING:
     from kurt2rt.runs.recording.live_view import LiveView

@@ -1,6 +1,6 @@
 """Error of a recording that cannot be made or read."""
 
-from hal.errors import UserError
+from config.errors import UserError
 
 
 class RecordingError(UserError):

@@ -19,7 +19,6 @@ from foxglove.messages import Log, LogLevel
 from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulatedPlace, WorldPlan
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla_system import knowledge_hash_of
@@ -41,6 +40,7 @@ from kurt2rt.runs.recording.foxglove_scene import (
 )
 from kurt2rt.runs.recording.run_folder import TICK_TOPIC
 from kurt2rt.runs.recording.tick_json import encode_tick, tick_properties
+from simbridge.contracts.simulation import SimulatedPlace, WorldPlan
 
 TICK, LESSON, SITUATION, HEALTH, LOG = TICK_TOPIC, "/lesson", "/situation", "/health", "/log"
 SCAN, POSE, TF, TRUTH, SCENE, GROUND = "/scan", "/pose", "/tf", "/truth", "/scene", "/world"

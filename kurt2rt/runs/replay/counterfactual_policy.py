@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import DecisionCause

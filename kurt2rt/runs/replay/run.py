@@ -8,9 +8,9 @@ from typing import TypeVar
 
 from pydantic import ValidationError
 
-from hal.plugins import settings_from_elsewhere
+from config.plugins import settings_from_elsewhere
+from config.settings import SettingsError
 from hal.robot_settings import RobotSettings, robot_of_json
-from hal.settings import SettingsError
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.attachment_files import extracted_settings, unsafe_reason

@@ -1,6 +1,6 @@
 """Error of a status that cannot be read, as a code with its text."""
 
-from hal.errors import CodedError, TextCode
+from config.errors import CodedError, TextCode
 
 
 class StatusCode(TextCode):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 
-from hal.settings_files import SHIPPED_DIR
+from config.settings_files import SHIPPED_DIR
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 _HOMES = (Path("/home"), Path("/root"), Path("/run/user"))

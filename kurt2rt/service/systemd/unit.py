@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
-from hal.settings_files import SHIPPED_DIR
+from config.settings_files import SHIPPED_DIR
 from kurt2rt.service.systemd.access import needs_home_access
 from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 

@@ -1,6 +1,6 @@
 """Error of a unit that cannot be made or installed, as a code with its text."""
 
-from hal.errors import CodedError, TextCode
+from config.errors import CodedError, TextCode
 
 _SUDO = "say it with sudo"
 _UNREADABLE = "the service's user cannot read it, because {closed} is closed to others"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any, Final
 
-from hal.errors import UserError
+from config.errors import UserError
 from kurt2rt.core.outcome import Code, Outcome, RefusalCode, outcome_in
 from kurt2rt.core.outcome_text import Surface, fields_of, text_of
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from urllib.parse import urlsplit
 
-from hal.errors import UserError
+from config.errors import UserError
 
 _HTTPS_PORT = 443
 

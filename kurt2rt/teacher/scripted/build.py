@@ -33,7 +33,7 @@ def build_teacher(
         session: prefix of its command ids.
 
     Raises:
-        hal.settings.SettingsError: the repertoire of the task is missing or invalid.
+        config.settings.SettingsError: the repertoire of the task is missing or invalid.
     """
     profile, period_s = task.teaching.profile, robot.cycle_s
     person = profile.person

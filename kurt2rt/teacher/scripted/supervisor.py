@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 
-from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.requests import PlaceRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.decision import DecisionCause
@@ -15,6 +14,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
+from simbridge.contracts.simulation import SimulatedPlace
 
 EACH_S = 30.0
 """Time for each behaviour: enough for one or two junctions."""

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.worlds.geometry import polygons_of
 
 _STARTS = 8

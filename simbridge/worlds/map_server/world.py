@@ -12,10 +12,10 @@ from PIL import Image, UnidentifiedImageError
 from pydantic import AliasChoices, ConfigDict, Field, ValidationError, model_validator
 from shapely.affinity import scale, translate
 
+from config.settings import Settings, SettingsError, load_settings
 from hal.numerics import cos_sin
 from hal.robot_settings import GeometrySettings
-from hal.settings import Settings, SettingsError, load_settings
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.worlds.map_server.starts import starts_beside_walls, turning_places
 from simbridge.worlds.map_server.tracing import TooRaggedError, trace
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings

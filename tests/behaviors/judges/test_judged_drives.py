@@ -6,7 +6,6 @@ import pytest
 
 from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import load_repertoire
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot_of
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -15,6 +14,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
+from simbridge.contracts.robot_kind import simulations_of
 from tests.behaviors.helpers import ROBOT, counts
 
 Shares = dict[int, float]

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from behaviors.metrics.task_metric import StretchMetric, TaskMetric
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 
 Point = tuple[float, float]
 STEP_M = 0.004

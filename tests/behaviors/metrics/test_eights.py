@@ -1,8 +1,8 @@
 import pytest
 
 from behaviors.metrics.eights import Eights, EightsSettings
-from hal.settings import SettingsError
-from hal.simulation import SimulatedPost
+from config.settings import SettingsError
+from simbridge.contracts.simulation import SimulatedPost
 from tests.behaviors.metrics.paths import Point, arc, follow, put
 from tests.behaviors.metrics.worlds import course_in
 

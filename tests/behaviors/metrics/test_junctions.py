@@ -6,9 +6,9 @@ import pytest
 from behaviors.metrics.junctions import QUARTERS, Junctions, JunctionsSettings
 from behaviors.metrics.streets import StreetMap
 from behaviors.metrics.task_metric import BorderMetric, StretchMetric, TaskMetric
-from hal.areas import holds
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from config.settings import SettingsError
+from simbridge.contracts.areas import holds
+from simbridge.contracts.simulation import Pose
 from tests.behaviors.metrics.paths import Point, along, follow, put
 from tests.behaviors.metrics.worlds import course_in
 from tests.experiments.helpers import STAGE

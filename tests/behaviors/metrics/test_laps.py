@@ -7,8 +7,8 @@ from behaviors.metrics.laps import LapsSettings
 from behaviors.metrics.task_metric import TaskMetric
 from behaviors.metrics.way import WaySettings
 from hal.robot import WheelSpeeds
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import load_task
+from simbridge.contracts.simulation import Pose
 from simbridge.kurt2_simulation import Kurt2Simulation
 from tests.behaviors.metrics.paths import Point, along
 from tests.experiments.helpers import STAGE, short_task, teachers_drive

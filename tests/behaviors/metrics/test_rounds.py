@@ -1,8 +1,8 @@
 import pytest
 
 from behaviors.metrics.rounds import Rounds, RoundsSettings
-from hal.settings import SettingsError
-from hal.simulation import SimulatedPost
+from config.settings import SettingsError
+from simbridge.contracts.simulation import SimulatedPost
 from tests.behaviors.metrics.paths import arc, follow, put
 from tests.behaviors.metrics.worlds import course_in
 

@@ -7,7 +7,7 @@ from behaviors.metrics.route import FixedRoute, RouteSettings
 from behaviors.metrics.routes import Leg, Route
 from behaviors.metrics.streets import StreetMap
 from behaviors.metrics.task_metric import RouteMetric
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from tests.behaviors.metrics.paths import Point, follow
 from tests.behaviors.metrics.worlds import course_in
 from tests.experiments.helpers import STAGE

@@ -7,7 +7,7 @@ import pytest
 
 from behaviors.metrics.routes import Route, random_route
 from behaviors.metrics.streets import ALONG, StreetMap
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from tests.experiments.helpers import STAGE
 
 ALL = (0, 1, -1)

@@ -8,7 +8,7 @@ from behaviors.metrics.eights import Eights, EightsSettings
 from behaviors.metrics.rounds import Rounds, RoundsSettings
 from behaviors.metrics.task_metric import StretchMetric
 from behaviors.metrics.way import Way
-from hal.simulation import Pose, SimulatedPost
+from simbridge.contracts.simulation import Pose, SimulatedPost
 from tests.behaviors.metrics.paths import Point, along, arc, follow_in_stretches, noisy_poses
 
 WEST, EAST = (1.8, 1.8), (3.1, 1.8)

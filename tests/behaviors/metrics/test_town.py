@@ -9,8 +9,8 @@ from behaviors.metrics.errands import ErrandsSettings
 from behaviors.metrics.streets import Side
 from behaviors.metrics.town import Street, Town, length_m
 from hal.kurt2_settings import load_kurt2
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import load_task
+from simbridge.contracts.simulation import Pose
 from simbridge.simulation import Kurt2SimulationFactory
 
 BEHAVIOURS = ("straight_on", "turn_left", "turn_right")

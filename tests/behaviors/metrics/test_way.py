@@ -1,7 +1,7 @@
 import pytest
 
 from behaviors.metrics.way import Way
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from tests.behaviors.metrics.paths import follow, put
 
 

@@ -10,7 +10,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.codec import (
     BODIES,
     PATHS,
@@ -60,6 +59,7 @@ from kurt2rt.core.teaching.message_fields import (
 )
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
+from simbridge.contracts.simulation import SimulatedPlace
 from tests.channel.hostile_datagrams import HostileDatagrams
 from tests.channel.states import COMMANDS, SHOWN, SURPRISED, state
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from config.settings import SettingsError
 from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2_settings import SpeedMode
-from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, WORDS, blocking_failures, open_steps, step_named
 from kurt2rt.checks.commission.fault import SkipCode
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 import yaml
 
+from config.settings import SettingsError
 from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.kurt2_settings import Kurt2Settings, SpeedMode, load_kurt2
 from hal.robot import WheelSpeeds
-from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.progress import Progress, StepRecord

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from behaviors.repertoire_settings import BEHAVIOURS
-from hal.settings_files import find_config
+from config.settings_files import find_config
 from kurt2rt.checks.plugins.kinds import KINDS, KindName
 from kurt2rt.checks.plugins.skeleton import SkeletonKind
 from tests.cli.helpers import ROOT, CommandLine, started

@@ -14,10 +14,10 @@ from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings, load_robot
-from hal.simulation import Simulation, SimulationFactory
 from hal.tap import Tap
 from kurt2rt.checks.plugins.robot_tests import RobotTests
 from kurt2rt.robots.kurt2 import KURT2
+from simbridge.contracts.simulation import Simulation, SimulationFactory
 
 
 class Wrapped:

@@ -8,10 +8,10 @@ import pytest
 
 from behaviors.judges.judge import JudgeSettings
 from behaviors.policies.policy import PolicySettings
-from hal.robot_kind import simulations_of
+from config.settings import SettingsError
 from hal.robot_settings import load_robot
-from hal.settings import SettingsError
 from kurt2rt.checks.plugins.task_tests import ActionTests, JudgeTests, MetricTests, PolicyTests, TaskTests, WorldTests
+from simbridge.contracts.robot_kind import simulations_of
 from tests.plugin_parts import Moving, Reach, Turning, Wiggling
 
 TASKS = ("circle", "eight", "fleeing", "wall_following", "streets", "route", "errands")

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from behaviors.repertoire import load_repertoire
+from config.settings import SettingsError
 from hal.robot import STANDSTILL, WheelSpeeds
-from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
 from tests.behaviors.helpers import ROBOT, SENSORS, counts, sensed

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.judge import AppraisalFeatures
+from config.settings import SettingsError
 from hal.robot import SensorReadings
-from hal.settings import SettingsError
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from tests.behaviors.helpers import ROBOT, counts

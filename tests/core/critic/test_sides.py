@@ -5,9 +5,9 @@ import math
 
 import pytest
 
+from config.settings import SettingsError
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
-from hal.settings import SettingsError
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.critic.sides import critic_of

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
 from kurt2rt.core.mid.settings import load_mid_level
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, Walk

@@ -3,7 +3,7 @@
 import anyio
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.perception.definition import feature_weights, load_situation
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task

@@ -7,7 +7,7 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.certify.study import (

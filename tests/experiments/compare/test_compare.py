@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from hal.batch import CallbackMind
 from kurt2rt.core.event_store import InMemoryEventStore
 from kurt2rt.core.learner.learner import Label, Why
 from kurt2rt.core.learner.learner_team import LearnerTeam
@@ -31,6 +30,7 @@ from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.experiments.study.checkpoints import run_checkpoints
 from kurt2rt.experiments.study.study_plan import StudyPlan
+from simbridge.contracts.batch import CallbackMind
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.experiments.rows import row
 from tests.experiments.study.here import carry_out, parts_in

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.doubt.drive import DoubtResponse, with_doubt
 from kurt2rt.experiments.doubt.measures import (

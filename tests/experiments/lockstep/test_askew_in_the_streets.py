@@ -6,9 +6,9 @@ from contextlib import closing
 import anyio
 import pytest
 
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamRun, ExamSetup
+from simbridge.contracts.simulation import Pose
 from tests.experiments.helpers import ROBOT, STAGE
 
 CROSSING_X_M, MOUTH_Y_M, BEHIND_Y_M = 2.2, 1.85, 2.6

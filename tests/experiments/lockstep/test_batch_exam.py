@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from hal.batch import BatchRefusedError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.batch_exam import examine_in_batch
 from kurt2rt.experiments.lockstep.exam import ExamSetup
 from simbridge.batch.compiled import IS_COMPILED
+from simbridge.contracts.batch import BatchRefusedError
 from tests.experiments.helpers import ROBOT, STAGE, exam_on_bus, short_task, teach
 from tests.simbridge.batch.equal_lessons import batch_lesson
 

@@ -10,11 +10,11 @@ import yaml
 from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
 from config import CONFIG_DIR
-from hal.simulation import Simulation
 from kurt2rt.core.decision.decision import UnknownActionError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_exams
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from simbridge.contracts.simulation import Simulation
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
 
 

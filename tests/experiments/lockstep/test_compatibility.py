@@ -1,6 +1,6 @@
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_metric
 from tests.experiments.helpers import STAGE

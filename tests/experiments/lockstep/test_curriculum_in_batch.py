@@ -6,7 +6,6 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.batch import BatchRefusedError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep import curriculum
 from kurt2rt.experiments.lockstep.batch_mind import require_known_lesson
@@ -15,6 +14,7 @@ from kurt2rt.experiments.lockstep.engine import Engine
 from kurt2rt.experiments.lockstep.lesson import GivenLesson
 from kurt2rt.experiments.lockstep.lesson_plan import plan_of
 from kurt2rt.knowledge.journal.loading import read_knowledge
+from simbridge.contracts.batch import BatchRefusedError
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 from tests.simbridge.batch.equal_lessons import require_equal_lessons
 

@@ -4,11 +4,11 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure
 
-from hal.simulation import Position
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.lockstep.drawing import draw_curriculum
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.platform.ledger import TickTimer
+from simbridge.contracts.simulation import Position
 from tests.experiments.helpers import STAGE, short_task
 from tests.experiments.rows import judged
 

@@ -5,7 +5,6 @@ import anyio
 import pytest
 
 from hal.robot import STANDSTILL
-from hal.simulation import Position
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings, load_task
@@ -16,6 +15,7 @@ from kurt2rt.experiments.lockstep.drive_row import DriveRow, ExamVerdict
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
+from simbridge.contracts.simulation import Position
 from simbridge.worlds.world_loading import load_world
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task, teachers_drive
 from tests.experiments.rows import row

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
-from hal.simulation import Pose, Position
 from kurt2rt.experiments.lockstep.episode import StuckDetector
+from simbridge.contracts.simulation import Pose, Position
 
 PERIOD_S = 0.01
 

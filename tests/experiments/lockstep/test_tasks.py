@@ -7,7 +7,7 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.lesson import TrainingResult

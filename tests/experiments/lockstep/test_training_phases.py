@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.events import Appraised, RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.rla.statistics import VALUES_INCLUDE, Statistics

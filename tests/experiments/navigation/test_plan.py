@@ -8,7 +8,7 @@ import anyio
 import pytest
 from matplotlib.image import imread
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by_named

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task, taught_by
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.paper.settings import QUICK, WHOLE, ExperimentSettings, Extent, PaperSettings, load_paper

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -13,6 +12,7 @@ from kurt2rt.experiments.phases.study import JobOutcome, PhasesTask, StepJob, ma
 from kurt2rt.experiments.study.jobs import JobParts, StudyJob
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.study_plan import StudyPlan
+from simbridge.contracts.robot_kind import simulations_of
 from tests.experiments.phases.outcomes import TASK, stage, teaching
 from tests.experiments.study.here import parts_in
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.steps import (

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 import yaml
 
-from hal.settings_files import find_config, shipped_names
+from config.settings_files import find_config, shipped_names
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.search.settings import load_search
 from kurt2rt.experiments.search.space import content_of_task, value_at

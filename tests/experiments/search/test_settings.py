@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from hal.settings import SettingsError
-from hal.settings_files import shipped_names
+from config.settings import SettingsError
+from config.settings_files import shipped_names
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.search.settings import load_search, may_be_searched
 from kurt2rt.experiments.search.space import TaskSpace

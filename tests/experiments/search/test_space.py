@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.search.settings import Dimension

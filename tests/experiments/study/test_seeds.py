@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.pool import JobProcesses
 from kurt2rt.experiments.study.results import Results

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.experiments.study.checkpoints import events_before_press

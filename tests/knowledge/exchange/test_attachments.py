@@ -2,7 +2,7 @@
 
 import pytest
 
-from hal.settings_files import kept_name
+from config.settings_files import kept_name
 from kurt2rt.core.rla.statistics import Expectation, Statistics
 from kurt2rt.knowledge.exchange.attachments import (
     decode_statistics,

@@ -8,12 +8,12 @@ import pytest
 from hal.byte_port import SerialPort
 from hal.robot_link import RobotLink
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.checks.plugins.robot_tests import RobotTests
 from kurt2rt.robots.school.kind import SCHOOL, SchoolKind
 from kurt2rt.robots.school.lines import BIT_RATE_BIT_S
 from kurt2rt.robots.school.link import SchoolLink
 from kurt2rt.robots.school.simulated import SchoolElectronics
+from simbridge.contracts.simulation import SimulationFactory
 from simbridge.link_simulation import LinkSimulationFactory
 from simbridge.pty_port import PtyPort
 from simbridge.robot.body import Body

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
+from config.settings import SettingsError
 from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult
-from hal.robot_kind import kind_of
-from hal.settings import SettingsError
 from kurt2rt.robots.school.kind import SCHOOL
+from simbridge.contracts.robot_kind import kind_of
 from simbridge.pty_port import PtyPort
 from tests.patience import PATIENCE_S
 from tests.robots.school.rig import FORWARD, SETTINGS, PtyRobot

@@ -5,10 +5,10 @@ from contextlib import closing
 import anyio
 import pytest
 
-from hal.robot_kind import simulations_of
 from hal.robot_settings import load_robot
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
+from simbridge.contracts.robot_kind import simulations_of
 
 SCHOOL = load_robot("school")
 

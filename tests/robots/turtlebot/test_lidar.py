@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from hal.numerics import cos_sin
-from hal.simulation import Pose
 from kurt2rt.robots.turtlebot.lidar import Lidar, distances_m
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.noise import Noise
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World

@@ -6,10 +6,10 @@ from contextlib import closing, contextmanager
 
 import pytest
 
+from config.settings import SettingsError
 from hal.bus import BusError
 from hal.guard_reason import GuardReason
 from hal.guarded_robot import GuardedRobot
-from hal.settings import SettingsError
 from kurt2rt.robots.turtlebot.kind import TURTLEBOT
 from kurt2rt.robots.turtlebot.settings import TurtlebotSettings
 from simbridge.realtime import StandaloneRobot

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from hal.simulation import SimulatedWorld
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.runs.recording.budget import Budget, budget_of
@@ -12,6 +11,7 @@ from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.recording_disk import Disk
 from kurt2rt.runs.recording.run_head import RunHead
+from simbridge.contracts.simulation import SimulatedWorld
 from tests.channel.channel_fixture import ROBOT, TASK, ChannelFixture
 
 BEGAN_AT_NS = 1_795_318_200_000_000_000

@@ -7,12 +7,12 @@ from typing import Any
 import pytest
 
 from config import CONFIG_DIR
-from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 from kurt2rt.core.teaching.commands import Resume, Teach, Watch
 from kurt2rt.runs.recording.foxglove_scene import ROBOT
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader
 from kurt2rt.runs.recording.topics import LOG, TICK
+from simbridge.contracts.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 from tests.runs.recording.desk_recording import NAME, RecordedDesk
 
 LAYOUT: dict[str, Any] = json.loads((CONFIG_DIR / "foxglove" / "kurt2.json").read_text())

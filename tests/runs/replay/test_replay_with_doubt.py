@@ -3,7 +3,6 @@
 import re
 from pathlib import Path
 
-from hal.simulation import Pose
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
@@ -15,6 +14,7 @@ from kurt2rt.runs.explain.reasons import format_reasons
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
+from simbridge.contracts.simulation import Pose
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 

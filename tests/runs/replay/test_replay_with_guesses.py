@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from hal.simulation import Pose
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.lesson_history import hold_of
 from kurt2rt.core.rla.rla import Phase
@@ -13,6 +12,7 @@ from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
+from simbridge.contracts.simulation import Pose
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 ANSWERED = tuple(range(20, 70, 10))

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from hal.simulation import Pose
 from kurt2rt.core.critic.settings import CirclingSettings, load_critic
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
@@ -11,6 +10,7 @@ from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
+from simbridge.contracts.simulation import Pose
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 

@@ -9,11 +9,11 @@ import anyio
 
 from behaviors.metrics.task_metric import TaskMetric
 from hal.kurt2_settings import load_kurt2
-from hal.simulation import Pose
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick_record import TickRecord
 from kurt2rt.experiments.lockstep.batch_mind import build_drive_settings, build_minds
 from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
+from simbridge.contracts.simulation import Pose
 from simbridge.simulation import Kurt2SimulationFactory
 
 ROBOT = load_kurt2()

@@ -10,17 +10,17 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.batch import PolicyMind, TabledPolicy
 from hal.bus import open_bus
 from hal.robot import SensorReadings, WheelSpeeds
 from hal.sensor_watch import SensorWatch
-from hal.simulation import Pose
 from hal.wheel_watch import WheelWatch
 from kurt2rt.core.task_settings import load_task
 from simbridge.batch.laws import GuardLaw, World
 from simbridge.batch.safety import looks_broken, slewed
 from simbridge.batch.setup import build_body_law, build_robots, build_watch_law
 from simbridge.batch.sight import cast, gather, has_moved, may_touch
+from simbridge.contracts.batch import PolicyMind, TabledPolicy
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.wheels import Wheels
 from simbridge.simulated_kurt2 import SimulatedKurt2

@@ -5,10 +5,10 @@ import random
 
 import pytest
 
-from hal.simulation import Pose
 from kurt2rt.experiments.lockstep.episode import StuckDetector, build_stuck_rule
 from simbridge.batch.laws import StuckLaw
 from simbridge.batch.record import Sizes, count_tick, empty_robots, restart_window
+from simbridge.contracts.simulation import Pose
 
 PERIOD_S = 0.01
 NO_RULE = StuckLaw(1, 0, 0.0)

@@ -3,9 +3,9 @@
 import can
 import pytest
 
+from config.settings import SettingsError
 from hal.control import Mode, RawControl, RawSide, SpeedControl, SystemControl
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.simulated_kurt2 import SimulatedKurt2
 from tests.simbridge.rig import CODEC, ROBOT, STAND, Rig, facing_wall, room
 

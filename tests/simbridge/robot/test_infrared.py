@@ -6,7 +6,7 @@ from statistics import fmean
 import pymunk
 import pytest
 
-from hal.world_refusal import WorldRefusedError
+from simbridge.contracts.world_refusal import WorldRefusedError
 from simbridge.robot.ray_caster import RayCaster
 from simbridge.robot.world import World
 from tests.simbridge.rig import ROBOT, STAND, Rig, board, box, facing_wall, post, quiet_robot, room

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.survey.drawing import draw_robot, draw_trail, draw_world
 from tests.simbridge.rig import ROBOT, board, box, post, room
 

@@ -5,8 +5,8 @@ import random
 
 import pytest
 
-from hal.settings import SettingsError
-from hal.simulation import Pose
+from config.settings import SettingsError
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.robot_simulation import Clearance
 from simbridge.survey import free_poses

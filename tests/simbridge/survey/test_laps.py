@@ -9,7 +9,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
 from simbridge.survey.wall_rings import WallRings

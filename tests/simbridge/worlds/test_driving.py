@@ -7,7 +7,7 @@ import pytest
 
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.kurt2_settings import Kurt2Settings
-from hal.simulation import Pose
+from simbridge.contracts.simulation import Pose
 from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))

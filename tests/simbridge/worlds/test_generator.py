@@ -7,7 +7,7 @@ import math
 import pytest
 import shapely
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from simbridge.worlds.generator.starts import FOLLOWING_M, TURNING_M, is_drivable
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.settings import SettingsError
+from config.settings import SettingsError
 from simbridge.worlds.world_loading import load_world
 from tests.plugin_packages import install
 from tests.simbridge.worlds.test_worlds import PLAIN, written

@@ -9,7 +9,6 @@ import anyio
 import anyio.lowlevel
 
 from hal.robot_settings import load_robot
-from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello, SensorPlace
@@ -28,6 +27,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
+from simbridge.contracts.simulation import SimulatedPlace
 from tests.channel.states import standing_in
 
 A_STATE = State(

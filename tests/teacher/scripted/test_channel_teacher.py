@@ -7,7 +7,6 @@ import anyio
 import pytest
 
 from hal.robot_settings import load_robot
-from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.requests import HelloRequest, PlaceRequest, StopRequest
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
@@ -32,6 +31,7 @@ from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_state
+from simbridge.contracts.simulation import SimulatedPlace
 from tests.channel.states import state
 from tests.patience import PATIENCE_S
 from tests.teacher.client.test_client import HELLO

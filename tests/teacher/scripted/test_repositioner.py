@@ -2,8 +2,8 @@
 
 import random
 
-from hal.simulation import SimulatedPlace
 from kurt2rt.teacher.scripted.supervisor import RobotRepositioner
+from simbridge.contracts.simulation import SimulatedPlace
 from tests.channel.states import state
 
 AFTER_S = 15.0

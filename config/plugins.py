@@ -15,7 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from hal.errors import UserError
+from config.errors import UserError
 
 OWN_PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
 """Top-level packages of the program; a part of any other one is a plug-in."""

@@ -3,11 +3,11 @@
 from pathlib import Path
 from typing import Protocol, cast
 
+from config.robot_plugins import find_robot_kind
 from hal.guarded_robot import GuardedRobot
-from hal.robot_plugins import find_robot_kind
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from hal.tap import Tap
+from simbridge.contracts.simulation import SimulationFactory
 
 
 class RobotKind(Protocol):
@@ -47,7 +47,7 @@ class RobotKind(Protocol):
 
 
 def kind_of(settings: RobotSettings) -> RobotKind:
-    """Return the kind of a robot. Raises hal.settings.SettingsError if its plug-in is not installed."""
+    """Return the kind of a robot. Raises config.settings.SettingsError if its plug-in is not installed."""
     return cast("RobotKind", find_robot_kind(settings.kind))
 
 

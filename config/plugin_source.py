@@ -5,7 +5,7 @@ import hashlib
 import sys
 from pathlib import Path
 
-from hal.plugins import OWN_PACKAGES, loaded_plugins
+from config.plugins import OWN_PACKAGES, loaded_plugins
 
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 """Folders in which strangers' packages lie next to a plug-in."""

@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Final
 
 from config import CONFIG_DIR
-from hal.plugins import (
+from config.plugins import (
     PluginError,
     PluginKind,
     UnknownPluginError,
     are_settings_from_elsewhere,
     settings_from_elsewhere,
 )
-from hal.robot_plugins import ROBOTS, find_robot_kind, is_robot
-from hal.settings import SettingsError
+from config.robot_plugins import ROBOTS, find_robot_kind, is_robot
+from config.settings import SettingsError
 
 SHIPPED_DIR: Final = CONFIG_DIR
 """Folder of the files that ship with the project."""

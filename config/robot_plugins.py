@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol, cast
 
 from config import CONFIG_DIR
-from hal.plugins import PluginError, PluginKind, import_target
-from hal.settings import SettingsError, content_of
+from config.plugins import PluginError, PluginKind, import_target
+from config.settings import SettingsError, content_of
 
 _TASKS = "tasks"
 
 
 class RobotParts(Protocol):
-    """Settings of a kind of robot (hal.robot_kind.RobotKind has the rest)."""
+    """Settings of a kind of robot (simbridge.contracts.robot_kind.RobotKind has the rest)."""
 
     @property
     def settings(self) -> type[Any]:
@@ -30,7 +30,7 @@ _ROBOT_PARTS = ("settings", "folder", "open", "simulations", "serve")
 ROBOTS = PluginKind(
     "robots",
     "robot",
-    f"an object with {', '.join(_ROBOT_PARTS[:-1])} and {_ROBOT_PARTS[-1]} (hal.robot_kind.RobotKind)",
+    f"an object with {', '.join(_ROBOT_PARTS[:-1])} and {_ROBOT_PARTS[-1]} (simbridge.contracts.robot_kind.RobotKind)",
     lambda found: all(hasattr(found, part) for part in _ROBOT_PARTS),
     tuple,
 )

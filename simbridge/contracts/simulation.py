@@ -194,12 +194,12 @@ class SimulationFactory(Protocol):
 
         The seed makes the robot, with the spread of its sensors, so a robot is examined with the sensors it was taught
         with; seed and purpose ("lesson", "exam") together make the start pose and the noise. Raises
-        hal.settings.SettingsError for an unknown world.
+        config.settings.SettingsError for an unknown world.
         """
         ...
 
     def require_worlds(self, *worlds: str) -> None:
-        """Check that each world can be used. Raises hal.settings.SettingsError."""
+        """Check that each world can be used. Raises config.settings.SettingsError."""
         ...
 
     def live(self, world: str, seed: int, tap: Tap | None = None) -> "AbstractContextManager[LiveSimulation]":
@@ -207,29 +207,29 @@ class SimulationFactory(Protocol):
 
         A stall of this program does not keep the robot stopped: its wheels stalled with it. Leaving stops the robot,
         and raises the error that ended the simulation. `tap` sees the CAN frames; a robot without CAN refuses one.
-        Raises hal.settings.SettingsError for an unknown world.
+        Raises config.settings.SettingsError for an unknown world.
         """
         ...
 
     def settings_of(self, world: str) -> str:
         """Return all settings of a world as a text, which tells its versions apart.
 
-        Raises hal.settings.SettingsError for an unknown world.
+        Raises config.settings.SettingsError for an unknown world.
         """
         ...
 
     def plan_of(self, world: str) -> WorldPlan:
-        """Return a world from above. Raises hal.settings.SettingsError for an unknown world."""
+        """Return a world from above. Raises config.settings.SettingsError for an unknown world."""
         ...
 
     def draw(self, axes: "Axes", world: str) -> None:
-        """Draw a world from above on axes in m. Raises hal.settings.SettingsError for an unknown world."""
+        """Draw a world from above on axes in m. Raises config.settings.SettingsError for an unknown world."""
         ...
 
     def draw_robot(self, axes: "Axes", world: str) -> None:
         """Draw the robot at a pose where a drive in this world may begin, on axes in m.
 
-        Raises hal.settings.SettingsError for an unknown world.
+        Raises config.settings.SettingsError for an unknown world.
         """
         ...
 

@@ -13,7 +13,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from hal.errors import UserError
+from config.errors import UserError
 
 
 class SettingsError(UserError, ValueError):

@@ -9,10 +9,10 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.areas import Borders
-from hal.errors import UserError
+from config.errors import UserError
 from hal.guard_reason import GuardReason
-from hal.simulation import Pose, Simulation, SimulationFactory
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.simulation import Pose, Simulation, SimulationFactory
 
 STANDS = -1
 """Index of the action of a robot that stands and asks."""
@@ -185,7 +185,7 @@ class Tally(NamedTuple):
     unknown_ticks: int
     """Ticks in which it stood and asked."""
     questions: int
-    """Questions, each of which noise may end for moments (hal.open_question)."""
+    """Questions, each of which noise may end for moments (simbridge.contracts.shared_rules)."""
     first_question: int
     """Tick of the first question; 0: none."""
     collisions: int
@@ -312,7 +312,7 @@ class BatchFactory(SimulationFactory, Protocol):
     """Opens simulations, and batches of their robots."""
 
     def open(self, world: str, seed: int, purpose: str) -> FollowedSimulation:
-        """Open a simulation of a robot (hal.simulation.SimulationFactory)."""
+        """Open a simulation of a robot (simbridge.contracts.simulation.SimulationFactory)."""
         ...
 
     def open_all(self, starts: Sequence[Start], purpose: str) -> list[FollowedSimulation]:

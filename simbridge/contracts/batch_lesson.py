@@ -11,9 +11,9 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.areas import Borders
-from hal.batch import Action, Choose, FeatureTable, TabledPolicy
-from hal.simulation import Pose, Simulation, SimulationFactory
+from simbridge.contracts.areas import Borders
+from simbridge.contracts.batch import Action, Choose, FeatureTable, TabledPolicy
+from simbridge.contracts.simulation import Pose, Simulation, SimulationFactory
 
 
 class LessonCause(IntEnum):
@@ -56,7 +56,7 @@ class LessonLog(NamedTuple):
     slow: NDArray[np.bool_]
     """True where a slow lesson slowed the wheels."""
     sure: NDArray[np.bool_]
-    """True where the situation is inside R with a margin (hal.open_question)."""
+    """True where the situation is inside R with a margin (simbridge.contracts.shared_rules)."""
     turned: NDArray[np.bool_]
     """True where a wheel turns."""
     touching: NDArray[np.bool_]
@@ -129,7 +129,7 @@ class LessonRobot(Simulation, Protocol):
     def watch(self, borders: Borders) -> None:
         """Let `drive` end at borders; before the first tick.
 
-        Raises hal.batch.BatchRefusedError for too many areas.
+        Raises simbridge.contracts.batch.BatchRefusedError for too many areas.
         """
         ...
 
@@ -191,8 +191,8 @@ class LessonFactory(SimulationFactory, Protocol):
     """Opens simulations whose robots are taught in a batch."""
 
     def open_lesson(self, world: str, seed: int, purpose: str, settings: LessonDriveSettings) -> LessonRobot:
-        """Open a simulation (hal.simulation.SimulationFactory) with a compiled robot.
+        """Open a simulation (simbridge.contracts.simulation.SimulationFactory) with a compiled robot.
 
-        Raises hal.batch.BatchRefusedError for what the batch does not know.
+        Raises simbridge.contracts.batch.BatchRefusedError for what the batch does not know.
         """
         ...

@@ -14,8 +14,8 @@ from typing import TypeVar
 from pydantic import ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from hal.plugins import PluginError, PluginKind, UnknownPluginError, are_settings_from_elsewhere
-from hal.settings import Settings, keys_at
+from config.plugins import PluginError, PluginKind, UnknownPluginError, are_settings_from_elsewhere
+from config.settings import Settings, keys_at
 
 
 class KindSettings(Settings):
